@@ -1,0 +1,17 @@
+// EVOD_ASSERT: what the core relies on, checked in every build. A wrong simulation is worse than none.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace evod::base {
+
+[[noreturn]] inline void assertion_failed(const char* condition, const char* file, int line) {
+    std::fprintf(stderr, "%s:%d: this must hold and does not: %s\n", file, line, condition);
+    std::abort();
+}
+
+} // namespace evod::base
+
+#define EVOD_ASSERT(condition)                                                                                         \
+    (static_cast<bool>(condition) ? void(0) : ::evod::base::assertion_failed(#condition, __FILE__, __LINE__))

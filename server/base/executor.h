@@ -1,0 +1,63 @@
+// Executor: where the core sends work that may run side by side. The core is handed one and never makes one.
+//
+// Threads      parallel_for returns after every piece has run; pieces touch only what they were given.
+// Determinism  which thread runs which piece is unknown, so no result may depend on it. Reductions are done by the
+//              caller, in index order, over one partial result per fixed-size block.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <type_traits>
+
+namespace evod::base {
+
+/// A reference to a callable, as cheap as two pointers. Valid only while the callable lives.
+template <class Signature>
+class FunctionRef;
+
+template <class R, class... Arguments>
+class FunctionRef<R(Arguments...)> {
+  public:
+    template <class F>
+        requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
+    FunctionRef(F&& function) // NOLINT(bugprone-forwarding-reference-overload): constrained above
+        : object_{const_cast<void*>(static_cast<const void*>(std::addressof(function)))},
+          call_{[](void* object, Arguments... arguments) -> R {
+              return (*static_cast<std::remove_reference_t<F>*>(object))(arguments...);
+          }} {}
+
+    R operator()(Arguments... arguments) const { return call_(object_, arguments...); }
+
+  private:
+    void* object_;
+    R (*call_)(void*, Arguments...);
+};
+
+/// Half-open range of indices given to one piece of a parallel loop.
+struct Range {
+    std::size_t begin, end;
+};
+
+class Executor {
+  public:
+    virtual ~Executor() = default;
+
+    /// Runs `body` over [0, count) in pieces of at most `grain` indices (grain >= 1), cut at multiples of `grain`.
+    /// Returns when all have run. May be called from inside a piece. A loop of one piece runs on the calling thread.
+    void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(Range)> body) {
+        if (count == 0)
+            return;
+        if (count <= grain)
+            body({0, count});
+        else
+            run(count, grain, body);
+    }
+
+    /// Threads that may work at once, >= 1. For choosing whether to cut, never for how: results must not depend on it.
+    virtual std::size_t thread_count() const = 0;
+
+  protected:
+    virtual void run(std::size_t count, std::size_t grain, FunctionRef<void(Range)> body) = 0;
+};
+
+} // namespace evod::base

@@ -1,0 +1,44 @@
+// Parameter descriptions: what a folder of the core says about each number it can be given.
+//
+// A folder writes its parameters once, as a list of REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
+// simulation/parameters.h). The struct with its defaults and the descriptions are both expanded from that list, so
+// adding a parameter is adding a line; validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md
+// follow from it.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <variant>
+
+namespace evod::base {
+
+/// When a changed value begins to hold.
+enum class Effect {
+    NextTick,       // from the tick at which the command is applied; for breeding: the next one
+    NextGeneration, // from the first tick of the next generation
+    Reset,          // when the world is reset or created
+};
+
+constexpr std::uint32_t count_max = std::numeric_limits<std::uint32_t>::max();
+
+struct RealRange {
+    double min, max; // both allowed
+};
+struct CountRange {
+    std::uint32_t min, max; // both allowed
+};
+
+/// Specialised by EVOD_CHOICE for every enumeration a CHOICE parameter can hold.
+template <class Enumeration>
+struct ChoiceNames;
+
+} // namespace evod::base
+
+/// Gives the enumerators of an enumeration, in order, the names that users write. At global scope.
+#define EVOD_CHOICE_NAMES(Type, ...)                                                                                   \
+    template <>                                                                                                        \
+    struct evod::base::ChoiceNames<Type> {                                                                             \
+        static constexpr std::string_view names[] = {__VA_ARGS__};                                                     \
+    };

@@ -1,0 +1,102 @@
+// Randomness without a state: every draw is a pure function of (seed, purpose, island, generation, entity, tick, draw).
+//
+// Determinism  nothing to save, no order of draws between streams, nothing that depends on threads. A draw added to one
+//              purpose shifts nothing in another.
+// Source       Philox4x32-10: Salmon, Moraes, Dror & Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3"; the
+//              implementation is Random123's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace evod::base {
+
+/// What a stream is for. Numbers are part of a run's identity: never reuse or renumber one.
+enum class Purpose : std::uint32_t {
+    InitialChromosome = 1,
+    OrganismPlacement = 2,
+    FoodPlacement = 3,
+    PoisonPlacement = 4,
+    CratePlacement = 5,
+    ObstaclePlacement = 6,
+    Behaviour = 7,
+    FoodRespawn = 8,
+    PoisonRespawn = 9,
+    Selection = 10,
+    Pairing = 11,
+    Crossover = 12,
+    Rearranging = 13,
+    Mutation = 14,
+    SurvivorMutation = 15,
+    Migration = 16,
+    ScenarioTest = 1000, // tests and demonstrations
+};
+
+/// A run's seed; any 64-bit value.
+struct Seed {
+    std::uint64_t value = 0;
+    friend bool operator==(const Seed&, const Seed&) = default;
+};
+
+/// The part of a draw's identity that many entities share. Made once per (purpose, island, generation).
+class RandomKey {
+  public:
+    RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);
+
+    /// Four uniform 32-bit words.
+    std::array<std::uint32_t, 4> words(std::uint32_t entity, std::uint64_t tick, std::uint32_t block) const;
+
+  private:
+    std::uint32_t low_, high_;
+};
+
+/// A uniform number in [0, 1) from one word: 24 bits, exact in float.
+inline float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+
+/// A sequence of draws of one entity at one tick, for code that needs an unknown number of them.
+class RandomStream {
+  public:
+    /// At most 2^34 words can be drawn from a stream.
+    RandomStream(const RandomKey& key, std::uint32_t entity, std::uint64_t tick = 0)
+        : key_{key}, tick_{tick}, entity_{entity} {}
+
+    std::uint32_t word() {
+        if (used_ == 4) {
+            words_ = key_.words(entity_, tick_, block_++);
+            used_ = 0;
+        }
+        return words_[used_++];
+    }
+    std::uint64_t long_word() {
+        const std::uint64_t high = word();
+        return high << 32 | word();
+    }
+    /// Uniform in [0, 1), 53 bits; two words.
+    double uniform() { return static_cast<double>(long_word() >> 11) * 0x1p-53; }
+    /// Uniform in [low, high); two words.
+    double uniform(double low, double high) { return low + (high - low) * uniform(); }
+    /// Uniform in 0 … bound − 1 without bias (Lemire 2019, "Fast random integer generation in an interval"); bound >= 1.
+    std::uint32_t below(std::uint32_t bound);
+    /// True with probability p; two words whatever p is.
+    bool chance(double p) { return uniform() < p; }
+    /// Standard normal (Box & Muller 1958, cosine branch); four words.
+    double gaussian();
+    /// Every order of `items` equally likely (Fisher & Yates; Durstenfeld 1964).
+    template <class T>
+    void shuffle(std::span<T> items) {
+        for (std::size_t left = items.size(); left > 1; --left)
+            std::swap(items[left - 1], items[below(static_cast<std::uint32_t>(left))]);
+    }
+
+  private:
+    RandomKey key_;
+    std::uint64_t tick_;
+    std::uint32_t entity_;
+    std::uint32_t block_ = 0;
+    std::uint32_t used_ = 4;
+    std::array<std::uint32_t, 4> words_{};
+};
+
+} // namespace evod::base

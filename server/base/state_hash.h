@@ -1,0 +1,60 @@
+// State hash: one 128-bit number for the whole state of a world, the same however the work was cut.
+//
+// Each entity is mixed to two 64-bit words from its identity and its fields; the hash is the sum of the words, so it
+// does not depend on the order of entities, on threads or on memory layout, and can be updated when one of them changes.
+// Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators" (SplitMix64).
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+namespace evod::base {
+
+struct StateHash {
+    std::uint64_t low = 0, high = 0;
+
+    StateHash& operator+=(const StateHash& other) {
+        low += other.low;
+        high += other.high;
+        return *this;
+    }
+    StateHash& operator-=(const StateHash& other) {
+        low -= other.low;
+        high -= other.high;
+        return *this;
+    }
+    friend StateHash operator+(StateHash a, const StateHash& b) { return a += b; }
+    friend bool operator==(const StateHash&, const StateHash&) = default;
+};
+
+/// 32 lower-case hexadecimal digits, high word first.
+std::string to_text(const StateHash& hash);
+
+/// Collects one entity's identity and fields. `kind` keeps entities of different kinds with equal ids apart.
+class EntityHash {
+  public:
+    EntityHash(std::uint32_t kind, std::uint64_t id) : state_{mix((id + 1) * 0x9e3779b97f4a7c15u + kind)} {}
+
+    EntityHash& add(std::uint64_t word) {
+        state_ = mix(state_ ^ word);
+        return *this;
+    }
+    EntityHash& add(std::uint32_t a, std::uint32_t b) { return add(std::uint64_t{a} << 32 | b); }
+    EntityHash& add(std::int32_t a, std::int32_t b) {
+        return add(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    }
+    EntityHash& add(float a, float b) { return add(std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b)); }
+
+    StateHash finish() const { return {state_, mix(state_ ^ 0xd6e8feb86659fd93u)}; }
+
+  private:
+    static constexpr std::uint64_t mix(std::uint64_t z) {
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    std::uint64_t state_;
+};
+
+} // namespace evod::base
