@@ -1,0 +1,90 @@
+// Laboratory: all worlds of a server, each with its run control. Commands are applied here, between two ticks.
+//
+// Owner        the simulation thread (or `evod run`), alone.
+// Determinism  run control (goals, pause, speed) decides when a world advances, never what happens when it does; it is
+//              no part of the state hash.
+#pragma once
+
+#include "server/base/executor.h"
+#include "server/base/result.h"
+#include "server/simulation/commands.h"
+#include "server/simulation/events.h"
+#include "server/simulation/world.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evod::simulation {
+
+constexpr std::size_t worlds_max = 64;
+constexpr std::size_t world_name_bytes_max = 64;
+
+enum class RunState { Waiting, Running, Paused, Terminated };
+
+/// What a world has been told to do.
+struct RunControl {
+    bool endless = false;                          // run on; excludes until_generation
+    std::optional<std::uint64_t> until_generation; // run until this many generations have ended
+    std::optional<std::uint64_t> until_tick;       // step: run until this tick, then be paused
+    bool paused = false;
+    Speed speed = 1.0;
+};
+
+/// A world in its laboratory.
+struct Entry {
+    std::string name;
+    RunId run_id;
+    RunControl control;
+    World world;
+    double ticks_per_s = 0; // measured by whoever drives the laboratory; no part of the state
+
+    RunState state() const;
+    /// Whether a tick is due as far as goals and pause are concerned.
+    bool wants_tick() const;
+};
+
+/// The answer to a command.
+struct Applied {
+    std::string world;
+    std::uint64_t tick = 0;                 // from which the change holds
+    std::optional<ParameterSet> parameters; // SetParameters: the complete set, or what it would be
+};
+
+class Laboratory {
+  public:
+    /// Applies a command now, between two ticks; a refusal has changed nothing.
+    base::Result<Applied> apply(const Command& command, base::Executor& executor);
+
+    /// Advances a world that wants a tick by one, and minds its goals.
+    void advance(Entry& entry, base::Executor& executor);
+
+    /// The world named, or for an empty name the only one, or `default`. Refused with NOT_FOUND and the names there are.
+    base::Result<Entry*> find(std::string_view name);
+    base::Result<const Entry*> find(std::string_view name) const;
+
+    /// In order of creation.
+    std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
+
+    /// What happened since this was last called, in order.
+    std::vector<Event> take_events() { return std::exchange(events_, {}); }
+
+  private:
+    base::Result<Applied> carry_out(const CreateWorld&, base::Executor&);
+    base::Result<Applied> carry_out(const DeleteWorld&, base::Executor&);
+    base::Result<Applied> carry_out(const ResetWorld&, base::Executor&);
+    base::Result<Applied> carry_out(const Run&, base::Executor&);
+    base::Result<Applied> carry_out(const RunUntilTick&, base::Executor&);
+    base::Result<Applied> carry_out(const Pause&, base::Executor&);
+    base::Result<Applied> carry_out(const Resume&, base::Executor&);
+    base::Result<Applied> carry_out(const SetSpeed&, base::Executor&);
+    base::Result<Applied> carry_out(const SetParameters&, base::Executor&);
+    void collect_events(Entry& entry);
+
+    std::vector<std::unique_ptr<Entry>> entries_;
+    std::vector<Event> events_;
+};
+
+} // namespace evod::simulation

@@ -1,0 +1,147 @@
+// Every parameter of a world: those of the genetic algorithm and, one line each below, those of the model.
+//
+// The registry made from the lines is all that validation, JSON files, the protocol, evoctl's help and
+// docs/PARAMETERS.md know of parameters. Adding one is adding a line here or in evolution/parameters.h.
+#pragma once
+
+#include "server/base/parameter.h"
+#include "server/base/result.h"
+#include "server/evolution/parameters.h"
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace evod::simulation {
+
+enum class FitnessFunction { Life, GeneSum, Rastrigin };
+enum class FleeRule { Nearer, Always };
+enum class IntegratorChoice { SymplecticEuler, ExplicitEuler, BackwardEuler };
+
+} // namespace evod::simulation
+
+EVOD_CHOICE_NAMES(evod::simulation::FitnessFunction, "life", "gene_sum", "rastrigin")
+EVOD_CHOICE_NAMES(evod::simulation::FleeRule, "nearer", "always")
+EVOD_CHOICE_NAMES(evod::simulation::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
+
+// clang-format off
+#define EVOD_SIMULATION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                          \
+    CHOICE(fitness, FitnessFunction, Life, Reset, "What evolution strives for: life is seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
+    REAL(generation_s, 40, 0.001, 86'400, "s", NextGeneration, "How long a generation lasts, unless everyone dies before.") \
+    REAL(tick_s, 1.0 / 60, 0.0001, 1, "s", NextGeneration, "Length of a physics step.")                                 \
+    COUNT(island_count, 1, 1, 4096, "islands", Reset, "Islands that evolve apart but for migration.")                  \
+    REAL(island_width_px, 1280, 100, 500'000, "px", NextGeneration, "Distance between the left and right walls.")      \
+    REAL(island_height_px, 720, 100, 500'000, "px", NextGeneration, "Distance between the upper and lower walls.")     \
+    COUNT(food_count, 25, 0, 20'000'000, "items", NextGeneration, "Food on each island.")                              \
+    COUNT(poison_count, 40, 0, 20'000'000, "items", NextGeneration, "Poison on each island.")                          \
+    FLAG(scale_with_population, false, NextGeneration, "Whether an island's area, food and poison grow with population_size, from the values given for reference_population.") \
+    COUNT(reference_population, 50, 1, 4'000'000, "organisms", NextGeneration, "The population for which island size, food and poison are given, where scale_with_population is on; an experiment file's own population_size unless it says otherwise.") \
+    COUNT(obstacle_count, 0, 0, 1000, "obstacles", NextGeneration, "Immovable rectangles on each island.")             \
+    REAL(obstacle_size_px, 60, 5, 2000, "px", NextGeneration, "Side of an obstacle.")                                  \
+    COUNT(crate_count, 0, 0, 1000, "crates", NextGeneration, "Movable rectangles on each island.")                     \
+    REAL(crate_size_px, 30, 5, 2000, "px", NextGeneration, "Side of a crate.")                                         \
+    REAL(crate_mass_kg, 4, 0.001, 1e6, "kg", NextGeneration, "Mass of a crate.")                                       \
+    REAL(item_radius_px, 4, 0.5, 100, "px", NextGeneration, "Radius of food and poison.")                              \
+    FLAG(respawn, true, NextGeneration, "Whether eaten food and poison reappear.")                                     \
+    REAL(respawn_s, 0, 0, 86'400, "s", NextGeneration, "Time until an eaten item reappears; 0 is the next tick.")      \
+    REAL(health_loss_per_s, 6, 0, 10'000, "health/s", NextGeneration, "Health that living costs.")                     \
+    REAL(food_health, 25, 0, 10'000, "health", NextTick, "Health that food gives.")                                    \
+    REAL(poison_harm, 40, 0, 10'000, "health", NextTick, "Health that poison takes.")                                  \
+    REAL(steering_lookahead_s, 0.3, 0, 10, "s", NextTick, "How far ahead an organism corrects for its own velocity when it steers to food; with 0 it orbits.") \
+    CHOICE(flee_rule, FleeRule, Nearer, NextTick, "When seen poison may be fled: only if nearer than the nearest food seen, or always.") \
+    REAL(flee_certain_impulse, 200, 1, 10'000, "gene units", NextTick, "Value of the gene impulse from which an organism always flees.") \
+    REAL(damping, 0.999, 0.01, 1, "share per 1/60 s", NextGeneration, "Share of its velocity that a body keeps in 1/60 s.") \
+    REAL(restitution, 0.8, 0, 1, "", NextGeneration, "Share of the approaching speed with which bodies part after a collision.") \
+    REAL(max_speed_px_s, 600, 1, 100'000, "px/s", NextGeneration, "Greatest speed of a body.")                         \
+    CHOICE(integrator, IntegratorChoice, SymplecticEuler, NextGeneration, "How velocities become positions.")          \
+    REAL(radius_per_unit_px, 0.1, 0.001, 10, "px", NextGeneration, "Radius per unit of the gene body_size.")           \
+    REAL(mass_per_unit_kg, 0.01, 0.0001, 1000, "kg", NextGeneration, "Mass per unit of the gene body_size.")           \
+    REAL(force_per_unit, 1, 0, 1000, "kg px/s²", NextTick, "Force per unit of the genes normal_speed and impulse.")    \
+    REAL(normal_speed_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per (normal_speed/100 − 1).")    \
+    REAL(impulse_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((impulse/100)² − 1).")           \
+    REAL(base_health_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per (base_health/100 − 1).")      \
+    REAL(food_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((food_radius/100)² − 1).")   \
+    REAL(poison_radius_cost, 0, 0, 10, "", NextGeneration, "Extra share of health loss per ((poison_radius/100)² − 1).") \
+    REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "At each meal health is cut to this times the gene body_size; 0 is no cap.")
+// clang-format on
+
+namespace evod::simulation {
+
+/// Every parameter of a world. A set that validate() finds nothing wrong with is valid; the core is given no other.
+struct Parameters : evolution::Parameters {
+    EVOD_SIMULATION_PARAMETERS(EVOD_REAL_FIELD, EVOD_COUNT_FIELD, EVOD_FLAG_FIELD, EVOD_CHOICE_FIELD)
+};
+
+/// A value as it comes from outside or goes there; a choice is its name.
+using ParameterValue = std::variant<double, std::uint32_t, bool, std::string>;
+
+std::string to_text(const ParameterValue& value);
+
+struct RealParameter {
+    base::RealRange range;
+    double (*get)(const Parameters&);
+    void (*set)(Parameters&, double);
+};
+struct CountParameter {
+    base::CountRange range;
+    std::uint32_t (*get)(const Parameters&);
+    void (*set)(Parameters&, std::uint32_t);
+};
+struct FlagParameter {
+    bool (*get)(const Parameters&);
+    void (*set)(Parameters&, bool);
+};
+struct ChoiceParameter {
+    std::span<const std::string_view> names;
+    std::size_t (*get)(const Parameters&);
+    void (*set)(Parameters&, std::size_t);
+};
+
+/// One line of the registry.
+struct ParameterDescription {
+    std::string_view name, unit, help;
+    base::Effect effect;
+    std::variant<RealParameter, CountParameter, FlagParameter, ChoiceParameter> kind;
+
+    ParameterValue get(const Parameters& parameters) const;
+    ParameterValue default_value() const { return get(Parameters{}); }
+    std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
+};
+
+/// Every parameter, those of the model first, in the order of the lists.
+std::span<const ParameterDescription> parameter_registry();
+
+/// nullptr if there is none of that name.
+const ParameterDescription* find_parameter(std::string_view name);
+
+/// The names most like `name`, best first, at most three: for "did you mean".
+std::vector<std::string_view> similar_parameter_names(std::string_view name);
+
+struct Assignment {
+    std::string name;
+    ParameterValue value;
+};
+
+/// `parameters` with every assignment made. A count is taken for a real. Refuses unknown and repeated names, wrong kinds,
+/// values outside their range (NaN too) and sets that do not go together, naming every one as `field_prefix` + name.
+base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
+                                std::string_view field_prefix = "");
+
+/// A value from text ("0.05", "true", "tournament"), as `--set` and consoles spell it.
+base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text);
+
+/// What is wrong between parameters that are each within their range: bounds the wrong way round, no room, ….
+std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
+
+/// What holds during a generation and what was asked for, for parameters that wait for a generation or a reset.
+struct ParameterSet {
+    Parameters active;    // holds now
+    Parameters requested; // will hold in the end
+    std::uint64_t revision = 1; // rises with every accepted change
+};
+
+bool operator==(const Parameters& a, const Parameters& b);
+
+} // namespace evod::simulation

@@ -1,0 +1,39 @@
+// Statistics: what a generation came to on an island, and how an island is doing now.
+#pragma once
+
+#include "server/evolution/chromosome.h"
+
+#include <array>
+#include <cstdint>
+
+namespace evod::simulation {
+
+struct GeneStatistics {
+    double mean = 0, deviation = 0, min = 0, max = 0; // deviation of the population: divided by n
+};
+
+struct GenerationStatistics {
+    std::uint64_t generation = 1; // 1 for the first
+    std::uint32_t island = 0;
+    std::uint64_t end_tick = 0; // ticks since the run began
+    std::uint32_t organism_count = 0;
+    double fitness_best = 0, fitness_mean = 0, fitness_median = 0, fitness_worst = 0, fitness_deviation = 0;
+    std::array<GeneStatistics, evolution::gene_count> genes;
+    double diversity = 0; // mean over genes of deviation / (upper bound − lower bound); a gene of zero width counts 0
+    std::uint32_t alive_count = 0, starved_count = 0, poisoned_count = 0;
+    std::uint64_t food_eaten = 0, poison_eaten = 0;
+    std::uint64_t clamp_count = 0;       // genes put back to a bound when the generation was bred
+    std::uint64_t too_fast_count = 0;    // body-ticks that moved more than the body's radius
+    std::uint64_t speed_limit_count = 0; // times max_speed_px_s acted
+    std::uint32_t best_organism = 0;     // lowest id with the best fitness
+    double simulated_s = 0;
+};
+
+struct LiveStatistics {
+    std::uint32_t organism_count = 0, alive_count = 0; // born, living
+    double health_mean = 0;                            // of the living; 0 if there are none
+    std::uint64_t food_eaten = 0, poison_eaten = 0;
+    std::uint32_t starved_count = 0, poisoned_count = 0;
+};
+
+} // namespace evod::simulation

@@ -1,0 +1,94 @@
+// World: one experiment with its parameters, seed, islands and history. Pure: ticks happen when advance_tick is called.
+//
+// A moment is (generation, tick within it). A generation's last tick ends it: statistics are made and the world stands
+// there, its dead and living still to be looked at, until the next advance_tick breeds the next generation and takes its
+// first tick. So breeding uses the parameters that hold when it happens.
+//
+// Threads      called on the simulation thread; work goes to the executor it is handed.
+// Determinism  the state after any tick is a pure function of (parameters, seed, changes at their ticks).
+#pragma once
+
+#include "server/base/executor.h"
+#include "server/base/random.h"
+#include "server/base/state_hash.h"
+#include "server/evolution/termination.h"
+#include "server/simulation/commands.h"
+#include "server/simulation/events.h"
+#include "server/simulation/island.h"
+#include "server/simulation/parameters.h"
+#include "server/simulation/statistics.h"
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+namespace evod::simulation {
+
+struct Moment {
+    std::uint64_t tick = 0;            // ticks since the run began
+    std::uint64_t generation = 1;      // 1 for the first
+    std::uint64_t generation_tick = 0; // ticks since the generation began
+    double simulated_s = 0;            // sum of the lengths of all ticks
+};
+
+class World {
+  public:
+    /// Generations of statistics kept in memory; older ones are forgotten.
+    static constexpr std::size_t history_generations_kept = 10'000;
+
+    /// parameters  valid. The first generation stands ready at (1, 0).
+    World(const Parameters& parameters, base::Seed seed, base::Executor& executor);
+
+    /// Begins the run again with the parameters last asked for.
+    void reset(base::Seed seed, base::Executor& executor);
+
+    /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while terminated().
+    void advance_tick(base::Executor& executor);
+
+    /// Breeds the next generation and places it, as advance_tick would; does nothing if none has ended.
+    void turn_over(base::Executor& executor);
+
+    const Moment& moment() const { return moment_; }
+    base::Seed seed() const { return seed_; }
+    base::StateHash hash() const { return hash_; }
+    const ParameterSet& parameters() const { return parameters_; }
+    /// Takes a set that assign() has made from parameters().requested; each parameter holds from when its effect says.
+    void request_parameters(const Parameters& requested);
+
+    bool generation_over() const { return generation_over_; }
+    /// The criterion that holds now that a generation is over, by the parameters that hold now; none otherwise.
+    evolution::Outcome outcome() const;
+
+    std::span<const Island> islands() const { return islands_; }
+    /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
+    bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
+    /// Organisms alive on all islands.
+    std::uint64_t alive_count() const;
+
+    /// Statistics of the generations kept, oldest first, one element per generation with one entry per island.
+    const std::deque<std::vector<GenerationStatistics>>& history() const { return history_; }
+
+    /// What happened since this was last called, in order.
+    std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
+
+  private:
+    void begin_run(base::Executor& executor);
+    void begin_generation(base::Executor& executor);
+    void end_generation(base::Executor& executor);
+    void migrate();
+    void update_hash();
+
+    base::Seed seed_;
+    ParameterSet parameters_;
+    Moment moment_;
+    bool generation_over_ = false;
+    base::StateHash hash_;
+    std::vector<Island> islands_;
+    std::deque<std::vector<GenerationStatistics>> history_;
+    std::vector<EventKind> events_;
+    double best_fitness_ = 0;             // of the run so far
+    std::uint64_t best_generation_ = 0;   // in which it was reached; 0: none yet
+    bool extinct_ = false;                // everyone died in the generation that is over
+};
+
+} // namespace evod::simulation
