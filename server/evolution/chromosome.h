@@ -1,11 +1,16 @@
 // Chromosomes: six real genes each, kept as the columns of one matrix.
+//
+// Determinism  the first generation is drawn with one stream per organism, so it does not depend on how many there are.
 #pragma once
 
+#include "server/base/random.h"
 #include "server/evolution/parameters.h"
 
 #include <Eigen/Core>
 
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace evod::evolution {
@@ -20,11 +25,33 @@ constexpr std::array<std::string_view, gene_count> gene_names = {"normal_speed",
 using GeneMatrix = Eigen::Array<float, gene_count, Eigen::Dynamic>;
 using Chromosome = Eigen::Array<float, gene_count, 1>;
 
+/// One chromosome in place: a column of a GeneMatrix.
+using Genes = std::span<float, gene_count>;
+using ConstGenes = std::span<const float, gene_count>;
+
+inline Genes column(GeneMatrix& genes, std::uint32_t organism) {
+    return Genes{genes.data() + std::size_t{gene_count} * organism, gene_count};
+}
+inline ConstGenes column(const GeneMatrix& genes, std::uint32_t organism) {
+    return ConstGenes{genes.data() + std::size_t{gene_count} * organism, gene_count};
+}
+
 /// A gene stays within [min, max].
 struct GeneBounds {
     Chromosome min, max;
 };
 
 GeneBounds gene_bounds(const Parameters& parameters);
+
+/// Puts every gene that is out of bounds onto the nearer bound; returns how many were.
+unsigned clamp(Genes genes, const GeneBounds& bounds);
+
+/// The first generation of one island: every gene uniform in [initial_gene_min, initial_gene_max], then clamped to its
+/// bounds.
+///
+/// organism_count  0 is allowed.
+/// returns         shape (gene_count, organism_count); a larger population begins with the smaller one.
+GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& parameters, base::Seed seed,
+                              std::uint32_t island);
 
 } // namespace evod::evolution

@@ -34,7 +34,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
 #define EVOD_EVOLUTION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                           \
     COUNT(population_size, 50, 1, 4'000'000, "organisms", NextGeneration, "Organisms on each island.")                 \
     CHOICE(population_model, PopulationModel, Hybrid, NextTick, "What happens to the old generation: hybrid keeps the selected survivors and fills up with their children, generational replaces everyone, steady_state replaces the worst.") \
-    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Share of the population that the selection keeps and lets breed (hybrid); at least one organism.") \
+    REAL(survivors, 0.5, 0, 1, "share", NextTick, "Share of the population that the selection keeps and lets breed (hybrid), or that truncation lets breed (generational, steady_state); at least one organism.") \
     COUNT(replaced_count, 2, 1, 4'000'000, "organisms", NextTick, "How many of the worst leave each generation (steady_state).") \
     COUNT(elite_count, 0, 0, 4'000'000, "organisms", NextTick, "How many of the best are always kept, unchanged.")      \
     FLAG(mutate_survivors, false, NextTick, "Whether survivors are mutated too; the elite never is.")                  \

@@ -1,0 +1,29 @@
+#include "server/evolution/pairing.h"
+
+#include "server/base/assert.h"
+
+namespace evod::evolution {
+
+std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32_t pair_count,
+                             const base::RandomKey& key) {
+    std::vector<Parents> pairs;
+    pairs.reserve(pair_count);
+    EVOD_ASSERT(pair_count == 0 || !parents.empty());
+    const std::size_t count = parents.size();
+    std::vector<std::uint32_t> order(count);
+    for (std::uint32_t round = 0; pairs.size() < pair_count; ++round) {
+        base::RandomStream random{key, round};
+        order.assign(parents.begin(), parents.end());
+        random.shuffle(std::span{order});
+        for (std::size_t i = 0; i + 1 < count && pairs.size() < pair_count; i += 2)
+            pairs.push_back({order[i], order[i + 1]});
+        if (count % 2 == 1 && pairs.size() < pair_count) {
+            const std::uint32_t left_over = order[count - 1];
+            const std::size_t mate = count == 1 ? 0 : random.below(static_cast<std::uint32_t>(count - 1));
+            pairs.push_back({left_over, order[mate]});
+        }
+    }
+    return pairs;
+}
+
+} // namespace evod::evolution

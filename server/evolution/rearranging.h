@@ -1,0 +1,35 @@
+// Rearranging mutation: genes change places inside a chromosome. It makes no new value, and it is optional.
+//
+// Source  Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.5.1 (swap, scramble, inversion).
+#pragma once
+
+#include "server/base/random.h"
+#include "server/evolution/chance.h"
+#include "server/evolution/chromosome.h"
+#include "server/evolution/parameters.h"
+
+namespace evod::evolution {
+
+class RearrangingMutation {
+  public:
+    explicit RearrangingMutation(const Parameters& parameters);
+
+    /// Rearranges with probability rearrange_chance. Every slice or pair below is of two different indices, each pair
+    /// of them equally likely.
+    ///
+    /// swap       two genes trade places; with even chance a second pair does too, which can be the same.
+    /// scramble   the genes of a slice, both ends included, are put in an order drawn uniformly, which can be the one
+    ///            they are in: with different genes that happens with probability 2383/10800.
+    /// inversion  the genes of a slice, both ends included, are put in the opposite order.
+    ///
+    /// The genes may be out of their bounds afterwards, as each gene has bounds of its own.
+    void apply(Genes genes, base::RandomStream& random) const;
+
+    bool is_off() const { return method_ == Rearranging::None || chance_.is_never(); }
+
+  private:
+    Rearranging method_;
+    Chance chance_;
+};
+
+} // namespace evod::evolution

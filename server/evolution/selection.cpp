@@ -1,0 +1,93 @@
+#include "server/evolution/selection.h"
+
+#include "server/base/assert.h"
+#include "server/evolution/scaling.h"
+#include "server/evolution/tournament.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace evod::evolution {
+namespace {
+
+constexpr std::size_t spins_per_stream = 4096;
+
+} // namespace
+
+std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wanted, const base::RandomKey& key,
+                                         base::Executor& executor) {
+    std::vector<std::uint32_t> picked(wanted);
+    executor.parallel_for(wanted, spins_per_stream, [&](base::Range piece) {
+        base::RandomStream random{key, static_cast<std::uint32_t>(piece.begin / spins_per_stream)};
+        for (std::size_t i = piece.begin; i < piece.end; ++i)
+            picked[i] = wheel.at(random.uniform());
+    });
+    return picked;
+}
+
+std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random) {
+    const std::span<const double> ends = wheel.slot_ends();
+    const double offset = random.uniform();
+    std::vector<std::uint32_t> picked(wanted);
+    std::uint32_t organism = 0;
+    for (std::uint32_t pointer = 0; pointer < wanted; ++pointer) {
+        const double place = (pointer + offset) / wanted * ends.back();
+        while (organism + 1 < ends.size() && ends[organism] <= place)
+            ++organism;
+        picked[pointer] = organism;
+    }
+    random.shuffle(std::span{picked});
+    return picked;
+}
+
+std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random) {
+    std::vector<std::uint32_t> picked;
+    if (population == 0)
+        return picked;
+    picked.reserve(wanted);
+    std::vector<std::uint32_t> everyone(population);
+    std::iota(everyone.begin(), everyone.end(), 0u);
+    while (picked.size() < wanted) {
+        const auto round = static_cast<std::uint32_t>(std::min<std::size_t>(population, wanted - picked.size()));
+        for (std::uint32_t i = 0; i < round; ++i) {
+            std::swap(everyone[i], everyone[i + random.below(population - i)]);
+            picked.push_back(everyone[i]);
+        }
+    }
+    return picked;
+}
+
+std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted) {
+    const auto best_first = ranking.best_first();
+    EVOD_ASSERT(pool >= 1 && pool <= best_first.size());
+    std::vector<std::uint32_t> picked(wanted);
+    for (std::uint32_t i = 0; i < wanted; ++i)
+        picked[i] = best_first[i % pool];
+    return picked;
+}
+
+std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Parameters& parameters,
+                                  const base::RandomKey& key, base::Executor& executor) {
+    const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
+    base::RandomStream random{key, 0};
+    switch (parameters.selection) {
+    case SelectionMethod::Roulette:
+        return spin_roulette(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, key, executor);
+    case SelectionMethod::StochasticUniversal:
+        return spin_universal(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, random);
+    case SelectionMethod::Tournament:
+        return hold_tournaments(ranking,
+                                {.size = parameters.tournament_size,
+                                 .winners = parameters.tournament_winners,
+                                 .replacement = parameters.tournament_replacement},
+                                picks.wanted, key, executor);
+    case SelectionMethod::Random:
+        return draw_unique(population, picks.wanted, random);
+    case SelectionMethod::Truncation:
+        return take_best(ranking, picks.pool, picks.wanted);
+    }
+    EVOD_ASSERT(!"a selection method of the list");
+    return {};
+}
+
+} // namespace evod::evolution

@@ -1,0 +1,28 @@
+#include "server/evolution/termination.h"
+
+namespace evod::evolution {
+
+Progress advance(Progress progress, const GenerationResult& result) {
+    const bool improved = progress.generations == 0 || result.best_fitness > progress.best_fitness;
+    return {.generations = progress.generations + 1,
+            .stagnant = improved ? 0 : progress.stagnant + 1,
+            .best_fitness = improved ? result.best_fitness : progress.best_fitness,
+            .last_best_fitness = result.best_fitness,
+            .last_died_out = result.died_out};
+}
+
+Outcome outcome(const Progress& progress, const Parameters& parameters) {
+    if (progress.generations == 0)
+        return Outcome::Running;
+    if (parameters.stop_at_target_fitness && progress.last_best_fitness >= parameters.target_fitness)
+        return Outcome::TargetFitness;
+    if (parameters.stop_at_extinction && progress.last_died_out)
+        return Outcome::Extinction;
+    if (parameters.stagnation_limit > 0 && progress.stagnant >= parameters.stagnation_limit)
+        return Outcome::Stagnation;
+    if (parameters.generation_limit > 0 && progress.generations >= parameters.generation_limit)
+        return Outcome::GenerationLimit;
+    return Outcome::Running;
+}
+
+} // namespace evod::evolution
