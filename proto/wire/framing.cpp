@@ -1,0 +1,120 @@
+#include "proto/wire/framing.h"
+
+#include "proto/wire/little_endian.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace evod::wire {
+
+namespace {
+
+constexpr std::array<std::byte, 3> prefix{std::byte{'E'}, std::byte{'V'}, std::byte{1}};
+
+/// What is wrong with the first bytes of a header, of which some may still be missing.
+std::optional<Damage> damage_of_prefix(std::span<const std::byte> bytes) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, bytes.size()); ++i) {
+        if (bytes[i] != prefix[i]) {
+            return Damage{
+                "a frame must begin with 'EV': this is not the protocol of evod, or the stream is out of step"};
+        }
+    }
+    if (bytes.size() > 2 && bytes[2] != prefix[2]) {
+        return Damage{"a frame has framing version " + std::to_string(std::to_integer<int>(bytes[2])) + ", not 1"};
+    }
+    return std::nullopt;
+}
+
+Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
+    const int number = std::to_integer<int>(channel);
+    if (number == static_cast<int>(Channel::Control) && limits.control_bytes_max) {
+        return *limits.control_bytes_max;
+    }
+    if (number == static_cast<int>(Channel::Stream) && limits.stream_bytes_max) {
+        return *limits.stream_bytes_max;
+    }
+    return Damage{"a frame is on channel " + std::to_string(number) + ", which is not taken here"};
+}
+
+} // namespace
+
+std::array<std::byte, header_bytes> encode_header(FrameHeader header) {
+    std::array<std::byte, header_bytes> bytes{prefix[0], prefix[1], prefix[2], static_cast<std::byte>(header.channel)};
+    store(header.body_bytes, bytes.data() + 4);
+    return bytes;
+}
+
+Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes, const FrameLimits& limits) {
+    if (auto damage = damage_of_prefix(bytes)) {
+        return *std::move(damage);
+    }
+    const auto limit = limit_of(bytes[3], limits);
+    if (!limit) {
+        return limit.error();
+    }
+    const auto body_bytes = load<std::uint32_t>(bytes.data() + 4);
+    if (body_bytes > *limit) {
+        return Damage{"a frame declares " + std::to_string(body_bytes) + " bytes; at most " + std::to_string(*limit) +
+                      " are taken on its channel"};
+    }
+    return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
+}
+
+std::string encode_frame(Channel channel, const google::protobuf::MessageLite& message) {
+    const auto body_bytes = static_cast<std::uint32_t>(message.ByteSizeLong());
+    const auto header = encode_header({.channel = channel, .body_bytes = body_bytes});
+    std::string frame;
+    frame.reserve(header_bytes + body_bytes);
+    frame.append(reinterpret_cast<const char*>(header.data()), header_bytes);
+    message.AppendToString(&frame);
+    return frame;
+}
+
+void FrameReader::feed(std::span<const std::byte> bytes) {
+    if (damage_) {
+        return;
+    }
+    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
+    // One long picture should not keep its memory for the rest of the connection.
+    constexpr std::size_t kept_bytes = 1 << 20;
+    if (buffer_.empty() && buffer_.capacity() > kept_bytes && bytes.size() < kept_bytes / 2) {
+        buffer_ = std::vector<std::byte>{};
+    }
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+}
+
+Result<std::optional<Frame>> FrameReader::next() {
+    if (damage_) {
+        return *damage_;
+    }
+    const auto rest = std::span<const std::byte>{buffer_}.subspan(begin_);
+    const auto fail = [&](Damage damage) {
+        damage_ = std::move(damage);
+        buffer_ = std::vector<std::byte>{};
+        begin_ = 0;
+        return *damage_;
+    };
+    if (rest.size() < header_bytes) {
+        if (auto damage = damage_of_prefix(rest)) {
+            return fail(*std::move(damage));
+        }
+        if (rest.size() > 3) {
+            if (const auto limit = limit_of(rest[3], limits_); !limit) {
+                return fail(limit.error());
+            }
+        }
+        return std::optional<Frame>{};
+    }
+    const auto header = decode_header(rest.first<header_bytes>(), limits_);
+    if (!header) {
+        return fail(header.error());
+    }
+    if (rest.size() - header_bytes < header->body_bytes) {
+        return std::optional<Frame>{};
+    }
+    begin_ += header_bytes + header->body_bytes;
+    return std::optional{Frame{.channel = header->channel, .body = rest.subspan(header_bytes, header->body_bytes)}};
+}
+
+} // namespace evod::wire
