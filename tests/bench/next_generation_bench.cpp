@@ -1,0 +1,45 @@
+// How long breeding the next generation takes: 100,000 and 1,000,000 chromosomes, on one thread and on two, for every
+// choice of every stage with the other stages at their defaults, and for the slowest choices together.
+#include "server/evolution/next_generation.h"
+
+#include "tests/support/thread_executor.h"
+#include "tests/unit/evolution/stage_choices.h"
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+namespace evod::evolution {
+namespace {
+
+void breed(benchmark::State& state, const Parameters& parameters) {
+    const auto count = static_cast<std::uint32_t>(state.range(0));
+    support::ThreadExecutor executor{static_cast<std::size_t>(state.range(1))};
+    const base::Seed seed{1};
+    const GeneMatrix genes = initial_population(count, parameters, seed, 0);
+    base::RandomStream random{{seed, base::Purpose::ScenarioTest, 0, 1}, 0};
+    std::vector<double> fitness(count);
+    for (double& value : fitness)
+        value = random.uniform(0, 300);
+    std::uint64_t generation = 0;
+    for (auto _ : state) {
+        const BreedingKey key{.seed = seed, .island = 0, .generation = ++generation};
+        benchmark::DoNotOptimize(next_generation(fitness, genes, parameters, count, key, executor));
+    }
+    state.SetItemsProcessed(state.iterations() * count);
+}
+
+const bool registered = [] {
+    for (const StageChoice& choice : stage_choices())
+        benchmark::RegisterBenchmark(("next_generation/" + choice.name).c_str(), breed, choice)
+            ->ArgNames({"chromosomes", "threads"})
+            ->ArgsProduct({{100'000, 1'000'000}, {1, 2}})
+            ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
+            ->UseRealTime();
+    return true;
+}();
+
+} // namespace
+} // namespace evod::evolution
