@@ -18,7 +18,7 @@ struct MigrationHappened {
     struct Edge {
         std::uint32_t from, to, migrant_count;
     };
-    std::uint64_t generation; // the one the migrants were born into
+    std::uint64_t generation; // that has ended, whose organisms went
     std::vector<Edge> edges;
 };
 /// Everyone on an island is dead before the generation's time is up.

@@ -15,7 +15,10 @@
 #include "server/evolution/next_generation.h"
 #include "server/physics/bodies.h"
 #include "server/physics/step.h"
+#include "server/simulation/behaviour.h"
+#include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
+#include "server/simulation/living.h"
 #include "server/simulation/parameters.h"
 #include "server/simulation/statistics.h"
 
@@ -24,26 +27,6 @@
 #include <vector>
 
 namespace evod::simulation {
-
-enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
-
-/// The living, in rising order of id; index i of every column is the same organism. Bodies are in Island::bodies().
-struct Living {
-    std::vector<std::uint32_t> id; // birth order within the generation
-    std::vector<float> health;
-    std::vector<float> loss_per_tick;         // health that living costs
-    std::vector<float> wander_force, impulse_force;
-    std::vector<float> flee_chance;
-    std::vector<float> food_radius, poison_radius; // px
-};
-
-/// What became of each organism that was born, by id.
-struct Fate {
-    std::vector<std::uint32_t> lived_ticks;
-    std::vector<float> health; // at the end; 0 for the dead
-    std::vector<CauseOfDeath> cause;
-    std::vector<std::uint16_t> food_eaten, poison_eaten;
-};
 
 /// Numbers of the generation that do not follow from Fate.
 struct IslandCounts {
@@ -57,14 +40,17 @@ class Island {
     Island(base::Seed seed, std::uint32_t index) : seed_{seed}, index_{index} {}
 
     /// Replaces everything: fresh organisms grown from `bred`, food, poison, obstacles and crates.
-    void begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred,
-                          base::Executor& executor);
+    void begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred);
 
     /// tick  of the generation, 1 for its first.
     void advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
-    /// Fitness of every organism by id, now: seconds lived + health, or the function of the chromosome.
-    const std::vector<double>& evaluate(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end, or
+    /// the function of the chromosome.
+    std::vector<double> fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const;
+
+    /// The index in bodies() of a living organism; nullopt if it is dead.
+    std::optional<std::size_t> body_of(std::uint32_t id) const;
 
     std::uint32_t index() const { return index_; }
     base::Seed seed() const { return seed_; }
@@ -72,7 +58,7 @@ class Island {
     base::StateHash hash() const { return hash_; }
 
     const Living& living() const { return living_; }
-    const physics::Circles& bodies() const { return bodies_; } // of the living, same order
+    const physics::Circles& bodies() const { return bodies_; } // of the living, ids rising
     const physics::Boxes& boxes() const { return boxes_; }     // crates, then obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
@@ -83,4 +69,34 @@ class Island {
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
-    GenerationStatistics generation_statistics(const Parameters& parameters, std::span<const double> fitness) const;
+
+  private:
+    void place(const Parameters& parameters, std::uint64_t generation);
+    void feed(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    void bury_the_dead(std::uint32_t tick);
+    void update_hash(base::Executor& executor);
+
+    base::Seed seed_;
+    std::uint32_t index_;
+    base::RandomKey behaviour_key_{base::Seed{}, base::Purpose::Behaviour, 0, 0};
+    physics::Area area_;
+    physics::StepParameters step_parameters_;
+    physics::Stepper stepper_;
+    evolution::NextGeneration born_;
+    Living living_;
+    physics::Circles bodies_;
+    physics::Boxes boxes_;
+    physics::Boxes obstacles_; // those of boxes_ that do not move: where no item may lie
+    std::uint32_t crate_count_ = 0;
+    Items food_, poison_;
+    Sight sight_;
+    Feeding feeding_;
+    Fate fate_;
+    IslandCounts counts_;
+    base::StateHash born_hash_; // of the chromosomes, which do not change during a generation
+    base::StateHash hash_;
+    std::vector<base::StateHash> hash_of_block_; // working memory, kept warm
+    std::vector<std::uint8_t> keep_;
+};
+
+} // namespace evod::simulation

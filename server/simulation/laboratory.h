@@ -56,7 +56,7 @@ struct Applied {
 class Laboratory {
   public:
     /// Applies a command now, between two ticks; a refusal has changed nothing.
-    base::Result<Applied> apply(const Command& command, base::Executor& executor);
+    base::Result<Applied> apply(const Command& command);
 
     /// Advances a world that wants a tick by one, and minds its goals.
     void advance(Entry& entry, base::Executor& executor);
@@ -72,15 +72,16 @@ class Laboratory {
     std::vector<Event> take_events() { return std::exchange(events_, {}); }
 
   private:
-    base::Result<Applied> carry_out(const CreateWorld&, base::Executor&);
-    base::Result<Applied> carry_out(const DeleteWorld&, base::Executor&);
-    base::Result<Applied> carry_out(const ResetWorld&, base::Executor&);
-    base::Result<Applied> carry_out(const Run&, base::Executor&);
-    base::Result<Applied> carry_out(const RunUntilTick&, base::Executor&);
-    base::Result<Applied> carry_out(const Pause&, base::Executor&);
-    base::Result<Applied> carry_out(const Resume&, base::Executor&);
-    base::Result<Applied> carry_out(const SetSpeed&, base::Executor&);
-    base::Result<Applied> carry_out(const SetParameters&, base::Executor&);
+    base::Result<Applied> carry_out(const CreateWorld&);
+    base::Result<Applied> carry_out(const DeleteWorld&);
+    base::Result<Applied> carry_out(const ResetWorld&);
+    base::Result<Applied> carry_out(const Run&);
+    base::Result<Applied> carry_out(const RunUntilTick&);
+    base::Result<Applied> carry_out(const Pause&);
+    base::Result<Applied> carry_out(const Resume&);
+    base::Result<Applied> carry_out(const SetSpeed&);
+    base::Result<Applied> carry_out(const SetParameters&);
+    base::Refusal not_found(std::string_view name) const;
     void collect_events(Entry& entry);
 
     std::vector<std::unique_ptr<Entry>> entries_;

@@ -107,6 +107,8 @@ struct ParameterDescription {
 
     ParameterValue get(const Parameters& parameters) const;
     ParameterValue default_value() const { return get(Parameters{}); }
+    /// Gives `to` the value that `from` has.
+    void copy(const Parameters& from, Parameters& to) const;
     std::string allowed() const; // "0 to 1", "true or false", "roulette, tournament, …"
 };
 
@@ -135,12 +137,25 @@ base::Result<ParameterValue> parse_value(const ParameterDescription& description
 /// What is wrong between parameters that are each within their range: bounds the wrong way round, no room, ….
 std::vector<base::Violation> validate(const Parameters& parameters, std::string_view field_prefix = "");
 
+/// An island as the parameters ask for it, scaled with the population if they say so.
+struct IslandPlan {
+    double width_px, height_px;
+    std::uint32_t food_count, poison_count;
+};
+IslandPlan island_plan(const Parameters& parameters);
+
 /// What holds during a generation and what was asked for, for parameters that wait for a generation or a reset.
 struct ParameterSet {
     Parameters active;    // holds now
     Parameters requested; // will hold in the end
     std::uint64_t revision = 1; // rises with every accepted change
 };
+
+/// The set after a change: what has an immediate effect is active at once, the rest is only requested.
+ParameterSet after_request(const ParameterSet& set, const Parameters& requested);
+
+/// `active` with everything that `requested` says and that holds by now, `reached` being what has just come.
+Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached);
 
 bool operator==(const Parameters& a, const Parameters& b);
 

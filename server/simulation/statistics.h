@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace evod::simulation {
 
@@ -28,6 +29,13 @@ struct GenerationStatistics {
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;
 };
+
+class Island;
+struct Parameters;
+
+/// What the generation that has just ended came to. fitness: shape (organisms), by id.
+GenerationStatistics generation_statistics(const Island& island, const Parameters& parameters,
+                                           std::span<const double> fitness);
 
 struct LiveStatistics {
     std::uint32_t organism_count = 0, alive_count = 0; // born, living

@@ -37,12 +37,12 @@ class World {
     static constexpr std::size_t history_generations_kept = 10'000;
 
     /// parameters  valid. The first generation stands ready at (1, 0).
-    World(const Parameters& parameters, base::Seed seed, base::Executor& executor);
+    World(const Parameters& parameters, base::Seed seed);
 
     /// Begins the run again with the parameters last asked for.
-    void reset(base::Seed seed, base::Executor& executor);
+    void reset(base::Seed seed);
 
-    /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while terminated().
+    /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while outcome() is not Running.
     void advance_tick(base::Executor& executor);
 
     /// Breeds the next generation and places it, as advance_tick would; does nothing if none has ended.
@@ -56,7 +56,7 @@ class World {
     void request_parameters(const Parameters& requested);
 
     bool generation_over() const { return generation_over_; }
-    /// The criterion that holds now that a generation is over, by the parameters that hold now; none otherwise.
+    /// The criterion that holds now that a generation is over, by the parameters that hold now; else Running.
     evolution::Outcome outcome() const;
 
     std::span<const Island> islands() const { return islands_; }
@@ -72,10 +72,10 @@ class World {
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
   private:
-    void begin_run(base::Executor& executor);
-    void begin_generation(base::Executor& executor);
+    void begin_run();
+    void begin_generation(std::vector<evolution::NextGeneration> bred);
     void end_generation(base::Executor& executor);
-    void migrate();
+    void migrate(std::vector<evolution::GeneMatrix>& genes);
     void update_hash();
 
     base::Seed seed_;
@@ -86,9 +86,8 @@ class World {
     std::vector<Island> islands_;
     std::deque<std::vector<GenerationStatistics>> history_;
     std::vector<EventKind> events_;
-    double best_fitness_ = 0;             // of the run so far
-    std::uint64_t best_generation_ = 0;   // in which it was reached; 0: none yet
-    bool extinct_ = false;                // everyone died in the generation that is over
+    std::vector<std::vector<double>> fitness_; // of the generation that is over: per island, by id
+    evolution::Progress progress_;
 };
 
 } // namespace evod::simulation

@@ -1,0 +1,40 @@
+// Integrators: how a tick's acceleration changes a velocity, and which velocity moves a body.
+//
+//   symplectic Euler  v' = (v + a·dt)·d             x' = x + v'·dt     (d = share kept by damping in a tick)
+//   explicit Euler    v' = (v + a·dt)·d             x' = x + v·dt      plus this tick's impulses
+//   backward Euler    v' = (v + a·dt)/(1 + c·dt)    x' = x + v'·dt     (c = damping rate; no damping: as symplectic)
+//
+// Source  Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, I.1.
+#pragma once
+
+#include <cstdint>
+
+namespace evod::physics {
+
+enum class Integrator : std::uint8_t { SymplecticEuler, ExplicitEuler, BackwardEuler };
+
+/// A tick's numbers, worked out once.
+struct Integration {
+    Integrator integrator = Integrator::SymplecticEuler;
+    float tick_s = 1.0f / 60;
+    float velocity_kept = 1; // factor that damping puts on every velocity in a tick
+};
+
+/// damping_rate  1/s, >= 0: what is kept of a velocity after t seconds is e^(−rate·t).
+Integration integration(Integrator integrator, double tick_s, double damping_rate);
+
+/// The rate at which `share` of a velocity is kept in 1/60 s; share in (0, 1].
+double damping_rate(double share_kept);
+
+/// The velocity after acceleration and damping.
+inline float accelerate(const Integration& i, float velocity, float acceleration) {
+    return (velocity + acceleration * i.tick_s) * i.velocity_kept;
+}
+
+/// The velocity that moves the body. before, accelerated: the velocity at the tick's start, and after accelerate();
+/// after: with the tick's impulses.
+inline float moving_velocity(const Integration& i, float before, float accelerated, float after) {
+    return i.integrator == Integrator::ExplicitEuler ? before + (after - accelerated) : after;
+}
+
+} // namespace evod::physics

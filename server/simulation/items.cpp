@@ -1,0 +1,153 @@
+#include "server/simulation/items.h"
+
+#include "server/base/assert.h"
+#include "server/simulation/placement.h"
+
+#include <algorithm>
+
+namespace evod::simulation {
+
+using physics::Coordinate;
+
+void Items::begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
+                             const physics::Area& area, const physics::Boxes& obstacles) {
+    rules_ = rules;
+    area_ = area;
+    respawn_key_ = base::RandomKey{seed, rules.respawn_purpose, island, generation};
+    x_.assign(rules.count, 0);
+    y_.assign(rules.count, 0);
+    due_tick_.assign(rules.count, 0);
+    due_.clear();
+    due_begin_ = 0;
+    present_count_ = 0;
+    hash_ = {};
+    choose_cells(rules.count);
+    const base::RandomKey key{seed, rules.placement, island, generation};
+    for (std::uint32_t item = 0; item < rules.count; ++item)
+        settle(item, base::RandomStream{key, item}, obstacles);
+}
+
+void Items::choose_cells(std::uint32_t count) {
+    // About three items to a cell, so that few buckets overflow and a query meets few empty ones.
+    const double share =
+        3 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
+    shift_ = 12;
+    while (shift_ < 30 && static_cast<double>(1u << (shift_ + 1)) * static_cast<double>(1u << (shift_ + 1)) <= 2 * share)
+        ++shift_;
+    columns_ = (static_cast<std::uint32_t>(area_.width) >> shift_) + 1;
+    rows_ = (static_cast<std::uint32_t>(area_.height) >> shift_) + 1;
+    buckets_.assign(std::size_t{rows_} * columns_, Bucket{});
+    spare_.clear();
+}
+
+std::uint32_t Items::cell_of(Coordinate x, Coordinate y) const {
+    return (static_cast<std::uint32_t>(y) >> shift_) * columns_ + (static_cast<std::uint32_t>(x) >> shift_);
+}
+
+void Items::settle(std::uint32_t item, base::RandomStream random, const physics::Boxes& obstacles) {
+    const Place place = random_place(random, area_, rules_.radius_px, obstacles);
+    x_[item] = place.x;
+    y_[item] = place.y;
+    due_tick_[item] = 0;
+    insert(item);
+    ++present_count_;
+    hash_ += hash_of(item);
+}
+
+void Items::insert(std::uint32_t item) {
+    std::uint32_t b = cell_of(x_[item], y_[item]);
+    while (buckets_[b].count == slots) {
+        if (buckets_[b].next == none) {
+            std::uint32_t added;
+            if (spare_.empty()) {
+                added = static_cast<std::uint32_t>(buckets_.size());
+                buckets_.emplace_back();
+            } else {
+                added = spare_.back();
+                spare_.pop_back();
+            }
+            buckets_[b].next = added;
+        }
+        b = buckets_[b].next;
+    }
+    Bucket& bucket = buckets_[b];
+    bucket.x[bucket.count] = x_[item];
+    bucket.y[bucket.count] = y_[item];
+    bucket.item[bucket.count] = item;
+    ++bucket.count;
+}
+
+void Items::remove(std::uint32_t item) {
+    // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
+    std::uint32_t holder = cell_of(x_[item], y_[item]), slot = 0;
+    while (true) {
+        const Bucket& bucket = buckets_[holder];
+        slot = static_cast<std::uint32_t>(std::find(bucket.item.begin(), bucket.item.begin() + bucket.count, item) -
+                                          bucket.item.begin());
+        if (slot < bucket.count)
+            break;
+        holder = bucket.next;
+        EVOD_ASSERT(holder != none);
+    }
+    std::uint32_t last = holder, before_last = none;
+    while (buckets_[last].next != none) {
+        before_last = last;
+        last = buckets_[last].next;
+    }
+    const std::uint32_t end = --buckets_[last].count;
+    buckets_[holder].x[slot] = buckets_[last].x[end];
+    buckets_[holder].y[slot] = buckets_[last].y[end];
+    buckets_[holder].item[slot] = buckets_[last].item[end];
+    if (end == 0 && before_last != none) {
+        buckets_[before_last].next = none;
+        spare_.push_back(last);
+    }
+}
+
+void Items::consume(std::uint32_t item, std::uint32_t tick) {
+    EVOD_ASSERT(present(item));
+    hash_ -= hash_of(item);
+    remove(item);
+    --present_count_;
+    due_tick_[item] = rules_.respawn ? tick + rules_.respawn_ticks : none;
+    if (rules_.respawn)
+        due_.push_back({due_tick_[item], item});
+    hash_ += hash_of(item);
+}
+
+void Items::reappear(std::uint32_t tick, const physics::Boxes& obstacles) {
+    while (due_begin_ < due_.size() && due_[due_begin_].tick <= tick) {
+        const std::uint32_t item = due_[due_begin_++].item;
+        hash_ -= hash_of(item);
+        settle(item, base::RandomStream{respawn_key_, item, tick}, obstacles);
+    }
+    if (due_begin_ > 64 && due_begin_ * 2 > due_.size()) {
+        due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(due_begin_));
+        due_begin_ = 0;
+    }
+}
+
+Items::Nearest Items::nearest(Coordinate x, Coordinate y, float radius) const {
+    Nearest best;
+    best.square = radius * radius;
+    for_each_bucket(x, y, radius, [&](const Bucket& bucket) {
+        for (std::uint32_t slot = 0; slot < bucket.count; ++slot) {
+            const float dx = physics::distance_px(x, bucket.x[slot]), dy = physics::distance_px(y, bucket.y[slot]);
+            const float square = dx * dx + dy * dy;
+            if (square < best.square || (square == best.square && bucket.item[slot] < best.item))
+                best = {bucket.item[slot], square, dx, dy};
+        }
+    });
+    return best;
+}
+
+base::StateHash Items::hash_of(std::uint32_t item) const {
+    base::EntityHash hash{rules_.kind, item};
+    if (present(item))
+        hash.add(x_[item], y_[item]);
+    else
+        hash.add(std::uint64_t{due_tick_[item]});
+    return hash.finish();
+}
+
+} // namespace evod::simulation

@@ -1,0 +1,125 @@
+// Items: the food, or the poison, of an island; they rest where they are, are eaten, and reappear.
+//
+// Those that are there lie in a uniform grid of buckets, eight items to a bucket, updated in place as items come and go.
+//
+// Threads      consume() and reappear() by one thread; queries by any number while nothing changes.
+// Determinism  where an item reappears depends on (seed, island, generation, item, tick) alone; queries answer by
+//              distance, then id, never by the order in a bucket.
+#pragma once
+
+#include "server/base/random.h"
+#include "server/base/state_hash.h"
+#include "server/physics/bodies.h"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace evod::simulation {
+
+/// How items come into the world; the same for a whole generation.
+struct ItemRules {
+    base::Purpose placement, respawn_purpose; // which draws
+    std::uint32_t kind;                       // in the state hash
+    std::uint32_t count;
+    float radius_px;
+    bool respawn;
+    std::uint32_t respawn_ticks; // from being eaten to the tick that begins with it there again, >= 1
+};
+
+class Items {
+  public:
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+    /// Fresh items at uniform random places clear of walls and obstacles.
+    void begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
+                          const physics::Area& area, const physics::Boxes& obstacles);
+
+    /// Puts back what is due at the beginning of `tick`.
+    void reappear(std::uint32_t tick, const physics::Boxes& obstacles);
+
+    /// Takes away an item that is there, during `tick`.
+    void consume(std::uint32_t item, std::uint32_t tick);
+
+    struct Nearest {
+        std::uint32_t item = none;
+        float square = 0;     // of the distance, px²
+        float dx = 0, dy = 0; // to the item, px
+    };
+    /// The nearest item whose centre is at most `radius` px from (x, y); of equally near ones the lowest id.
+    Nearest nearest(physics::Coordinate x, physics::Coordinate y, float radius) const;
+
+    /// Calls found(item, square of the distance) for every item whose centre is at most `radius` px from (x, y).
+    template <class Found>
+    void for_each_within(physics::Coordinate x, physics::Coordinate y, float radius, Found&& found) const {
+        const float reach = radius * radius;
+        for_each_bucket(x, y, radius, [&](const Bucket& bucket) {
+            for (std::uint32_t slot = 0; slot < bucket.count; ++slot) {
+                const float dx = physics::distance_px(x, bucket.x[slot]), dy = physics::distance_px(y, bucket.y[slot]);
+                const float square = dx * dx + dy * dy;
+                if (square <= reach)
+                    found(bucket.item[slot], square);
+            }
+        });
+    }
+
+    std::uint32_t size() const { return static_cast<std::uint32_t>(x_.size()); } // there or not
+    std::uint32_t present_count() const { return present_count_; }
+    bool present(std::uint32_t item) const { return due_tick_[item] == 0; }
+    const std::vector<physics::Coordinate>& x() const { return x_; } // by id; of one that is away, where it was
+    const std::vector<physics::Coordinate>& y() const { return y_; }
+    float radius_px() const { return rules_.radius_px; }
+    /// Of all items; kept up to date as they come and go.
+    base::StateHash hash() const { return hash_; }
+
+  private:
+    static constexpr std::uint32_t slots = 8;
+    struct Bucket {
+        std::array<physics::Coordinate, slots> x, y;
+        std::array<std::uint32_t, slots> item;
+        std::uint32_t count = 0;
+        std::uint32_t next = none; // bucket of the same cell that took what did not fit
+    };
+
+    void choose_cells(std::uint32_t count);
+    std::uint32_t cell_of(physics::Coordinate x, physics::Coordinate y) const;
+    void insert(std::uint32_t item);
+    void remove(std::uint32_t item);
+    void settle(std::uint32_t item, base::RandomStream random, const physics::Boxes& obstacles);
+    base::StateHash hash_of(std::uint32_t item) const;
+
+    template <class Visit>
+    void for_each_bucket(physics::Coordinate x, physics::Coordinate y, float radius, Visit&& visit) const {
+        const auto reach = static_cast<std::int64_t>(radius * static_cast<float>(physics::units_per_px)) + 1;
+        const auto bound = [this](std::int64_t position, std::uint32_t cells) {
+            position >>= shift_;
+            return position < 0 ? 0 : position >= cells ? cells - 1 : static_cast<std::uint32_t>(position);
+        };
+        const std::uint32_t left = bound(x - reach, columns_), right = bound(x + reach, columns_);
+        const std::uint32_t bottom = bound(y + reach, rows_);
+        for (std::uint32_t row = bound(y - reach, rows_); row <= bottom; ++row)
+            for (std::uint32_t column = left; column <= right; ++column)
+                for (std::uint32_t b = row * columns_ + column; b != none; b = buckets_[b].next)
+                    visit(buckets_[b]);
+    }
+
+    ItemRules rules_{};
+    physics::Area area_;
+    base::RandomKey respawn_key_{base::Seed{}, base::Purpose::FoodRespawn, 0, 0};
+    std::vector<physics::Coordinate> x_, y_;
+    std::vector<std::uint32_t> due_tick_; // 0: there; else the tick at whose beginning it reappears
+    struct Due {
+        std::uint32_t tick, item;
+    };
+    std::vector<Due> due_;        // in order of tick, from due_begin_
+    std::size_t due_begin_ = 0;
+    unsigned shift_ = 0;          // a cell's side is 2^shift_ units
+    std::uint32_t rows_ = 0, columns_ = 0;
+    std::vector<Bucket> buckets_; // one per cell, then those that took what did not fit
+    std::vector<std::uint32_t> spare_; // of the latter, those that are empty
+    std::uint32_t present_count_ = 0;
+    base::StateHash hash_;
+};
+
+} // namespace evod::simulation

@@ -1,0 +1,253 @@
+#include "server/simulation/laboratory.h"
+
+#include <algorithm>
+
+namespace evod::simulation {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Refusal refusal(RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+/// Generations of the run that are over.
+std::uint64_t generations_over(const World& world) {
+    return world.moment().generation - (world.generation_over() ? 0 : 1);
+}
+
+const char* criterion(evolution::Outcome outcome) {
+    switch (outcome) {
+    case evolution::Outcome::Running:
+        return "none";
+    case evolution::Outcome::TargetFitness:
+        return "target_fitness";
+    case evolution::Outcome::Extinction:
+        return "stop_at_extinction";
+    case evolution::Outcome::Stagnation:
+        return "stagnation_limit";
+    case evolution::Outcome::GenerationLimit:
+        return "generation_limit";
+    }
+    return "none";
+}
+
+std::optional<Refusal> refusal_if_terminated(const World& world) {
+    const evolution::Outcome outcome = world.outcome();
+    if (outcome == evolution::Outcome::Running)
+        return std::nullopt;
+    return refusal(RefusalCode::FailedPrecondition, std::string{"the run has ended by "} + criterion(outcome) +
+                                                        ": change that parameter to go on, or reset the world");
+}
+
+bool has_goal(const RunControl& control) { return control.endless || control.until_generation; }
+
+} // namespace
+
+bool Entry::wants_tick() const {
+    if (world.outcome() != evolution::Outcome::Running)
+        return false;
+    if (control.until_tick)
+        return world.moment().tick < *control.until_tick;
+    return !control.paused &&
+           (control.endless || (control.until_generation && generations_over(world) < *control.until_generation));
+}
+
+RunState Entry::state() const {
+    if (world.outcome() != evolution::Outcome::Running)
+        return RunState::Terminated;
+    if (wants_tick())
+        return RunState::Running;
+    return control.paused ? RunState::Paused : RunState::Waiting;
+}
+
+void Laboratory::advance(Entry& entry, base::Executor& executor) {
+    entry.world.advance_tick(executor);
+    collect_events(entry);
+    RunControl& control = entry.control;
+    bool reached = false;
+    if (control.until_tick && entry.world.moment().tick >= *control.until_tick) {
+        control.until_tick.reset();
+        control.paused = true;
+        reached = true;
+    }
+    if (control.until_generation && generations_over(entry.world) >= *control.until_generation) {
+        control.until_generation.reset();
+        reached = true;
+    }
+    if (reached)
+        events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
+}
+
+void Laboratory::collect_events(Entry& entry) {
+    for (EventKind& kind : entry.world.take_events())
+        events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, std::move(kind)});
+}
+
+Result<Entry*> Laboratory::find(std::string_view name) {
+    const auto named = [&](std::string_view wanted) {
+        return std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == wanted; });
+    };
+    if (name.empty() && entries_.size() == 1)
+        return entries_.front().get();
+    const auto found = named(name.empty() ? "default" : name);
+    if (found != entries_.end())
+        return found->get();
+    return not_found(name);
+}
+
+Refusal Laboratory::not_found(std::string_view name) const {
+    std::string names;
+    for (const auto& entry : entries_)
+        names += (names.empty() ? "" : ", ") + entry->name;
+    if (entries_.empty())
+        return refusal(RefusalCode::NotFound, "there is no world: create one");
+    if (name.empty())
+        return refusal(RefusalCode::NotFound, "say which world: there are " + names);
+    return Refusal{.code = RefusalCode::NotFound,
+                   .message = "there is no world of that name",
+                   .violations = {{"world", names, std::string{name}}}};
+}
+
+Result<const Entry*> Laboratory::find(std::string_view name) const {
+    const Result<Entry*> found = const_cast<Laboratory*>(this)->find(name);
+    if (!found)
+        return found.error();
+    return *found;
+}
+
+Result<Applied> Laboratory::apply(const Command& command) {
+    return std::visit([&](const auto& c) { return carry_out(c); }, command);
+}
+
+Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
+    for (const auto& entry : entries_)
+        if (entry->name == command.name)
+            return Refusal{.code = RefusalCode::AlreadyExists,
+                           .message = "there is a world of that name already",
+                           .violations = {{"name", "a name that is free", command.name}}};
+    if (entries_.size() >= worlds_max)
+        return refusal(RefusalCode::ResourceExhausted,
+                       "there are " + std::to_string(worlds_max) + " worlds already: delete one first");
+    entries_.push_back(std::make_unique<Entry>(
+        Entry{command.name, command.run_id, RunControl{}, World{command.parameters, command.seed}}));
+    return Applied{.world = command.name, .tick = 0, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const auto& entry) { return entry->name == command.world; });
+    if (found == entries_.end())
+        return not_found(command.world);
+    const Applied applied{.world = command.world, .tick = (*found)->world.moment().tick, .parameters = {}};
+    entries_.erase(found);
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(const ResetWorld& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    entry.world.reset(command.seed.value_or(entry.world.seed()));
+    entry.run_id = command.run_id;
+    const Speed speed = entry.control.speed;
+    entry.control = {};
+    entry.control.speed = speed;
+    return Applied{.world = entry.name, .tick = 0, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const Run& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    if (auto refused = refusal_if_terminated(entry.world))
+        return *refused;
+    entry.control.endless = !command.generations;
+    entry.control.until_generation.reset();
+    if (command.generations) {
+        const std::uint64_t over = generations_over(entry.world);
+        // More than the counter holds is the same as without end.
+        entry.control.until_generation = over + std::min(*command.generations, ~std::uint64_t{0} - over);
+    }
+    entry.control.until_tick.reset();
+    entry.control.paused = false;
+    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const RunUntilTick& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    const std::uint64_t now = entry.world.moment().tick;
+    if (command.tick > now)
+        if (auto refused = refusal_if_terminated(entry.world))
+            return *refused;
+    entry.control.paused = true;
+    entry.control.until_tick.reset();
+    if (command.tick > now)
+        entry.control.until_tick = command.tick;
+    return Applied{.world = entry.name, .tick = now, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const Pause& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    entry.control.paused = true;
+    entry.control.until_tick.reset();
+    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const Resume& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    if (auto refused = refusal_if_terminated(entry.world))
+        return *refused;
+    if (!has_goal(entry.control))
+        return refusal(RefusalCode::FailedPrecondition,
+                       "there is nothing to resume: tell the world how far to run with start or run");
+    entry.control.paused = false;
+    entry.control.until_tick.reset();
+    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const SetSpeed& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    (*found)->control.speed = command.speed;
+    return Applied{.world = (*found)->name, .tick = (*found)->world.moment().tick, .parameters = {}};
+}
+
+Result<Applied> Laboratory::carry_out(const SetParameters& command) {
+    const Result<Entry*> found = find(command.world);
+    if (!found)
+        return found.error();
+    Entry& entry = **found;
+    World& world = entry.world;
+    if (command.expected_revision && *command.expected_revision != world.parameters().revision)
+        return Refusal{.code = RefusalCode::FailedPrecondition,
+                       .message = "the parameters have been changed by someone else since",
+                       .violations = {{"set_parameters.expected_revision",
+                                       std::to_string(world.parameters().revision),
+                                       std::to_string(*command.expected_revision)}}};
+    const Result<Parameters> requested =
+        assign(world.parameters().requested, command.assignments, "set_parameters.parameters.");
+    if (!requested)
+        return requested.error();
+    Applied applied{.world = entry.name, .tick = world.moment().tick, .parameters = {}};
+    applied.parameters = after_request(world.parameters(), *requested);
+    if (!command.dry_run)
+        world.request_parameters(*requested);
+    return applied;
+}
+
+} // namespace evod::simulation

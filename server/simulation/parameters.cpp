@@ -1,0 +1,335 @@
+#include "server/simulation/parameters.h"
+
+#include "server/base/elementary.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace evod::simulation {
+namespace {
+
+using base::Effect;
+
+// clang-format off
+#define EVOD_REAL_LINE(name, value, least, greatest, unit, effect, help)                                               \
+    {#name, unit, help, Effect::effect, RealParameter{{least, greatest},                                               \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, double v) { p.name = v; }}},
+#define EVOD_COUNT_LINE(name, value, least, greatest, unit, effect, help)                                              \
+    {#name, unit, help, Effect::effect, CountParameter{{least, greatest},                                              \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, std::uint32_t v) { p.name = v; }}},
+#define EVOD_FLAG_LINE(name, value, effect, help)                                                                      \
+    {#name, "", help, Effect::effect, FlagParameter{                                                                   \
+        [](const Parameters& p) { return p.name; }, [](Parameters& p, bool v) { p.name = v; }}},
+#define EVOD_CHOICE_LINE(name, Type, value, effect, help)                                                              \
+    {#name, "", help, Effect::effect, ChoiceParameter{base::ChoiceNames<Type>::names,                                  \
+        [](const Parameters& p) { return static_cast<std::size_t>(p.name); },                                          \
+        [](Parameters& p, std::size_t v) { p.name = static_cast<Type>(v); }}},
+// clang-format on
+
+std::vector<ParameterDescription> make_registry() {
+    using namespace evolution; // the names of the enumerations in the list of that folder
+    using base::count_max;
+    return {EVOD_SIMULATION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
+                EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
+}
+
+template <class... F>
+struct Overloaded : F... {
+    using F::operator()...;
+};
+
+std::string number_text(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+}
+
+/// Sets one parameter, or says what is wrong with the value.
+std::optional<base::Violation> set_value(const ParameterDescription& description, const ParameterValue& value,
+                                         Parameters& parameters, std::string field) {
+    const bool done = std::visit(
+        Overloaded{
+            [&](const RealParameter& real) {
+                double number;
+                if (const auto* given = std::get_if<double>(&value))
+                    number = *given;
+                else if (const auto* whole = std::get_if<std::uint32_t>(&value))
+                    number = *whole;
+                else
+                    return false;
+                if (!(number >= real.range.min && number <= real.range.max)) // a NaN is in no range
+                    return false;
+                real.set(parameters, number);
+                return true;
+            },
+            [&](const CountParameter& count) {
+                const auto* given = std::get_if<std::uint32_t>(&value);
+                if (given == nullptr || *given < count.range.min || *given > count.range.max)
+                    return false;
+                count.set(parameters, *given);
+                return true;
+            },
+            [&](const FlagParameter& flag) {
+                const auto* given = std::get_if<bool>(&value);
+                if (given != nullptr)
+                    flag.set(parameters, *given);
+                return given != nullptr;
+            },
+            [&](const ChoiceParameter& choice) {
+                const auto* given = std::get_if<std::string>(&value);
+                if (given == nullptr)
+                    return false;
+                const auto found = std::find(choice.names.begin(), choice.names.end(), *given);
+                if (found == choice.names.end())
+                    return false;
+                choice.set(parameters, static_cast<std::size_t>(found - choice.names.begin()));
+                return true;
+            }},
+        description.kind);
+    if (done)
+        return std::nullopt;
+    return base::Violation{std::move(field), description.allowed(), to_text(value)};
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & Fischer 1974
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+        }
+    }
+    return row.back();
+}
+
+/// Share of an island that what must not overlap would cover, were every organism as large as it may be.
+double covered_share(const Parameters& p, const IslandPlan& plan) {
+    const double radius = p.body_size_max * p.radius_per_unit_px;
+    // Where the centre of the largest thing can be at all.
+    const double margin = std::max({radius, p.crate_count > 0 ? p.crate_size_px / 2 : 0.0,
+                                    p.obstacle_count > 0 ? p.obstacle_size_px / 2 : 0.0, p.item_radius_px});
+    const double room = (plan.width_px - 2 * margin) * (plan.height_px - 2 * margin);
+    if (plan.width_px <= 2 * margin || plan.height_px <= 2 * margin)
+        return 1;
+    const auto square = [](double x) { return x * x; };
+    return (p.population_size * base::pi * square(radius) + p.crate_count * square(p.crate_size_px) +
+            p.obstacle_count * square(p.obstacle_size_px + 2 * std::max(radius, p.item_radius_px))) /
+           room;
+}
+
+} // namespace
+
+ParameterValue ParameterDescription::get(const Parameters& parameters) const {
+    return std::visit(Overloaded{[&](const RealParameter& p) -> ParameterValue { return p.get(parameters); },
+                                 [&](const CountParameter& p) -> ParameterValue { return p.get(parameters); },
+                                 [&](const FlagParameter& p) -> ParameterValue { return p.get(parameters); },
+                                 [&](const ChoiceParameter& p) -> ParameterValue {
+                                     return std::string{p.names[p.get(parameters)]};
+                                 }},
+                      kind);
+}
+
+void ParameterDescription::copy(const Parameters& from, Parameters& to) const {
+    std::visit([&](const auto& parameter) { parameter.set(to, parameter.get(from)); }, kind);
+}
+
+std::string ParameterDescription::allowed() const {
+    return std::visit(
+        Overloaded{[](const RealParameter& p) { return number_text(p.range.min) + " to " + number_text(p.range.max); },
+                   [](const CountParameter& p) {
+                       return "a whole number, " + std::to_string(p.range.min) + " to " + std::to_string(p.range.max);
+                   },
+                   [](const FlagParameter&) { return std::string{"true or false"}; },
+                   [](const ChoiceParameter& p) {
+                       std::string names;
+                       for (const std::string_view choice : p.names)
+                           names += (names.empty() ? "" : ", ") + std::string{choice};
+                       return names;
+                   }},
+        kind);
+}
+
+std::string to_text(const ParameterValue& value) {
+    return std::visit(Overloaded{[](double v) { return number_text(v); },
+                                 [](std::uint32_t v) { return std::to_string(v); },
+                                 [](bool v) { return std::string{v ? "true" : "false"}; },
+                                 [](const std::string& v) { return v; }},
+                      value);
+}
+
+std::span<const ParameterDescription> parameter_registry() {
+    static const std::vector<ParameterDescription> registry = make_registry();
+    return registry;
+}
+
+const ParameterDescription* find_parameter(std::string_view name) {
+    const auto registry = parameter_registry();
+    const auto found = std::find_if(registry.begin(), registry.end(), [&](const auto& d) { return d.name == name; });
+    return found == registry.end() ? nullptr : &*found;
+}
+
+std::vector<std::string_view> similar_parameter_names(std::string_view name) {
+    name = name.substr(0, 64);
+    std::vector<std::pair<std::size_t, std::string_view>> near;
+    for (const ParameterDescription& description : parameter_registry()) {
+        const std::size_t distance = edit_distance(name, description.name);
+        const bool part = name.size() >= 3 && description.name.find(name) != std::string_view::npos;
+        if (part || distance <= 1 + description.name.size() / 4)
+            near.emplace_back(part ? 0 : distance, description.name);
+    }
+    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<std::string_view> names;
+    for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 3); ++i)
+        names.push_back(near[i].second);
+    return names;
+}
+
+base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
+                                std::string_view field_prefix) {
+    base::Refusal refusal{.code = base::RefusalCode::InvalidArgument,
+                          .message = "some parameters cannot have these values",
+                          .violations = {}};
+    std::vector<std::string_view> seen;
+    for (const Assignment& assignment : assignments) {
+        std::string field = std::string{field_prefix} + assignment.name;
+        const ParameterDescription* description = find_parameter(assignment.name);
+        if (description == nullptr) {
+            std::string allowed = "a parameter of the registry";
+            for (const std::string_view name : similar_parameter_names(assignment.name))
+                allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
+            refusal.violations.push_back({std::move(field), std::move(allowed), "an unknown name"});
+        } else if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end()) {
+            refusal.violations.push_back({std::move(field), "given once", "given twice"});
+        } else {
+            seen.push_back(description->name);
+            if (auto violation = set_value(*description, assignment.value, parameters, std::move(field)))
+                refusal.violations.push_back(std::move(*violation));
+        }
+    }
+    if (refusal.violations.empty())
+        refusal.violations = validate(parameters, field_prefix);
+    if (!refusal.violations.empty())
+        return refusal;
+    return parameters;
+}
+
+base::Result<ParameterValue> parse_value(const ParameterDescription& description, std::string_view text) {
+    const char* end = text.data() + text.size();
+    const auto refused = [&]() -> base::Result<ParameterValue> {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "cannot read the value of " + std::string{description.name},
+                             .violations = {{std::string{description.name}, description.allowed(), std::string{text}}}};
+    };
+    return std::visit(Overloaded{[&](const RealParameter&) -> base::Result<ParameterValue> {
+                                     double value;
+                                     const auto read = std::from_chars(text.data(), end, value);
+                                     if (read.ec != std::errc{} || read.ptr != end)
+                                         return refused();
+                                     return ParameterValue{value};
+                                 },
+                                 [&](const CountParameter&) -> base::Result<ParameterValue> {
+                                     std::uint32_t value;
+                                     const auto read = std::from_chars(text.data(), end, value);
+                                     if (read.ec != std::errc{} || read.ptr != end)
+                                         return refused();
+                                     return ParameterValue{value};
+                                 },
+                                 [&](const FlagParameter&) -> base::Result<ParameterValue> {
+                                     if (text != "true" && text != "false")
+                                         return refused();
+                                     return ParameterValue{text == "true"};
+                                 },
+                                 [&](const ChoiceParameter& choice) -> base::Result<ParameterValue> {
+                                     if (std::find(choice.names.begin(), choice.names.end(), text) == choice.names.end())
+                                         return refused();
+                                     return ParameterValue{std::string{text}};
+                                 }},
+                      description.kind);
+}
+
+IslandPlan island_plan(const Parameters& p) {
+    IslandPlan plan{p.island_width_px, p.island_height_px, p.food_count, p.poison_count};
+    if (p.scale_with_population) {
+        const double factor = static_cast<double>(p.population_size) / p.reference_population;
+        const double side = std::sqrt(factor);
+        const auto scaled = [&](std::uint32_t count) {
+            return static_cast<std::uint32_t>(std::min(std::floor(count * factor + 0.5), 4e9));
+        };
+        plan = {p.island_width_px * side, p.island_height_px * side, scaled(p.food_count), scaled(p.poison_count)};
+    }
+    return plan;
+}
+
+std::vector<base::Violation> validate(const Parameters& p, std::string_view field_prefix) {
+    std::vector<base::Violation> violations;
+    const auto refuse = [&](std::string_view field, std::string allowed, std::string got) {
+        violations.push_back({std::string{field_prefix} + std::string{field}, std::move(allowed), std::move(got)});
+    };
+    const auto require_order = [&](std::string_view greater, double max, std::string_view lesser, double min) {
+        if (min > max)
+            refuse(greater, "at least " + std::string{lesser} + " (" + number_text(min) + ")", number_text(max));
+    };
+    require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
+    require_order("normal_speed_max", p.normal_speed_max, "normal_speed_min", p.normal_speed_min);
+    require_order("impulse_max", p.impulse_max, "impulse_min", p.impulse_min);
+    require_order("body_size_max", p.body_size_max, "body_size_min", p.body_size_min);
+    require_order("base_health_max", p.base_health_max, "base_health_min", p.base_health_min);
+    require_order("food_radius_max", p.food_radius_max, "food_radius_min", p.food_radius_min);
+    require_order("poison_radius_max", p.poison_radius_max, "poison_radius_min", p.poison_radius_min);
+    require_order("tournament_size", p.tournament_size, "tournament_winners", p.tournament_winners);
+    if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement)
+        require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
+
+    if (p.fitness != FitnessFunction::Life)
+        return violations;
+    require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
+    if (p.generation_s / p.tick_s > 1e9)
+        refuse("generation_s", "at most 1e9 ticks of tick_s", number_text(p.generation_s));
+    if (p.max_speed_px_s * p.tick_s > 5000)
+        refuse("max_speed_px_s", "at most 5000 px in a tick of tick_s", number_text(p.max_speed_px_s));
+    const IslandPlan plan = island_plan(p);
+    const std::string scaled = p.scale_with_population ? " as scaled with the population" : "";
+    if (plan.width_px > 500'000)
+        refuse("island_width_px", "at most 500000" + scaled, number_text(plan.width_px));
+    if (plan.height_px > 500'000)
+        refuse("island_height_px", "at most 500000" + scaled, number_text(plan.height_px));
+    if (plan.food_count > 20'000'000)
+        refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
+    if (plan.poison_count > 20'000'000)
+        refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
+    if (const double share = covered_share(p, plan); share > 0.4)
+        refuse("population_size",
+               "so many that organisms of body_size_max, crates and obstacles cover at most 0.4 of an island",
+               std::to_string(p.population_size) + ", covering " + number_text(std::round(share * 1000) / 1000));
+    return violations;
+}
+
+Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached) {
+    Parameters result = active;
+    for (const ParameterDescription& description : parameter_registry())
+        if (description.effect <= reached)
+            description.copy(requested, result);
+    return result;
+}
+
+ParameterSet after_request(const ParameterSet& set, const Parameters& requested) {
+    return {.active = taking_effect(set.active, requested, base::Effect::NextTick),
+            .requested = requested,
+            .revision = set.revision + 1};
+}
+
+bool operator==(const Parameters& a, const Parameters& b) {
+    for (const ParameterDescription& description : parameter_registry())
+        if (description.get(a) != description.get(b))
+            return false;
+    return true;
+}
+
+} // namespace evod::simulation

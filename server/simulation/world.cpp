@@ -1,0 +1,173 @@
+#include "server/simulation/world.h"
+
+#include "server/base/assert.h"
+#include "server/evolution/migration.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::simulation {
+World::World(const Parameters& parameters, base::Seed seed) : seed_{seed}, parameters_{parameters, parameters, 1} {
+    begin_run();
+}
+
+void World::reset(base::Seed seed) {
+    seed_ = seed;
+    parameters_.active = parameters_.requested;
+    history_.clear();
+    events_.clear();
+    begin_run();
+}
+
+void World::begin_run() {
+    const Parameters& p = parameters_.active;
+    moment_ = {};
+    progress_ = {};
+    generation_over_ = false;
+    fitness_.clear();
+    islands_.clear();
+    std::vector<evolution::NextGeneration> first;
+    for (std::uint32_t island = 0; island < p.island_count; ++island) {
+        islands_.emplace_back(seed_, island);
+        evolution::NextGeneration born;
+        born.genes = evolution::initial_population(p.population_size, p, seed_, island);
+        first.push_back(std::move(born));
+    }
+    begin_generation(std::move(first));
+}
+
+void World::begin_generation(std::vector<evolution::NextGeneration> bred) {
+    for (std::size_t i = 0; i < islands_.size(); ++i)
+        islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]));
+    update_hash();
+}
+
+void World::request_parameters(const Parameters& requested) {
+    parameters_ = after_request(parameters_, requested);
+}
+
+evolution::Outcome World::outcome() const {
+    return generation_over_ ? evolution::outcome(progress_, parameters_.active) : evolution::Outcome::Running;
+}
+
+std::uint64_t World::alive_count() const {
+    std::uint64_t alive = 0;
+    for (const Island& island : islands_)
+        alive += island.living().size();
+    return alive;
+}
+
+void World::turn_over(base::Executor& executor) {
+    if (!generation_over_)
+        return;
+    parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextGeneration);
+    const Parameters& p = parameters_.active;
+
+    std::vector<evolution::GeneMatrix> genes;
+    for (const Island& island : islands_)
+        genes.push_back(island.born().genes);
+    migrate(genes);
+    std::vector<evolution::NextGeneration> bred(islands_.size());
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            bred[i] = evolution::next_generation(
+                fitness_[i], genes[i], p, p.population_size,
+                {.seed = seed_, .island = static_cast<std::uint32_t>(i), .generation = moment_.generation}, executor);
+    });
+
+    ++moment_.generation;
+    moment_.generation_tick = 0;
+    generation_over_ = false;
+    begin_generation(std::move(bred));
+}
+
+void World::migrate(std::vector<evolution::GeneMatrix>& genes) {
+    const Parameters& p = parameters_.active;
+    if (!evolution::migration_due(moment_.generation, p))
+        return;
+    std::vector<std::span<const double>> fitness(fitness_.begin(), fitness_.end());
+    const auto migrants = evolution::choose_migrants(fitness, p, seed_, moment_.generation);
+    if (migrants.empty())
+        return;
+    std::vector<evolution::IslandPopulation> populations;
+    for (std::size_t i = 0; i < islands_.size(); ++i)
+        populations.push_back({&genes[i], fitness_[i]});
+    evolution::migrate(migrants, populations);
+
+    MigrationHappened happened{.generation = moment_.generation, .edges = {}};
+    for (const evolution::Migrant& migrant : migrants) { // ordered by (to, from)
+        auto& edges = happened.edges;
+        if (edges.empty() || edges.back().from != migrant.from || edges.back().to != migrant.to)
+            edges.push_back({migrant.from, migrant.to, 0});
+        ++edges.back().migrant_count;
+    }
+    events_.push_back(std::move(happened));
+}
+
+void World::advance_tick(base::Executor& executor) {
+    EVOD_ASSERT(outcome() == evolution::Outcome::Running);
+    turn_over(executor);
+    const Parameters& p = parameters_.active;
+    ++moment_.tick;
+    ++moment_.generation_tick;
+    moment_.simulated_s += p.tick_s;
+    if (!has_bodies()) {
+        end_generation(executor);
+        update_hash();
+        return;
+    }
+
+    const auto tick = static_cast<std::uint32_t>(moment_.generation_tick);
+    std::uint64_t alive = 0;
+    std::vector<std::uint8_t> died_out(islands_.size());
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (islands_[i].living().size() == 0)
+                continue; // an island that has died out waits
+            islands_[i].advance_tick(p, tick, executor);
+            died_out[i] = islands_[i].living().size() == 0;
+        }
+    });
+    for (std::uint32_t i = 0; i < islands_.size(); ++i) {
+        alive += islands_[i].living().size();
+        if (died_out[i])
+            events_.push_back(Extinction{.island = i, .generation = moment_.generation});
+    }
+    update_hash();
+    // Half a tick of slack, so that 40 s are 2,400 sixtieths however they are rounded.
+    if (alive == 0 || static_cast<double>(moment_.generation_tick) + 0.5 > p.generation_s / p.tick_s)
+        end_generation(executor);
+}
+
+void World::end_generation(base::Executor& executor) {
+    const Parameters& p = parameters_.active;
+    fitness_.clear();
+    std::vector<GenerationStatistics> statistics;
+    double best = 0;
+    for (const Island& island : islands_) {
+        fitness_.push_back(island.fitness(p, static_cast<std::uint32_t>(moment_.generation_tick), executor));
+        GenerationStatistics s = generation_statistics(island, p, fitness_.back());
+        s.generation = moment_.generation;
+        s.end_tick = moment_.tick;
+        s.simulated_s = static_cast<double>(moment_.generation_tick) * p.tick_s;
+        best = statistics.empty() ? s.fitness_best : std::max(best, s.fitness_best);
+        statistics.push_back(s);
+    }
+    generation_over_ = true;
+    progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_bodies() && alive_count() == 0});
+    history_.push_back(statistics);
+    if (history_.size() > history_generations_kept)
+        history_.pop_front();
+    events_.push_back(GenerationFinished{std::move(statistics)});
+    if (const evolution::Outcome reached = outcome(); reached != evolution::Outcome::Running)
+        events_.push_back(RunTerminated{reached});
+}
+
+void World::update_hash() {
+    constexpr std::uint32_t world_kind = 100, island_kind = 101;
+    hash_ = base::EntityHash{world_kind, seed_.value}.add(moment_.generation).add(moment_.generation_tick).finish();
+    for (const Island& island : islands_)
+        hash_ += base::EntityHash{island_kind, island.index()}.add(island.hash().low).add(island.hash().high).finish();
+}
+
+} // namespace evod::simulation
