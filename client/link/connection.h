@@ -163,8 +163,8 @@ class Connection {
     std::optional<evod::v1::Event> wait_event(std::chrono::milliseconds timeout);
 
   private:
-    class Session;
-    std::unique_ptr<Session> session_;
+    class Io;
+    std::unique_ptr<Io> io_;
 };
 
 } // namespace evod::link

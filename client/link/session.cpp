@@ -1,0 +1,231 @@
+#include "client/link/session.h"
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/write.hpp>
+
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <utility>
+
+namespace evod::link {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+constexpr std::size_t read_bytes = 256 << 10;
+
+/// Lets the machine find out that the other end is gone without a word: a cable, a suspended laptop.
+void notice_silence(asio::ip::tcp::socket& socket) {
+    error_code ignored; // a socket without these options still works
+    socket.set_option(asio::ip::tcp::no_delay{true}, ignored);
+    socket.set_option(asio::socket_base::keep_alive{true}, ignored);
+    const int idle_s = 10, interval_s = 5, probes = 3;
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof idle_s);
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof interval_s);
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
+}
+
+std::string reason_of(const error_code& error, const Endpoint& server) {
+    if (error == asio::error::connection_refused) {
+        return "no server at " + to_text(server) + ": start one with `evod`";
+    }
+    if (error == asio::error::host_not_found || error == asio::error::host_not_found_try_again ||
+        error == asio::error::no_data) {
+        return "the host " + server.host + " is not known";
+    }
+    if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe) {
+        return "the server at " + to_text(server) + " closed the connection";
+    }
+    return "the connection with " + to_text(server) + " failed: " + error.message();
+}
+
+} // namespace
+
+Session::Session(asio::io_context& io, const Options& options, Handlers handlers)
+    : options_{options}
+    , handlers_{std::move(handlers)}
+    , resolver_{io}
+    , socket_{io}
+    , deadline_{io}
+    , received_(read_bytes) {}
+
+void Session::start() {
+    expect_within(options_.connect_timeout, "no connection with");
+    look_up();
+}
+
+void Session::look_up() {
+    resolver_.async_resolve(
+        options_.server.host, std::to_string(options_.server.port), asio::ip::resolver_base::numeric_service,
+        [self = shared_from_this()](const error_code& error, const asio::ip::tcp::resolver::results_type& addresses) {
+            if (self->ended_) {
+                return;
+            }
+            if (error) {
+                self->end({.reason = reason_of(error, self->options_.server)});
+            } else {
+                self->connect(addresses);
+            }
+        });
+}
+
+void Session::connect(const asio::ip::tcp::resolver::results_type& addresses) {
+    asio::async_connect(socket_, addresses,
+                        [self = shared_from_this()](const error_code& error, const asio::ip::tcp::endpoint&) {
+                            if (self->ended_) {
+                                return;
+                            }
+                            if (error) {
+                                self->end({.reason = reason_of(error, self->options_.server)});
+                                return;
+                            }
+                            notice_silence(self->socket_);
+                            self->say_hello();
+                            self->read();
+                        });
+}
+
+void Session::say_hello() {
+    evod::v1::ClientMessage message;
+    auto& hello = *message.mutable_hello();
+    hello.set_protocol_version(wire::protocol_version);
+    hello.set_client_name(options_.client_name);
+    hello.set_client_version(options_.client_version);
+    to_send_.push_back(wire::encode_frame(wire::Channel::Control, message));
+    write();
+    expect_within(options_.connect_timeout, "no welcome from");
+}
+
+void Session::read() {
+    socket_.async_read_some(
+        asio::buffer(received_), [self = shared_from_this()](const error_code& error, std::size_t length) {
+            if (self->ended_) {
+                return;
+            }
+            if (error) {
+                self->end({.reason = self->going_away_
+                                         ? "the server at " + to_text(self->options_.server) + " was shut down"
+                                         : reason_of(error, self->options_.server)});
+                return;
+            }
+            self->reader_.feed(std::span{self->received_}.first(length));
+            self->take_frames();
+            if (!self->ended_) {
+                self->read();
+            }
+        });
+}
+
+void Session::take_frames() {
+    while (!ended_) {
+        const auto frame = reader_.next();
+        if (!frame) {
+            // Whoever has never said anything sensible is no server of ours; a server may be well again later.
+            end({.reason = to_text(options_.server) +
+                           (welcomed_ ? " sent damaged data: " : " is not an evod server: ") + frame.error().what,
+                 .final = !welcomed_});
+            return;
+        }
+        if (!*frame) {
+            return;
+        }
+        if ((*frame)->channel == wire::Channel::Control) {
+            take_control((*frame)->body);
+        } else if (!welcomed_) {
+            end({.reason = to_text(options_.server) + " is not an evod server: it began with a picture",
+                 .final = true});
+        } else if (auto picture = wire::parse_body<evod::v1::SnapshotFrame>((*frame)->body)) {
+            handlers_.pictured(*std::move(picture));
+        } else {
+            end({.reason = to_text(options_.server) + " sent damaged data: " + picture.error().what});
+        }
+    }
+}
+
+void Session::take_control(std::span<const std::byte> body) {
+    auto message = wire::parse_body<evod::v1::ServerMessage>(body);
+    if (!message) {
+        end({.reason = to_text(options_.server) + " sent damaged data: " + message.error().what});
+    } else if (!welcomed_) {
+        take_first(*message);
+    } else {
+        going_away_ = going_away_ || message->event().has_server_going_away();
+        handlers_.received(*std::move(message));
+    }
+}
+
+void Session::take_first(const evod::v1::ServerMessage& message) {
+    if (message.has_response()) {
+        const auto code = message.response().status().code();
+        const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
+        end({.reason =
+                 "the server at " + to_text(options_.server) + " refused us: " + to_text(message.response().status()),
+             .final = !later});
+    } else if (!message.has_welcome()) {
+        end({.reason = to_text(options_.server) + " is not an evod server: it did not begin with a welcome",
+             .final = true});
+    } else if (message.welcome().protocol_version() != wire::protocol_version) {
+        end({.reason = "the server at " + to_text(options_.server) + " speaks protocol version " +
+                       std::to_string(message.welcome().protocol_version()) + ", this program version " +
+                       std::to_string(wire::protocol_version),
+             .final = true});
+    } else {
+        deadline_.cancel();
+        welcomed_ = true;
+        handlers_.welcomed(message.welcome());
+    }
+}
+
+void Session::send(std::string frame) {
+    to_send_.push_back(std::move(frame));
+    if (to_send_.size() == 1) {
+        write();
+    }
+}
+
+void Session::write() {
+    asio::async_write(socket_, asio::buffer(to_send_.front()),
+                      [self = shared_from_this()](const error_code& error, std::size_t) {
+                          if (self->ended_) {
+                              return;
+                          }
+                          if (error) {
+                              // What the server said before it closed may still be on its way: read() ends the session.
+                              return;
+                          }
+                          self->to_send_.pop_front();
+                          if (!self->to_send_.empty()) {
+                              self->write();
+                          }
+                      });
+}
+
+void Session::expect_within(std::chrono::milliseconds timeout, std::string what) {
+    deadline_.expires_after(timeout);
+    deadline_.async_wait([self = shared_from_this(), timeout, what = std::move(what)](const error_code& error) {
+        if (!error && !self->ended_ && !self->welcomed_) {
+            self->end({.reason = what + " " + to_text(self->options_.server) + " within " +
+                                 std::to_string(timeout.count()) + " ms"});
+        }
+    });
+}
+
+void Session::close() {
+    ended_ = true;
+    resolver_.cancel();
+    deadline_.cancel();
+    error_code ignored;
+    socket_.close(ignored);
+}
+
+void Session::end(Ending ending) {
+    if (!ended_) {
+        close();
+        handlers_.ended(std::move(ending));
+    }
+}
+
+} // namespace evod::link
