@@ -4,6 +4,7 @@
 #include "server/simulation/placement.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evod::simulation {
 
@@ -79,21 +80,23 @@ void Items::insert(std::uint32_t item) {
 
 void Items::remove(std::uint32_t item) {
     // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
-    std::uint32_t holder = cell_of(x_[item], y_[item]), slot = 0;
+    std::uint32_t last = cell_of(x_[item], y_[item]), before_last = none;
+    std::uint32_t holder = none, slot = 0;
     while (true) {
-        const Bucket& bucket = buckets_[holder];
-        slot = static_cast<std::uint32_t>(std::find(bucket.item.begin(), bucket.item.begin() + bucket.count, item) -
-                                          bucket.item.begin());
-        if (slot < bucket.count)
+        const Bucket& bucket = buckets_[last];
+        if (holder == none) {
+            const auto end_of_items = bucket.item.begin() + bucket.count;
+            const auto found = std::find(bucket.item.begin(), end_of_items, item);
+            if (found != end_of_items) {
+                holder = last;
+                slot = static_cast<std::uint32_t>(found - bucket.item.begin());
+            }
+        }
+        if (bucket.next == none)
             break;
-        holder = bucket.next;
-        EVOD_ASSERT(holder != none);
+        before_last = std::exchange(last, bucket.next);
     }
-    std::uint32_t last = holder, before_last = none;
-    while (buckets_[last].next != none) {
-        before_last = last;
-        last = buckets_[last].next;
-    }
+    EVOD_ASSERT(holder != none);
     const std::uint32_t end = --buckets_[last].count;
     buckets_[holder].x[slot] = buckets_[last].x[end];
     buckets_[holder].y[slot] = buckets_[last].y[end];
