@@ -192,7 +192,6 @@ class Connection::Io {
     }
 
     void on_welcome(evod::v1::Welcome welcome) {
-        welcomed_ = true;
         limits_ = welcome.limits();
         backoff_ = options_.backoff_min;
         share([&] {
@@ -207,6 +206,7 @@ class Connection::Io {
                 ask_for_subscription(handle, Order::First);
             }
         }
+        welcomed_ = true;
         send_waiting();
     }
 

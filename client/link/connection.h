@@ -101,7 +101,7 @@ const char* to_text(State state);
 
 struct ConnectionStatus {
     State state = State::Connecting;
-    std::string reason;                       // Lost, Failed: why, one sentence; else empty
+    std::string reason;                       // Lost, Failed and Connecting after a loss: why, one sentence; else empty
     std::optional<evod::v1::Welcome> welcome; // of the last server we were connected with
     std::uint64_t connected_count = 0;        // times that Connected was reached
     std::uint64_t damaged_picture_count = 0;  // pictures thrown away because they could not be decoded

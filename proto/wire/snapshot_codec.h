@@ -36,9 +36,9 @@ struct BoxColumns {
 struct IslandColumns {
     double width_px = 0, height_px = 0;
     unsigned position_fraction_bits = 12; // an x or y of 1 is 2^-position_fraction_bits px; 4 to 30
-    OrganismColumns organisms;
-    ItemColumns food, poison;
-    BoxColumns crates, obstacles;
+    OrganismColumns organisms{};
+    ItemColumns food{}, poison{};
+    BoxColumns crates{}, obstacles{};
 };
 
 /// Sets width_px, height_px, codec, the counts, position_bytes and body of `frame`, and leaves its other fields alone.

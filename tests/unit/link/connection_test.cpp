@@ -1,0 +1,414 @@
+#include "tests/unit/link/fake_server.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <thread>
+
+namespace evod::link {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+v1::Request run_request(std::uint64_t generations) {
+    v1::Request request;
+    request.mutable_run()->set_generations(generations);
+    return request;
+}
+
+/// Looks until it holds; a test that looks in vain fails by its own expectation.
+template <class Condition>
+bool eventually(const Condition& holds) {
+    for (const auto end = std::chrono::steady_clock::now() + 20s; std::chrono::steady_clock::now() < end;) {
+        if (holds()) {
+            return true;
+        }
+        std::this_thread::sleep_for(1ms);
+    }
+    return false;
+}
+
+bool is_connected(const Connection& connection) {
+    return connection.status().state == State::Connected;
+}
+
+TEST(Connection, SaysHelloAndShowsTheWelcome) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    const auto hello = session.read().hello();
+    EXPECT_EQ(hello.protocol_version(), 1U);
+    EXPECT_EQ(hello.client_name(), "a test");
+    v1::ServerMessage message;
+    message.mutable_welcome()->set_protocol_version(1);
+    message.mutable_welcome()->set_instance_id("an instance");
+    session.send(message);
+    const auto welcome = connection.wait_connected();
+    ASSERT_TRUE(welcome) << welcome.error().what;
+    EXPECT_EQ(welcome->instance_id(), "an instance");
+    EXPECT_EQ(connection.status().state, State::Connected);
+}
+
+TEST(Connection, SaysWhatToDoWhereThereIsNoServer) {
+    FakeServer server;
+    const Options options = server.options();
+    server.stop_listening();
+    Connection connection{options};
+    const auto welcome = connection.wait_connected();
+    ASSERT_FALSE(welcome);
+    EXPECT_EQ(welcome.error().kind, Error::Kind::NoConnection);
+    EXPECT_EQ(welcome.error().what, "no server at " + to_text(options.server) + ": start one with `evod`");
+    EXPECT_NE(connection.status().state, State::Failed) << "one may be started yet";
+}
+
+TEST(Connection, AnotherProtocolVersionIsFinal) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    session.read();
+    v1::ServerMessage message;
+    message.mutable_welcome()->set_protocol_version(2);
+    session.send(message);
+    const auto welcome = connection.wait_connected();
+    ASSERT_FALSE(welcome);
+    EXPECT_THAT(welcome.error().what, HasSubstr("speaks protocol version 2, this program version 1"));
+    EXPECT_EQ(connection.status().state, State::Failed);
+    EXPECT_FALSE(connection.request(run_request(1))) << "and what is asked afterwards fails at once";
+}
+
+TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsOnlyFull) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession session = server.accept();
+        session.read();
+        session.refuse(0, v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
+    }
+    FakeSession session = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("RESOURCE_EXHAUSTED: 16 sessions are open"));
+    session.read();
+    session.refuse(0, v1::CODE_INVALID_ARGUMENT, "the client name is too long");
+    EXPECT_TRUE(eventually([&] { return connection.status().state == State::Failed; }));
+    EXPECT_THAT(connection.status().reason, HasSubstr("INVALID_ARGUMENT: the client name is too long"));
+}
+
+TEST(Connection, SomethingElseThanAServerIsNamed) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    session.write("SSH-2.0-OpenSSH_9.2\r\n");
+    const auto welcome = connection.wait_connected();
+    ASSERT_FALSE(welcome);
+    EXPECT_THAT(welcome.error().what, HasSubstr("is not an evod server"));
+}
+
+TEST(Connection, GivesUpWaitingForAWelcome) {
+    FakeServer server;
+    Options options = server.options();
+    options.connect_timeout = 20ms;
+    Connection connection{options};
+    FakeSession session = server.accept();
+    const auto welcome = connection.wait_connected();
+    ASSERT_FALSE(welcome);
+    EXPECT_THAT(welcome.error().what, HasSubstr("no welcome from"));
+}
+
+TEST(Requests, AreNumberedInOrderUnderOneKey) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome();
+    std::string key;
+    for (std::uint64_t i = 1; i <= 3; ++i) {
+        auto response = connection.send(run_request(i));
+        const v1::Request request = session.read_request();
+        EXPECT_EQ(request.request_id(), i);
+        EXPECT_EQ(request.run().generations(), i);
+        EXPECT_EQ(request.client_key().size(), 32U);
+        EXPECT_TRUE(key.empty() || request.client_key() == key);
+        key = request.client_key();
+        session.answer(request, 100 + i);
+        EXPECT_EQ(response.get()->applied_tick(), 100 + i);
+    }
+}
+
+TEST(Requests, FindTheirAnswersInAnyOrder) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome();
+    auto first = connection.send(run_request(1)), second = connection.send(run_request(2));
+    const v1::Request request_1 = session.read_request(), request_2 = session.read_request();
+    session.answer(request_2, 2);
+    session.answer(request_1, 1);
+    EXPECT_EQ(second.get()->applied_tick(), 2U);
+    EXPECT_EQ(first.get()->applied_tick(), 1U);
+}
+
+TEST(Requests, AreSentAgainWithTheSameNumberAfterALoss) {
+    FakeServer server;
+    Connection connection{server.options()};
+    std::future<Result<v1::Response>> first, second;
+    v1::Request lost_1, lost_2;
+    {
+        FakeSession session = server.accept_and_welcome();
+        first = connection.send(run_request(1));
+        second = connection.send(run_request(2));
+        lost_1 = session.read_request();
+        lost_2 = session.read_request();
+    }
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request again_1 = session.read_request(), again_2 = session.read_request();
+    EXPECT_EQ(again_1.SerializeAsString(), lost_1.SerializeAsString());
+    EXPECT_EQ(again_2.SerializeAsString(), lost_2.SerializeAsString());
+    session.answer(again_1, 1);
+    session.answer(again_2, 2);
+    EXPECT_EQ(first.get()->applied_tick(), 1U);
+    EXPECT_EQ(second.get()->applied_tick(), 2U);
+    EXPECT_EQ(connection.status().connected_count, 2U);
+}
+
+TEST(Requests, MadeWithoutAConnectionWaitForOne) {
+    FakeServer server;
+    Connection connection{server.options()};
+    auto response = connection.send(run_request(7));
+    FakeSession session = server.accept_and_welcome();
+    session.answer(session.read_request(), 7);
+    EXPECT_EQ(response.get()->applied_tick(), 7U);
+}
+
+TEST(Requests, TimeOutAndALateAnswerIsIgnored) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome(1); // one request at a time
+    const auto response = connection.request(run_request(1), 20ms);
+    ASSERT_FALSE(response);
+    EXPECT_EQ(response.error().kind, Error::Kind::Timeout);
+    EXPECT_EQ(response.error().what, "no answer within 20 ms");
+    session.answer(session.read_request());
+    auto next = connection.send(run_request(2));
+    session.answer(session.read_request(), 2);
+    EXPECT_EQ(next.get()->applied_tick(), 2U) << "the late answer has made room";
+}
+
+TEST(Requests, KeepToTheServersLimitOfUnansweredOnes) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome(2);
+    std::vector<std::future<Result<v1::Response>>> responses;
+    for (std::uint64_t i = 1; i <= 5; ++i) {
+        responses.push_back(connection.send(run_request(i)));
+    }
+    v1::Request first = session.read_request();
+    v1::Request second = session.read_request();
+    session.send_event(1);
+    ASSERT_TRUE(connection.wait_event(10s)); // the client's thread has been through all five
+    EXPECT_EQ(session.unread_bytes(), 0U);
+    session.answer(second);
+    EXPECT_TRUE(responses[1].get());
+    const v1::Request third = session.read_request();
+    EXPECT_EQ(third.run().generations(), 3U);
+    session.answer(first);
+    session.answer(third);
+    for (int i = 0; i < 2; ++i) {
+        session.answer(session.read_request());
+    }
+    for (const std::size_t i : {0U, 2U, 3U, 4U}) {
+        EXPECT_TRUE(responses[i].get());
+    }
+}
+
+TEST(Requests, TooLongForTheServerAreNotSent) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::Request request;
+    request.mutable_create_world()->set_name(std::string(2 << 20, 'x'));
+    const auto response = connection.request(request);
+    ASSERT_FALSE(response);
+    EXPECT_EQ(response.error().kind, Error::Kind::Usage);
+}
+
+TEST(Requests, AreAllAnsweredWhenTheConnectionIsDestroyed) {
+    FakeServer server;
+    std::future<Result<v1::Response>> response;
+    {
+        Connection connection{server.options()};
+        response = connection.send(run_request(1));
+    }
+    EXPECT_EQ(response.get().error().kind, Error::Kind::Closed);
+}
+
+TEST(Requests, EndWithTheConnectionWhereReconnectingIsOff) {
+    FakeServer server;
+    Options options = server.options();
+    options.reconnect = false;
+    Connection connection{options};
+    std::future<Result<v1::Response>> response;
+    {
+        FakeSession session = server.accept_and_welcome();
+        response = connection.send(run_request(1));
+        session.read_request();
+    }
+    const auto result = response.get();
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().what, HasSubstr("closed the connection"));
+}
+
+TEST(Reconnection, FollowsDamagedFrames) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession first = server.accept_and_welcome();
+    ASSERT_TRUE(connection.wait_connected());
+    first.write("nonsense");
+    FakeSession second = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("sent damaged data"));
+    second.welcome();
+    EXPECT_TRUE(eventually([&] { return is_connected(connection); }));
+}
+
+TEST(Reconnection, FollowsAMessageThatIsNoMessage) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession first = server.accept_and_welcome();
+    first.write(std::string("EV\x01\x01\x02\x00\x00\x00\xff\xff", 10));
+    FakeSession second = server.accept_and_welcome();
+    EXPECT_TRUE(eventually([&] { return connection.status().connected_count == 2; }));
+}
+
+TEST(Subscriptions, AreAskedForInTurnAtFirstAndAheadOfTheRestAfterALoss) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::Request create;
+    create.mutable_create_world()->set_name("new");
+    auto created = connection.send(create);
+    v1::SubscribeSnapshots snapshots;
+    snapshots.set_world("new");
+    const SubscriptionHandle handle = connection.subscribe(snapshots);
+    connection.subscribe(v1::SubscribeEvents{});
+    auto ran = connection.send(run_request(1));
+    {
+        FakeSession session = server.accept_and_welcome();
+        const auto request = session.read_request();
+        EXPECT_TRUE(request.has_create_world());
+        session.answer(request);
+        session.answer_subscription(session.read_request(), 1);
+        session.answer_subscription(session.read_request(), 2);
+        EXPECT_TRUE(session.read_request().has_run());
+        EXPECT_TRUE(created.get());
+        const auto answer = connection.wait_subscribed(handle);
+        ASSERT_TRUE(answer) << answer.error().what;
+        EXPECT_EQ(answer->subscription().subscription_id(), 1U);
+    }
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request again = session.read_request();
+    EXPECT_EQ(again.subscribe_snapshots().world(), "new");
+    session.answer_subscription(again, 8);
+    EXPECT_TRUE(session.read_request().has_subscribe_events());
+    session.answer(session.read_request(), 5);
+    EXPECT_EQ(ran.get()->applied_tick(), 5U);
+    session.send_picture(8, 0, 99);
+    std::shared_ptr<const wire::Picture> picture;
+    EXPECT_TRUE(eventually([&] { return (picture = connection.take_picture(handle)) != nullptr; }));
+    EXPECT_EQ(picture->about.tick(), 99U) << "the handle outlives the session";
+}
+
+TEST(Subscriptions, ARefusalIsShown) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.refuse(session.read_request().request_id(), v1::CODE_NOT_FOUND, "there is no world 'x'");
+    const auto answer = connection.wait_subscribed(handle);
+    ASSERT_TRUE(answer);
+    EXPECT_FALSE(accepted(*answer));
+    EXPECT_EQ(to_text(answer->status()), "NOT_FOUND: there is no world 'x'");
+}
+
+TEST(Subscriptions, OneThatWasLetGoBeforeItsAnswerIsUndone) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request request = session.read_request();
+    connection.unsubscribe(handle);
+    auto marker = connection.send(run_request(1));
+    session.answer(session.read_request());
+    EXPECT_TRUE(marker.get());
+    session.answer_subscription(request, 3);
+    EXPECT_EQ(session.read_request().unsubscribe().subscription_id(), 3U);
+}
+
+TEST(Pictures, OnlyTheNewestOfEachIslandIsKept) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    for (const std::uint64_t tick : {10, 20, 30}) {
+        session.send_picture(1, 0, tick);
+        session.send_picture(1, 2, tick + 1);
+    }
+    session.send_picture(77, 0, 40); // of a subscription that nobody made
+    session.send_event(1);           // comes after all of them
+    ASSERT_TRUE(connection.wait_event(10s));
+    const auto pictures = connection.take_pictures(handle);
+    ASSERT_EQ(pictures.size(), 2U);
+    EXPECT_EQ(pictures[0]->about.tick(), 30U);
+    EXPECT_EQ(pictures[1]->about.tick(), 31U);
+    EXPECT_EQ(pictures[1]->about.island(), 2U);
+    EXPECT_FALSE(connection.take_picture(handle, 0)) << "taken is taken";
+}
+
+TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    v1::SnapshotFrame frame;
+    wire::encode({.width_px = 100, .height_px = 100}, frame);
+    frame.set_island_count(1);
+    frame.set_subscription_id(1);
+    frame.set_organism_count(1'000'000'000);
+    session.send(frame);
+    session.send_event(1);
+    ASSERT_TRUE(connection.wait_event(10s));
+    EXPECT_FALSE(connection.take_picture(handle));
+    EXPECT_EQ(connection.status().damaged_picture_count, 1U);
+    EXPECT_THAT(connection.status().last_damage, HasSubstr("body"));
+    EXPECT_EQ(connection.status().state, State::Connected);
+}
+
+TEST(Events, ComeInOrderAndALossIsTold) {
+    FakeServer server;
+    Options options = server.options();
+    options.events_kept = 3;
+    Connection connection{options};
+    FakeSession session = server.accept_and_welcome();
+    for (std::uint64_t tick = 1; tick <= 5; ++tick) {
+        session.send_event(tick);
+    }
+    auto marker = connection.send(run_request(1));
+    session.answer(session.read_request());
+    ASSERT_TRUE(marker.get());
+    const auto events = connection.take_events();
+    ASSERT_EQ(events.size(), 4U);
+    EXPECT_EQ(events[0].events_dropped().dropped_count(), 2U);
+    EXPECT_EQ(events[1].tick(), 3U);
+    EXPECT_EQ(events[3].tick(), 5U);
+    EXPECT_FALSE(connection.wait_event(1ms));
+}
+
+TEST(Endpoint, IsReadInEveryUsualForm) {
+    EXPECT_EQ(parse_endpoint("lab").value(), (Endpoint{"lab", 7744}));
+    EXPECT_EQ(parse_endpoint("lab:80").value(), (Endpoint{"lab", 80}));
+    EXPECT_EQ(parse_endpoint("[::1]").value(), (Endpoint{"::1", 7744}));
+    EXPECT_EQ(parse_endpoint("[fe80::1%eth0]:65535").value(), (Endpoint{"fe80::1%eth0", 65535}));
+    EXPECT_EQ(parse_endpoint("::1").value(), (Endpoint{"::1", 7744}));
+    EXPECT_EQ(to_text(Endpoint{"::1", 7744}), "[::1]:7744");
+    for (const char* wrong : {"", ":80", "lab:", "lab:0", "lab:65536", "lab:80x", "lab:-1", "[::1", "[::1]80", "[]"}) {
+        EXPECT_FALSE(parse_endpoint(wrong)) << wrong;
+    }
+}
+
+} // namespace
+} // namespace evod::link
