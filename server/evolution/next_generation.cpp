@@ -3,7 +3,6 @@
 #include "server/base/assert.h"
 #include "server/evolution/crossover.h"
 #include "server/evolution/mutation.h"
-#include "server/evolution/pairing.h"
 #include "server/evolution/ranking.h"
 #include "server/evolution/rearranging.h"
 #include "server/evolution/selection.h"

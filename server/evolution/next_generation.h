@@ -14,6 +14,7 @@
 #include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/pairing.h"
 #include "server/evolution/parameters.h"
 
 #include <cstdint>
@@ -27,12 +28,6 @@ struct BreedingKey {
     base::Seed seed;
     std::uint32_t island = 0;     // index, from 0
     std::uint64_t generation = 1; // of the parents, from 1
-};
-
-/// Where a chromosome comes from: indices into the parents' generation.
-struct Parents {
-    std::uint32_t first, second; // equal for a survivor, and for a child of one organism with itself
-    friend bool operator==(const Parents&, const Parents&) = default;
 };
 
 struct NextGeneration {

@@ -4,13 +4,18 @@
 #pragma once
 
 #include "server/base/random.h"
-#include "server/evolution/next_generation.h"
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace evod::evolution {
+
+/// Where a chromosome comes from: indices into the parents' generation.
+struct Parents {
+    std::uint32_t first, second; // equal for a survivor, and for a child of one organism with itself
+    friend bool operator==(const Parents&, const Parents&) = default;
+};
 
 /// Pairs up parents in rounds. In a round all are shuffled and neighbours mate; if their number is odd, the one left
 /// over mates with one of the others, each equally likely, and a lone parent with itself. So everyone has mated before

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace evod::evolution {
 
@@ -37,6 +38,9 @@ std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameter
         for (const std::uint32_t organism : ranking.best_first()) {
             scaled[organism] = weight;
             weight *= parameters.ranking_decay;
+            // Rounding would keep the least double where it is for ever, at the price of slow arithmetic.
+            if (weight < std::numeric_limits<double>::min())
+                weight = 0;
         }
         break;
     }

@@ -24,7 +24,7 @@ double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double p
 /// none                 the fitness.
 /// windowing            the fitness less the least fitness, so the worst gets 0; halved if that would overflow.
 /// linear_ranking       linear_rank_weight with ranking_pressure.
-/// exponential_ranking  ranking_decay^rank; ranks so far down that this is below the least double get 0.
+/// exponential_ranking  ranking_decay^rank; ranks so far down that this is below 2^-1022 get 0.
 ///                      Source: Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361.
 std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameters);
 

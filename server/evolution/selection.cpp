@@ -70,6 +70,7 @@ std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Pa
                                   const base::RandomKey& key, base::Executor& executor) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
     base::RandomStream random{key, 0};
+    EVOD_ASSERT(parameters.selection <= SelectionMethod::Truncation);
     switch (parameters.selection) {
     case SelectionMethod::Roulette:
         return spin_roulette(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, key, executor);
@@ -86,7 +87,6 @@ std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Pa
     case SelectionMethod::Truncation:
         return take_best(ranking, picks.pool, picks.wanted);
     }
-    EVOD_ASSERT(!"a selection method of the list");
     return {};
 }
 

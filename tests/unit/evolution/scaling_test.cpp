@@ -63,14 +63,17 @@ TEST(Scaling, ExponentialRankingDecaysByAFactorPerRank) {
         EXPECT_NEAR(weights[rank], std::pow(0.9, rank), 1e-15);
 }
 
-TEST(Scaling, ExponentialRankingOfAManyGoesDownToZeroQuietly) {
+TEST(Scaling, ExponentialRankingOfManyGoesDownToZero) {
     Parameters parameters;
     parameters.ranking_decay = 0.01;
     std::vector<double> fitness(1000);
     std::iota(fitness.rbegin(), fitness.rend(), 0.0);
     const auto weights = scaled(fitness, FitnessScaling::ExponentialRanking, parameters);
     EXPECT_EQ(weights.front(), 1);
-    EXPECT_EQ(weights.back(), 0);
+    EXPECT_EQ(weights.back(), 0); // its index is its rank
+    fitness.resize(20'000);
+    std::iota(fitness.rbegin(), fitness.rend(), 0.0);
+    EXPECT_EQ(scaled(fitness, FitnessScaling::ExponentialRanking).back(), 0);
 }
 
 } // namespace
