@@ -12,7 +12,11 @@ namespace evod::link {
 
 class FakeSession {
   public:
-    explicit FakeSession(boost::asio::ip::tcp::socket socket) : socket_{std::move(socket)} {}
+    explicit FakeSession(boost::asio::ip::tcp::socket socket) : socket_{std::move(socket)} {
+        socket_.set_option(boost::asio::ip::tcp::no_delay{true});
+    }
+
+    std::size_t unread_bytes() const { return socket_.available(); }
 
     /// The next message of the client; an empty one when it has closed the connection.
     v1::ClientMessage read() {
