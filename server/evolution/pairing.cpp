@@ -18,9 +18,8 @@ std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32
         for (std::size_t i = 0; i + 1 < count && pairs.size() < pair_count; i += 2)
             pairs.push_back({order[i], order[i + 1]});
         if (count % 2 == 1 && pairs.size() < pair_count) {
-            const std::uint32_t left_over = order[count - 1];
-            const std::size_t mate = count == 1 ? 0 : random.below(static_cast<std::uint32_t>(count - 1));
-            pairs.push_back({left_over, order[mate]});
+            // The shuffle has made the first any of the others; of a lone parent it is the parent itself.
+            pairs.push_back({order[count - 1], order[0]});
         }
     }
     return pairs;

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/base/elementary.h"
+#include "server/evolution/wheel.h"
 
 #include <algorithm>
 #include <bit>
@@ -86,6 +87,36 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
     }
 }
 
+/// The chance of each rank to be the best of `size` different draws, as long as it can be told from 0: the ranks above
+/// it are missed one after another.
+std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
+    std::vector<double> chances;
+    double all_missed = 1;
+    for (std::uint32_t left = population; left >= size && all_missed > 0x1p-100; --left) {
+        const double hit = static_cast<double>(size) / left;
+        chances.push_back(all_missed * hit);
+        all_missed *= 1 - hit;
+    }
+    return chances;
+}
+
+/// How the winners are found; each is the cheapest for what it is chosen for.
+enum class Way {
+    Held,            // contestants are drawn and compared
+    OrderStatistics, // with replacement
+    WheelOfRanks,    // without, one winner
+    WalkDownRanks,   // without, several winners
+};
+
+Way choose_way(std::uint32_t population, const Tournament& tournament) {
+    const std::uint64_t size = tournament.size, winners = tournament.winners;
+    if (tournament.replacement)
+        return size <= held_contestants_max || size < 4 * winners ? Way::Held : Way::OrderStatistics;
+    if (winners == 1)
+        return size <= held_contestants_max ? Way::Held : Way::WheelOfRanks;
+    return size * size <= winners * population ? Way::Held : Way::WalkDownRanks;
+}
+
 } // namespace
 
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
@@ -96,8 +127,9 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
     if (wanted == 0)
         return {};
     const std::uint32_t winners = std::min({tournament.winners, size, wanted});
-    const bool held = tournament.replacement ? size <= held_contestants_max || size / winners < 4
-                                             : std::uint64_t{size} * size <= std::uint64_t{population} * winners;
+    const Way way = choose_way(population, {size, winners, tournament.replacement});
+    const bool held = way == Way::Held;
+    const Wheel wheel{way == Way::WheelOfRanks ? chances_of_ranks(population, size) : std::vector<double>{1}};
     const std::span<const std::uint32_t> best_first = held ? std::span<const std::uint32_t>{} : ranking.best_first();
     const Fitter fitter{ranking.fitness()};
 
@@ -118,7 +150,9 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
                 else
                     std::partial_sort(contestants.begin(), contestants.begin() + winners, contestants.end(), fitter);
             } else {
-                if (tournament.replacement)
+                if (way == Way::WheelOfRanks)
+                    contestants[0] = wheel.at(random.uniform());
+                else if (tournament.replacement)
                     draw_winning_ranks(population, size, contestants, random);
                 else
                     draw_different_winning_ranks(population, size, contestants, random);

@@ -348,7 +348,7 @@ TEST(NextGeneration, HasItsGoldenHash) {
             hash += entity.add(next.parents[i].first, next.parents[i].second).finish();
         }
     }
-    EXPECT_EQ(base::to_text(hash), "f2345d2a666537ef632a879c9a21eabe");
+    EXPECT_EQ(base::to_text(hash), "b52524217e6089811a78bcfed3113585");
 }
 
 class SameBitsOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};

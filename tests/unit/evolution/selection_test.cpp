@@ -123,6 +123,22 @@ TEST(Wheel, TheGuideFindsWhatABinarySearchFinds) {
     }
 }
 
+TEST(Wheel, TheGuideIsRightWhereRoundingPutsAPlaceOnEitherSideOfASlotsEnd) {
+    for (const double weight : {0.1, 1.0, 3.0})
+        for (std::size_t population = 1; population <= 200; ++population) {
+            const Wheel wheel{std::vector<double>(population, weight)};
+            const auto ends = wheel.slot_ends();
+            for (std::size_t i = 1; i < population; ++i) {
+                const double edge = static_cast<double>(i) / static_cast<double>(population);
+                for (const double turns : {std::nextafter(edge, 0.0), edge, std::nextafter(edge, 1.0)}) {
+                    const auto expected =
+                        std::upper_bound(ends.begin(), ends.end(), turns * ends.back()) - ends.begin();
+                    ASSERT_EQ(wheel.at(turns), expected) << turns;
+                }
+            }
+        }
+}
+
 TEST(StochasticUniversal, CopiesAreFloorOrCeilingOfTheExpectedInEverySpin) {
     const Wheel wheel{ten_to_one};
     for (const std::uint32_t wanted : {1u, 3u, 10u, 55u, 100u}) {

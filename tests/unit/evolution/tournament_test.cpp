@@ -86,15 +86,19 @@ TEST(Tournament, EveryWinnerHasTheRankOfTheClosedForm) {
 }
 
 TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
-    // Tournaments too large to be held. The same law and test as above, n = 40, ranks too rare to test joined into one.
-    const Tournament tournaments[] = {{.size = 80, .winners = 1, .replacement = true},
-                                      {.size = 80, .winners = 3, .replacement = true},
-                                      {.size = 12, .winners = 1, .replacement = false},
-                                      {.size = 15, .winners = 3, .replacement = false}};
-    for (const Tournament& tournament : tournaments)
+    // Tournaments too large to be held. The same law and test as above, ranks too rare to test joined into one.
+    const struct {
+        std::uint32_t population;
+        Tournament tournament;
+    } cases[] = {{40, {.size = 80, .winners = 1, .replacement = true}},
+                 {40, {.size = 80, .winners = 3, .replacement = true}},
+                 {100, {.size = 65, .winners = 1, .replacement = false}},
+                 {1000, {.size = 70, .winners = 1, .replacement = false}},
+                 {40, {.size = 15, .winners = 3, .replacement = false}}};
+    for (const auto& [population, tournament] : cases)
         for (std::uint32_t place = 0; place < tournament.winners; ++place) {
-            const auto ranks = ranks_of_winners(40, tournament, place, 300'000, 163);
-            const auto law = closed_form(40, tournament, place);
+            const auto ranks = ranks_of_winners(population, tournament, place, 300'000, 163);
+            const auto law = closed_form(population, tournament, place);
             std::vector<std::uint64_t> counts(1);
             std::vector<double> expected(1);
             for (std::size_t r = 0; r < law.size(); ++r) {
