@@ -1,7 +1,10 @@
 #include "server/evolution/mutation.h"
 
+#include "server/base/elementary.h"
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace evod::evolution {
 namespace {
@@ -10,6 +13,23 @@ namespace {
 double symmetric_uniform(base::RandomStream& random) {
     return (random.word() + 0.5) * 0x1p-31 - 1;
 }
+
+/// Independent standard normal numbers, two from every two uniform ones. Source: Box & Muller 1958.
+class NormalPairs {
+  public:
+    double draw(base::RandomStream& random) {
+        second_ = !second_;
+        if (!second_)
+            return radius_ * base::sin_turns(turns_);
+        radius_ = std::sqrt(-2 * base::log(1 - random.uniform())); // 1 − [0, 1) is never 0
+        turns_ = random.uniform();
+        return radius_ * base::cos_turns(turns_);
+    }
+
+  private:
+    double radius_ = 0, turns_ = 0;
+    bool second_ = false; // whether the next is the second of a pair
+};
 
 /// Calls `change` for every gene of the mask, in order.
 template <class Change>
@@ -42,9 +62,10 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , bits_{parameters.bit_flip_bits} {}
 
 unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
+    NormalPairs normal;
     if (!creep_chance_.is_never())
         for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
-            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : random.gaussian();
+            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : normal.draw(random);
             genes[gene] = static_cast<float>(genes[gene] + step_ * unit);
         });
     if (!reset_chance_.is_never())

@@ -92,6 +92,24 @@ TEST(Creep, GaussianStepsHaveTheStepAsStandardDeviation) {
     EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
 }
 
+TEST(Creep, GaussianStepsOfDifferentGenesAreIndependent) {
+    // Law: each of the 4 quarters of the normal law, in each of the 6 genes, alike: 4^6 cells. Chi-square, 4095 degrees
+    // of freedom.
+    Parameters parameters = still();
+    parameters.mutation_chance = 1;
+    parameters.creep = Creep::Gaussian;
+    std::vector<std::uint64_t> cells(4096);
+    mutants(parameters, middle, 400'000, 209, [&](const Values& genes, unsigned) {
+        std::size_t cell = 0;
+        for (const float gene : genes) {
+            const double z = (double{gene} - 512) / 15;
+            cell = cell * 4 + (z < -0.6744897501960817 ? 0 : z < 0 ? 1 : z < 0.6744897501960817 ? 2 : 3);
+        }
+        ++cells[cell];
+    });
+    EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
+}
+
 TEST(Creep, EachGeneMutatesWithItsChanceIndependently) {
     // Law: each of the 64 sets of mutated genes with probability 0.15^k 0.85^(6−k). Chi-square, 63 degrees of freedom.
     Parameters parameters = still();

@@ -348,7 +348,7 @@ TEST(NextGeneration, HasItsGoldenHash) {
             hash += entity.add(next.parents[i].first, next.parents[i].second).finish();
         }
     }
-    EXPECT_EQ(base::to_text(hash), "b52524217e6089811a78bcfed3113585");
+    EXPECT_EQ(base::to_text(hash), "dfd508e075c9a3df5af6e0c032805f59");
 }
 
 class SameBitsOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};
