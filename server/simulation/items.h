@@ -75,11 +75,20 @@ class Items {
 
   private:
     static constexpr std::uint32_t slots = 8;
-    struct Bucket {
+    // Where empty slots pretend to be: further from any place on an island than any radius reaches, so that a query can
+    // look at all eight slots at once.
+    static constexpr physics::Coordinate far_away = -(1 << 30);
+    struct alignas(32) Bucket {
         std::array<physics::Coordinate, slots> x, y;
         std::array<std::uint32_t, slots> item;
         std::uint32_t count = 0;
         std::uint32_t next = none; // bucket of the same cell that took what did not fit
+
+        Bucket() {
+            x.fill(far_away);
+            y.fill(far_away);
+            item.fill(none);
+        }
     };
 
     void choose_cells(std::uint32_t count);
@@ -89,19 +98,30 @@ class Items {
     void settle(std::uint32_t item, base::RandomStream random, const physics::Boxes& obstacles);
     base::StateHash hash_of(std::uint32_t item) const;
 
-    template <class Visit>
-    void for_each_bucket(physics::Coordinate x, physics::Coordinate y, float radius, Visit&& visit) const {
+    struct CellRange {
+        std::uint32_t left, right, top, bottom; // all included
+    };
+    CellRange cells_within(physics::Coordinate x, physics::Coordinate y, float radius) const {
         const auto reach = static_cast<std::int64_t>(radius * static_cast<float>(physics::units_per_px)) + 1;
         const auto bound = [this](std::int64_t position, std::uint32_t cells) {
             position >>= shift_;
             return position < 0 ? 0 : position >= cells ? cells - 1 : static_cast<std::uint32_t>(position);
         };
-        const std::uint32_t left = bound(x - reach, columns_), right = bound(x + reach, columns_);
-        const std::uint32_t bottom = bound(y + reach, rows_);
-        for (std::uint32_t row = bound(y - reach, rows_); row <= bottom; ++row)
-            for (std::uint32_t column = left; column <= right; ++column)
-                for (std::uint32_t b = row * columns_ + column; b != none; b = buckets_[b].next)
-                    visit(buckets_[b]);
+        return {bound(x - reach, columns_), bound(x + reach, columns_), bound(y - reach, rows_),
+                bound(y + reach, rows_)};
+    }
+
+    template <class Visit>
+    void for_each_bucket(physics::Coordinate x, physics::Coordinate y, float radius, Visit&& visit) const {
+        const CellRange cells = cells_within(x, y, radius);
+        for (std::uint32_t row = cells.top; row <= cells.bottom; ++row)
+            for (std::uint32_t column = cells.left; column <= cells.right; ++column)
+                for (std::uint32_t b = row * columns_ + column; b != none;) {
+                    const Bucket& bucket = buckets_[b];
+                    visit(bucket);
+                    // A look at the coordinates, which are at hand, saves one at the second cache line of most buckets.
+                    b = bucket.x[slots - 1] == far_away ? none : bucket.next;
+                }
     }
 
     ItemRules rules_{};
