@@ -31,10 +31,4 @@ inline float accelerate(const Integration& i, float velocity, float acceleration
     return (velocity + acceleration * i.tick_s) * i.velocity_kept;
 }
 
-/// The velocity that moves the body. before, accelerated: the velocity at the tick's start, and after accelerate();
-/// after: with the tick's impulses.
-inline float moving_velocity(const Integration& i, float before, float accelerated, float after) {
-    return i.integrator == Integrator::ExplicitEuler ? before + (after - accelerated) : after;
-}
-
 } // namespace evod::physics

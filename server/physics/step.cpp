@@ -13,7 +13,19 @@ void accelerate_all(Bodies& bodies, const Integration& integration) {
     }
 }
 
-/// extent(i)  the radius, or least half side, px. drift: what explicit Euler adds to the moving velocity, or nullptr.
+/// Cuts a velocity to `limit`, px/s; whether it had to.
+bool limit_speed(float& vx, float& vy, float limit) {
+    const float square = vx * vx + vy * vy;
+    if (square <= limit * limit)
+        return false;
+    const float share = limit / std::sqrt(square);
+    vx *= share;
+    vy *= share;
+    return true;
+}
+
+/// extent(i)  the radius, or least half side, px.
+/// drift      what explicit Euler adds to the velocity that moves a body, or nullptr. The limit acts on both velocities.
 template <class Extent>
 void move_all(Bodies& bodies, const StepParameters& parameters, const float* drift_x, const float* drift_y,
               Extent&& extent, StepCounts& counts) {
@@ -21,15 +33,11 @@ void move_all(Bodies& bodies, const StepParameters& parameters, const float* dri
     const float tick_s = parameters.integration.tick_s;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         float &vx = bodies.velocity_x[i], &vy = bodies.velocity_y[i];
-        const float square = vx * vx + vy * vy;
-        if (square > limit * limit) {
-            const float share = limit / std::sqrt(square);
-            vx *= share;
-            vy *= share;
-            ++counts.speed_limited;
-        }
-        const float way_x = (drift_x == nullptr ? vx : vx + drift_x[i]) * tick_s;
-        const float way_y = (drift_y == nullptr ? vy : vy + drift_y[i]) * tick_s;
+        float moving_x = drift_x == nullptr ? vx : vx + drift_x[i];
+        float moving_y = drift_y == nullptr ? vy : vy + drift_y[i];
+        counts.speed_limited += limit_speed(vx, vy, limit);
+        limit_speed(moving_x, moving_y, limit);
+        const float way_x = moving_x * tick_s, way_y = moving_y * tick_s;
         bodies.x[i] += to_units(way_x);
         bodies.y[i] += to_units(way_y);
         counts.too_fast += way_x * way_x + way_y * way_y > extent(i) * extent(i);
