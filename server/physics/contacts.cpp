@@ -145,7 +145,8 @@ void Contacts::find_box_pairs(const Circles& circles, const Boxes& boxes) {
     });
     for (std::size_t i = 0; i < boxes_by_left_.size(); ++i) {
         const std::uint32_t a = boxes_by_left_[i];
-        const Coordinate right = boxes.x[a] + to_units(boxes.half_width[a]);
+        // One unit more, because both halves have been rounded.
+        const Coordinate right = boxes.x[a] + to_units(boxes.half_width[a]) + 1;
         for (std::size_t j = i + 1; j < boxes_by_left_.size() && left(boxes_by_left_[j]) <= right; ++j) {
             const std::uint32_t b = boxes_by_left_[j];
             if (boxes.inverse_mass[a] + boxes.inverse_mass[b] > 0 && overlap_of(boxes, a, b).touching)
