@@ -119,18 +119,18 @@ void World::advance_tick(base::Executor& executor) {
 
     const auto tick = static_cast<std::uint32_t>(moment_.generation_tick);
     std::uint64_t alive = 0;
-    std::vector<std::uint8_t> died_out(islands_.size());
+    died_out_.assign(islands_.size(), 0);
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             if (islands_[i].living().size() == 0)
                 continue; // an island that has died out waits
             islands_[i].advance_tick(p, tick, executor);
-            died_out[i] = islands_[i].living().size() == 0;
+            died_out_[i] = islands_[i].living().size() == 0;
         }
     });
     for (std::uint32_t i = 0; i < islands_.size(); ++i) {
         alive += islands_[i].living().size();
-        if (died_out[i])
+        if (died_out_[i])
             events_.push_back(Extinction{.island = i, .generation = moment_.generation});
     }
     update_hash();

@@ -88,6 +88,7 @@ class World {
     std::vector<EventKind> events_;
     std::vector<std::vector<double>> fitness_; // of the generation that is over: per island, by id
     evolution::Progress progress_;
+    std::vector<std::uint8_t> died_out_; // in the present tick, per island; working memory, kept warm
 };
 
 } // namespace evod::simulation
