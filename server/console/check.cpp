@@ -1,0 +1,26 @@
+#include "server/console/check.h"
+
+#include "server/console/experiment_file.h"
+
+#include <iostream>
+
+namespace evod::console {
+
+int check(const std::string& path) {
+    const base::Result<simulation::Experiment> experiment = load_experiment(path);
+    if (!experiment) {
+        std::cerr << "evod check: " << base::to_text(experiment.error()) << '\n';
+        return 1;
+    }
+    std::cout << path << ": good";
+    if (!experiment->description.empty())
+        std::cout << "\n" << experiment->description;
+    const std::string changes = simulation::to_experiment_text(experiment->parameters);
+    if (changes == "{}\n")
+        std::cout << "\nEvery parameter has its default.\n";
+    else
+        std::cout << "\nParameters that differ from their defaults:\n" << changes;
+    return 0;
+}
+
+} // namespace evod::console

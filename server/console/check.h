@@ -1,0 +1,11 @@
+// `evod check`: validates an experiment file without running it.
+#pragma once
+
+#include <string>
+
+namespace evod::console {
+
+/// Prints what the file changes from the defaults, or what is wrong with it. Returns the exit status: 0, or 1 if wrong.
+int check(const std::string& path);
+
+} // namespace evod::console

@@ -1,0 +1,91 @@
+#include "server/console/experiment_file.h"
+
+#include "server/simulation/laboratory.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace evod::console {
+namespace {
+
+constexpr std::uintmax_t file_bytes_max = 1 << 20;
+
+base::Refusal refusal(base::RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+} // namespace
+
+base::Result<simulation::Experiment> load_experiment(const std::string& path) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error))
+        return refusal(base::RefusalCode::NotFound, path + ": this is a folder, not an experiment file");
+    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > file_bytes_max)
+        return refusal(base::RefusalCode::InvalidArgument, path + ": too large for an experiment file (1 MiB at most)");
+    std::ifstream file{path, std::ios::binary};
+    std::ostringstream text;
+    if (file)
+        text << file.rdbuf();
+    if (!file)
+        return refusal(base::RefusalCode::NotFound, path + ": cannot be read: " + std::strerror(errno));
+    base::Result<simulation::Experiment> experiment = simulation::parse_experiment(text.str());
+    if (!experiment) {
+        base::Refusal named = experiment.error();
+        named.message = path + ": " + named.message;
+        return named;
+    }
+    return experiment;
+}
+
+base::Result<simulation::Parameters> with_changes(const simulation::Parameters& parameters,
+                                                  const std::vector<std::string>& changes) {
+    std::vector<simulation::Assignment> assignments;
+    std::vector<base::Violation> violations;
+    for (const std::string& change : changes) {
+        const std::size_t equals = change.find('=');
+        if (equals == std::string::npos) {
+            violations.push_back({"--set", "name=value", change});
+            continue;
+        }
+        const std::string name = change.substr(0, equals), text = change.substr(equals + 1);
+        const simulation::ParameterDescription* description = simulation::find_parameter(name);
+        if (description == nullptr) {
+            assignments.push_back({name, text}); // assign() knows what to say of an unknown name
+            continue;
+        }
+        base::Result<simulation::ParameterValue> value = simulation::parse_value(*description, text);
+        if (value)
+            assignments.push_back({name, std::move(*value)});
+        else
+            violations.push_back({"--set " + name, description->allowed(), text});
+    }
+    base::Result<simulation::Parameters> changed = simulation::assign(parameters, assignments, "--set ");
+    if (!changed)
+        violations.insert(violations.end(), changed.error().violations.begin(), changed.error().violations.end());
+    if (!violations.empty())
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "some parameters cannot have these values",
+                             .violations = std::move(violations)};
+    return changed;
+}
+
+std::string world_name(const std::string& path) {
+    std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
+    for (char& c : name)
+        if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
+            c = '_';
+    return name.empty() ? "default" : name;
+}
+
+base::Seed random_seed() {
+    std::random_device entropy;
+    const std::uint64_t high = entropy();
+    return {high << 32 | entropy()};
+}
+
+} // namespace evod::console

@@ -1,0 +1,17 @@
+// Interview: asks on a terminal for population, food, poison, time and every choice of the algorithm (`--ask`).
+#pragma once
+
+#include "server/simulation/parameters.h"
+
+#include <iosfwd>
+
+namespace evod::console {
+
+/// Asks one question a parameter; an empty answer, or the end of the input, takes what is proposed. An answer that cannot
+/// be is explained and asked for again.
+///
+/// proposed  what each question proposes; valid.
+/// returns   a valid set.
+simulation::Parameters interview(const simulation::Parameters& proposed, std::istream& in, std::ostream& out);
+
+} // namespace evod::console

@@ -1,0 +1,37 @@
+#include "server/console/parameter_list.h"
+
+#include "server/simulation/parameters.h"
+
+namespace evod::console {
+namespace {
+
+const char* effect_text(base::Effect effect) {
+    switch (effect) {
+    case base::Effect::NextTick:
+        return "next tick";
+    case base::Effect::NextGeneration:
+        return "next generation";
+    case base::Effect::Reset:
+        return "reset";
+    }
+    return "";
+}
+
+} // namespace
+
+std::string parameter_list() {
+    std::string text =
+        "# Parameters\n\n"
+        "Every parameter of a world, as `evod parameters` prints it. The names are the same in experiment files, with\n"
+        "`evod run --set`, in `evoctl` and in the protocol. A change to one that holds from the *next tick* acts at\n"
+        "once, for breeding the next time it happens; from the *next generation*, when that begins; from a *reset*,\n"
+        "when the world is reset.\n\n"
+        "| name | default | allowed | unit | holds from | meaning |\n|---|---|---|---|---|---|\n";
+    for (const simulation::ParameterDescription& description : simulation::parameter_registry())
+        text += "| `" + std::string{description.name} + "` | " + simulation::to_text(description.default_value()) +
+                " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
+                effect_text(description.effect) + " | " + std::string{description.help} + " |\n";
+    return text;
+}
+
+} // namespace evod::console

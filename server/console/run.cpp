@@ -1,0 +1,173 @@
+#include "server/console/run.h"
+
+#include "server/console/experiment_file.h"
+#include "server/console/interview.h"
+#include "server/console/report.h"
+#include "server/runtime/worker_pool.h"
+#include "server/simulation/world.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+
+namespace evod::console {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+volatile std::sig_atomic_t interrupted = 0;
+extern "C" void note_interrupt(int) { interrupted = 1; }
+
+/// What the ticks of a run have cost.
+struct Cost {
+    double start_s = 0, tick_s = 0, turnover_s = 0;
+    std::uint64_t organism_ticks = 0; // organisms alive at the start of each tick, summed
+};
+
+base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
+    simulation::Experiment experiment;
+    if (!options.experiment.empty()) {
+        const auto loaded = load_experiment(options.experiment);
+        if (!loaded)
+            return loaded.error();
+        experiment = *loaded;
+    }
+    const auto changed = with_changes(experiment.parameters, options.changes);
+    if (!changed)
+        return changed.error();
+    experiment.parameters = *changed;
+    if (options.ask)
+        experiment.parameters = interview(experiment.parameters, std::cin, std::cout);
+    if (options.generations)
+        experiment.parameters.generation_limit = *options.generations;
+    if (options.seed)
+        experiment.seed = base::Seed{*options.seed};
+    if (!experiment.seed)
+        experiment.seed = random_seed();
+    return experiment;
+}
+
+/// One line on a terminal's stderr that is overwritten, at most ten times a second.
+class ProgressLine {
+  public:
+    void show(const simulation::World& world) {
+        if (!on_terminal_ || seconds_since(shown_) < 0.1)
+            return;
+        shown_ = Clock::now();
+        std::fprintf(stderr, "\rgeneration %llu  %.1f s  %llu alive \x1b[K",
+                     static_cast<unsigned long long>(world.moment().generation),
+                     static_cast<double>(world.moment().generation_tick) * world.parameters().active.tick_s,
+                     static_cast<unsigned long long>(world.alive_count()));
+    }
+    void clear() const {
+        if (on_terminal_)
+            std::fprintf(stderr, "\r\x1b[K");
+    }
+
+  private:
+    bool on_terminal_ = isatty(STDERR_FILENO) != 0;
+    Clock::time_point shown_{};
+};
+
+void print_summary(const simulation::World& world, const Cost& cost) {
+    std::printf("%llu generations, %llu ticks, %.1f simulated s; state %s\n",
+                static_cast<unsigned long long>(world.moment().generation - (world.generation_over() ? 0 : 1)),
+                static_cast<unsigned long long>(world.moment().tick), world.moment().simulated_s,
+                base::to_text(world.hash()).c_str());
+    if (cost.tick_s > 0)
+        std::printf("%.2f M organism-ticks/s, %.0f × real time (%.2f s in ticks)\n",
+                    static_cast<double>(cost.organism_ticks) / cost.tick_s / 1e6,
+                    world.moment().simulated_s / cost.tick_s, cost.tick_s);
+    std::printf("start-up %.3f s, turnover of generations %.3f s\n", cost.start_s, cost.turnover_s);
+}
+
+int status_of(evolution::Outcome outcome) {
+    switch (outcome) {
+    case evolution::Outcome::TargetFitness:
+        std::puts("ended: target_fitness was reached");
+        return LimitOrTargetReached;
+    case evolution::Outcome::GenerationLimit:
+        std::puts("ended: generation_limit was reached");
+        return LimitOrTargetReached;
+    case evolution::Outcome::Stagnation:
+        std::puts("ended: the best fitness was not beaten for stagnation_limit generations");
+        return Stagnated;
+    case evolution::Outcome::Extinction:
+        std::puts("ended: everyone died");
+        return Extinct;
+    case evolution::Outcome::Running:
+        break;
+    }
+    std::puts("ended: interrupted");
+    return Interrupted;
+}
+
+} // namespace
+
+int run(const RunOptions& options) {
+    const auto experiment = experiment_of(options);
+    if (!experiment) {
+        std::cerr << "evod run: " << base::to_text(experiment.error()) << '\n';
+        return RunError;
+    }
+    std::ofstream csv;
+    if (!options.csv.empty()) {
+        csv.open(options.csv);
+        csv << csv_heading() << '\n' << std::flush;
+        if (!csv) {
+            std::cerr << "evod run: --csv: cannot write " << options.csv << '\n';
+            return RunError;
+        }
+    }
+    std::signal(SIGINT, note_interrupt);
+    std::signal(SIGTERM, note_interrupt);
+
+    Cost cost;
+    const auto start = Clock::now();
+    const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
+    simulation::World world{experiment->parameters, *experiment->seed};
+    cost.start_s = seconds_since(start);
+
+    const bool several_islands = world.islands().size() > 1;
+    std::printf("seed %llu\n%s\n", static_cast<unsigned long long>(world.seed().value),
+                table_heading(several_islands).c_str());
+    ProgressLine progress;
+    while (!interrupted && world.outcome() == evolution::Outcome::Running) {
+        auto began = Clock::now();
+        world.turn_over(*executor);
+        cost.turnover_s += seconds_since(began);
+        began = Clock::now();
+        do {
+            cost.organism_ticks += world.has_bodies() ? world.alive_count() : 0;
+            world.advance_tick(*executor);
+            progress.show(world);
+        } while (!interrupted && !world.generation_over());
+        cost.tick_s += seconds_since(began);
+        world.take_events();
+        if (!world.generation_over())
+            break;
+        progress.clear();
+        for (const simulation::GenerationStatistics& statistics : world.history().back()) {
+            std::puts(table_row(statistics, several_islands).c_str());
+            if (csv.is_open())
+                csv << csv_row(statistics) << '\n';
+        }
+        std::fflush(stdout);
+        if (csv.is_open() && !csv.flush()) {
+            std::cerr << "evod run: --csv: cannot write " << options.csv << ", the disk may be full\n";
+            return RunError;
+        }
+    }
+    progress.clear();
+    const int status = status_of(world.outcome());
+    print_summary(world, cost);
+    return status;
+}
+
+} // namespace evod::console

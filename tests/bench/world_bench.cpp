@@ -1,0 +1,47 @@
+// Ticks of whole worlds: the default one, and the benchmark's at several populations, on one thread.
+//
+// items_per_second is organism-ticks per second: organisms alive at the start of each tick, summed, by processor time.
+#include "server/simulation/experiment.h"
+#include "server/simulation/world.h"
+#include "tests/support/inline_executor.h"
+
+#include <benchmark/benchmark.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace evod {
+namespace {
+
+simulation::Parameters experiment(const std::string& name) {
+    std::ifstream file{EVOD_EXPERIMENTS "/" + name + ".json"};
+    std::ostringstream text;
+    text << file.rdbuf();
+    return simulation::parse_experiment(text.str()).value().parameters;
+}
+
+void advance(benchmark::State& state, const simulation::Parameters& parameters) {
+    support::InlineExecutor executor;
+    simulation::World world{parameters, base::Seed{1}};
+    std::uint64_t organism_ticks = 0;
+    for (auto _ : state) {
+        organism_ticks += world.generation_over() ? parameters.population_size : world.alive_count();
+        world.advance_tick(executor);
+    }
+    state.SetItemsProcessed(static_cast<std::int64_t>(organism_ticks));
+    state.counters["real_time_factor"] = benchmark::Counter(world.moment().simulated_s, benchmark::Counter::kIsRate);
+}
+
+/// Turnovers of generations included, as they come.
+void default_world(benchmark::State& state) { advance(state, experiment("default")); }
+BENCHMARK(default_world)->Unit(benchmark::kMicrosecond)->MinTime(3);
+
+void bench_world(benchmark::State& state) {
+    simulation::Parameters parameters = experiment("bench");
+    parameters.population_size = static_cast<std::uint32_t>(state.range(0));
+    advance(state, parameters);
+}
+BENCHMARK(bench_world)->Arg(100)->Arg(1'000)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond)->MinTime(3);
+
+} // namespace
+} // namespace evod
