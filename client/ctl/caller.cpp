@@ -1,0 +1,144 @@
+#include "client/ctl/caller.h"
+
+#include "client/ctl/text.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <atomic>
+#include <csignal>
+#include <unistd.h>
+
+namespace evod::ctl {
+
+namespace {
+
+link::Endpoint endpoint_of(const std::string& text) {
+    auto endpoint = link::parse_endpoint(text);
+    if (!endpoint) {
+        throw Stop{ExitCode::Usage, endpoint.error().what};
+    }
+    return *std::move(endpoint);
+}
+
+std::atomic<bool> interrupt_seen = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write it");
+
+} // namespace
+
+Caller::Caller(const Common& common)
+    : timeout_{common.timeout()}
+    , connection_{{.server = endpoint_of(common.server),
+                   .client_name = "evoctl",
+                   .client_version = EVOD_VERSION,
+                   .connect_timeout = common.timeout()}} {
+    auto welcome = connection_.wait_connected(timeout_ + std::chrono::seconds{1});
+    if (!welcome) {
+        throw Stop{ExitCode::NoConnection, welcome.error().what};
+    }
+    welcome_ = *std::move(welcome);
+}
+
+v1::Response Caller::call(v1::Request request) {
+    auto response = connection_.request(std::move(request), timeout_);
+    if (!response) {
+        const bool usage = response.error().kind == link::Error::Kind::Usage;
+        throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection, response.error().what};
+    }
+    if (!link::accepted(*response)) {
+        throw Stop{ExitCode::Refused, link::to_text(response->status())};
+    }
+    return *std::move(response);
+}
+
+Registry Caller::registry() {
+    v1::Request request;
+    request.mutable_describe();
+    return Registry{call(std::move(request)).description()};
+}
+
+v1::WorldInfo Caller::world(const std::string& name) {
+    v1::Request request;
+    request.mutable_get_statistics()->set_world(name);
+    return call(std::move(request)).statistics().world();
+}
+
+std::string to_json(const google::protobuf::Message& message, bool many_lines) {
+    google::protobuf::util::JsonPrintOptions options;
+    options.preserve_proto_field_names = true;
+    options.always_print_primitive_fields = true;
+    options.add_whitespace = many_lines;
+    std::string text;
+    if (const auto status = google::protobuf::util::MessageToJsonString(message, &text, options); !status.ok()) {
+        throw Stop{ExitCode::Refused, "the answer cannot be written as JSON: " + std::string{status.message()}};
+    }
+    if (!text.ends_with('\n')) {
+        text += '\n';
+    }
+    return text;
+}
+
+std::string state_of(const v1::WorldInfo& world) {
+    switch (world.state()) {
+    case v1::RUN_STATE_WAITING:
+        return "waiting";
+    case v1::RUN_STATE_RUNNING:
+        return "running";
+    case v1::RUN_STATE_PAUSED:
+        return "paused";
+    case v1::RUN_STATE_TERMINATED:
+        switch (world.outcome()) {
+        case v1::OUTCOME_GENERATION_LIMIT:
+            return "ended: generation limit";
+        case v1::OUTCOME_TARGET_FITNESS:
+            return "ended: target fitness";
+        case v1::OUTCOME_STAGNATION:
+            return "ended: stagnation";
+        case v1::OUTCOME_EXTINCTION:
+            return "ended: extinction";
+        default:
+            return "ended";
+        }
+    default:
+        return "unknown";
+    }
+}
+
+std::string to_text(const v1::Speed& speed) {
+    return speed.has_real_time_factor() ? exact(speed.real_time_factor()) + "x" : "max";
+}
+
+std::string sentence(const v1::WorldInfo& world) {
+    std::string text = world.name() + ": " + state_of(world) + " at " + to_text(world.speed()) + ", generation " +
+                       std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
+                       duration(world.simulated_s()) + ")";
+    if (world.has_run_until_generation()) {
+        text += ", until generation " + std::to_string(world.run_until_generation()) + " begins";
+    }
+    if (world.has_run_until_tick()) {
+        text += ", until tick " + std::to_string(world.run_until_tick());
+    }
+    return text;
+}
+
+void stop_for(const std::string& what, const Mistakes& mistakes) {
+    std::string text = what;
+    for (const std::string& line : mistakes.lines) {
+        text += (text.empty() ? "" : "\n  ") + line;
+    }
+    throw Stop{ExitCode::Usage, text};
+}
+
+void catch_interrupts() {
+    std::signal(SIGINT, [](int) { interrupt_seen = true; });
+    std::signal(SIGTERM, [](int) { interrupt_seen = true; });
+}
+
+bool interrupted() {
+    return interrupt_seen;
+}
+
+bool on_terminal() {
+    return ::isatty(STDOUT_FILENO) == 1;
+}
+
+} // namespace evod::ctl

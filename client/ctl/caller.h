@@ -1,0 +1,100 @@
+// Caller: one call's line to the server. What goes wrong ends the call: see Stop.
+#pragma once
+
+#include "client/ctl/registry.h"
+#include "client/ctl/stop.h"
+#include "client/link/connection.h"
+
+#include <google/protobuf/message.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace evod::ctl {
+
+/// What every subcommand can be given.
+struct Common {
+    std::string server = "localhost";
+    std::string world; // empty: the server's only one, or `default`
+    double timeout_s = 10;
+    bool json = false;
+
+    std::chrono::milliseconds timeout() const {
+        return std::chrono::milliseconds{static_cast<std::int64_t>(timeout_s * 1000)};
+    }
+};
+
+/// The subcommand that was given, to be run when the whole command line has been read.
+using Selected = std::function<void()>;
+
+class Caller {
+  public:
+    /// Connects, or throws Stop.
+    explicit Caller(const Common& common);
+
+    /// The server's answer; throws Stop if it refuses or none comes.
+    v1::Response call(v1::Request request);
+
+    /// The server's registry of parameters.
+    Registry registry();
+    /// The world that is meant, as it is now.
+    v1::WorldInfo world(const std::string& name);
+
+    link::Connection& connection() { return connection_; }
+    const v1::Welcome& welcome() const { return welcome_; }
+    std::chrono::milliseconds timeout() const { return timeout_; }
+
+  private:
+    std::chrono::milliseconds timeout_;
+    link::Connection connection_;
+    v1::Welcome welcome_;
+};
+
+/// JSON with the names of the .proto files; on one line or many.
+std::string to_json(const google::protobuf::Message& message, bool many_lines = true);
+
+/// Prints an answer as JSON if that was asked for, else as `text` writes it.
+template <class Text>
+void print(const Common& common, const google::protobuf::Message& answer, const Text& text) {
+    const std::string output = common.json ? to_json(answer) : text();
+    std::fwrite(output.data(), 1, output.size(), stdout);
+}
+
+/// "running", "paused", …
+std::string state_of(const v1::WorldInfo& world);
+/// "2x", "max".
+std::string to_text(const v1::Speed& speed);
+/// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
+std::string sentence(const v1::WorldInfo& world);
+
+/// Throws Stop with every mistake on a line of its own.
+[[noreturn]] void stop_for(const std::string& what, const Mistakes& mistakes);
+
+/// Ctrl-C from here on sets a flag instead of ending the program.
+void catch_interrupts();
+bool interrupted();
+/// Whether people are looking at stdout.
+bool on_terminal();
+
+/// For numbers on the command line: what is wrong with "0", else nothing.
+inline std::string at_least_one(const std::string& word) {
+    return word == "0" ? "must be at least 1" : "";
+}
+
+/// Each adds its subcommands to `app`; `selected` becomes the one that was given.
+void add_look_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_parameter_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_run_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_watch_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_complete_command(CLI::App& app, Selected& selected);
+
+/// Prints what may come next after `words`, the last of which is being typed; nothing where no server is needed and
+/// none is there.
+void complete(CLI::App& app, const std::vector<std::string>& words);
+
+} // namespace evod::ctl

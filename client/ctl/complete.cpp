@@ -1,0 +1,153 @@
+// Completion: `evoctl complete bash` prints the script for bash; the script asks `evoctl complete -- words…`.
+#include "client/ctl/caller.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+
+namespace evod::ctl {
+
+namespace {
+
+// Bash cuts words at '=' and ':' in COMP_WORDS, so the line is cut here, at blanks; and readline puts in only what
+// comes after the last '=', so what stands before it is taken off the answers.
+constexpr const char* bash_script = R"(# Completion of evoctl for bash. Use it: source <(evoctl complete bash)
+_evoctl() {
+    local line=${COMP_LINE:0:COMP_POINT} words word current
+    read -ra words <<< "$line"
+    [[ $line == *[[:space:]] ]] && words+=("")
+    current=${words[-1]}
+    COMPREPLY=()
+    while IFS= read -r word; do
+        [[ $current == *=* && $COMP_WORDBREAKS == *=* ]] && word=${word#*=}
+        COMPREPLY+=("$word")
+    done < <("${words[0]}" complete -- "${words[@]:1}" 2> /dev/null)
+    [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]] && compopt -o nospace
+}
+complete -F _evoctl evoctl
+)";
+
+/// Prints those of `candidates` that begin like the word being typed.
+class Candidates {
+  public:
+    explicit Candidates(std::string word) : word_{std::move(word)} {}
+    void add(const std::string& candidate) const {
+        if (candidate.starts_with(word_)) {
+            std::cout << candidate << '\n';
+        }
+    }
+
+  private:
+    std::string word_;
+};
+
+/// The server named by the words or the environment; a short wait, for someone is typing.
+Common common_of(const std::vector<std::string>& words) {
+    Common common;
+    common.timeout_s = 1;
+    if (const char* server = std::getenv("EVOD_SERVER")) {
+        common.server = server;
+    }
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+        if (words[i] == "--server") {
+            common.server = words[i + 1];
+        }
+    }
+    return common;
+}
+
+void complete_parameter(const Registry& registry, const std::string& word, bool with_value) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || !with_value) {
+        for (const auto& parameter : registry.parameters()) {
+            Candidates{word}.add(parameter.name() + (with_value ? "=" : ""));
+        }
+        return;
+    }
+    const std::string name = word.substr(0, equals);
+    if (const auto* parameter = registry.find(name)) {
+        for (const std::string& choice : parameter->choices()) {
+            Candidates{word}.add(name + "=" + choice);
+        }
+        if (parameter->kind() == v1::PARAMETER_KIND_FLAG) {
+            Candidates{word}.add(name + "=true");
+            Candidates{word}.add(name + "=false");
+        }
+    }
+}
+
+void complete_world(const Common& common, const std::string& word) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_list_worlds();
+    for (const auto& world : caller.call(std::move(request)).worlds().worlds()) {
+        Candidates{word}.add(world.name());
+    }
+}
+
+void complete_options(const CLI::App& app, const std::string& word) {
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            Candidates{word}.add("--" + name);
+        }
+    }
+}
+
+} // namespace
+
+void complete(CLI::App& app, const std::vector<std::string>& words) {
+    const std::string word = words.empty() ? "" : words.back();
+    const std::vector<std::string> before{words.begin(), words.empty() ? words.end() : words.end() - 1};
+    const CLI::App* command = nullptr;
+    for (std::size_t i = 0; i < before.size() && command == nullptr; ++i) {
+        const bool value = i > 0 && (before[i - 1] == "--server" || before[i - 1] == "--world");
+        const auto all = app.get_subcommands([](const CLI::App*) { return true; });
+        const auto found = std::ranges::find_if(all, [&](const CLI::App* a) { return a->get_name() == before[i]; });
+        if (!value && found != all.end()) {
+            command = *found;
+        }
+    }
+    const std::string last = before.empty() ? "" : before.back();
+    try {
+        if (last == "--server" || last == "--experiment") {
+            return; // hosts and files are not ours to know
+        }
+        if (last == "--world") {
+            complete_world(common_of(before), word);
+        } else if (word.starts_with('-')) {
+            complete_options(app, word);
+            if (command != nullptr) {
+                complete_options(*command, word);
+            }
+        } else if (command == nullptr) {
+            for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+                Candidates{word}.add(subcommand->get_name());
+            }
+        } else if (const std::string& name = command->get_name();
+                   name == "set" || name == "get" || name == "params" ||
+                   (name == "create" && std::ranges::find(before, "--set") != before.end())) {
+            complete_parameter(Caller{common_of(before)}.registry(), word, name == "set" || name == "create");
+        } else if (name == "delete") {
+            complete_world(common_of(before), word);
+        } else if (name == "speed") {
+            Candidates{word}.add("max");
+        } else if (name == "complete") {
+            Candidates{word}.add("bash");
+        }
+    } catch (const Stop&) {
+        // Someone is typing: an error here would only be in the way.
+    }
+}
+
+void add_complete_command(CLI::App& app, Selected& selected) {
+    auto* command = app.add_subcommand("complete", "Completion for a shell: source <(evoctl complete bash)");
+    command->group("Shell");
+    auto shell = std::make_shared<std::string>();
+    command->add_option("SHELL", *shell, "bash")->required()->check(CLI::IsMember({"bash"}));
+    command->callback([&selected, shell] { selected = [] { std::cout << bash_script; }; });
+}
+
+} // namespace evod::ctl

@@ -1,0 +1,121 @@
+#include "client/ctl/experiment_file.h"
+
+#include "client/ctl/text.h"
+
+#include <boost/json.hpp>
+
+#include <algorithm>
+
+namespace evod::ctl {
+
+namespace json = boost::json;
+
+namespace {
+
+/// A JSON value as the word that would be typed for it; nullopt for null, arrays and objects.
+std::optional<std::string> word_of(const json::value& value) {
+    switch (value.kind()) {
+    case json::kind::bool_:
+        return value.get_bool() ? "true" : "false";
+    case json::kind::int64:
+        return std::to_string(value.get_int64());
+    case json::kind::uint64:
+        return std::to_string(value.get_uint64());
+    case json::kind::double_:
+        return exact(value.get_double());
+    case json::kind::string:
+        return std::string{value.get_string()};
+    default:
+        return std::nullopt;
+    }
+}
+
+/// Whether JSON's type fits: a number in quotes is a mistake, though its word could be read.
+bool fits(const json::value& value, v1::ParameterKind kind) {
+    switch (kind) {
+    case v1::PARAMETER_KIND_FLAG:
+        return value.is_bool();
+    case v1::PARAMETER_KIND_CHOICE:
+        return value.is_string();
+    default:
+        return value.is_number();
+    }
+}
+
+void read_parameter(const std::string& name, const json::value& value, const Registry& registry, ExperimentFile& file,
+                    Mistakes& mistakes) {
+    const auto* parameter = registry.find(name);
+    if (parameter == nullptr) {
+        mistakes.lines.push_back(registry.unknown(name));
+        return;
+    }
+    if (!fits(value, parameter->kind())) {
+        mistakes.lines.push_back(name + ": got " + json::serialize(value) + ", allowed " + allowed(*parameter));
+        return;
+    }
+    auto parsed = parse_value(*parameter, *word_of(value));
+    if (!parsed) {
+        mistakes.add(parsed.error());
+        return;
+    }
+    auto& assignment = file.parameters.emplace_back();
+    assignment.set_name(name);
+    *assignment.mutable_value() = *std::move(parsed);
+}
+
+} // namespace
+
+Checked<ExperimentFile> parse_experiment(std::string_view text, const Registry& registry) {
+    json::error_code error;
+    json::stream_parser parser;
+    const std::size_t read = parser.write_some(text.data(), text.size(), error);
+    if (!error && !parser.done()) {
+        error = json::error::incomplete;
+    }
+    const bool rest = !error && text.find_first_not_of(" \t\r\n", read) != std::string_view::npos;
+    if (error || rest) {
+        const auto line = 1 + std::ranges::count(text.substr(0, read), '\n');
+        return Mistakes{
+            {"line " + std::to_string(line) + ": " + (rest ? "more than one JSON value" : error.message())}};
+    }
+    const json::value document = parser.release();
+    if (!document.is_object()) {
+        return Mistakes{{"an experiment is a JSON object: { \"population_size\": 50, … }"}};
+    }
+    ExperimentFile file;
+    Mistakes mistakes;
+    for (const auto& [key, value] : document.get_object()) {
+        const std::string name{key};
+        if (name == "description") {
+            if (value.is_string()) {
+                file.description = std::string{value.get_string()};
+            } else {
+                mistakes.lines.push_back("description: got " + json::serialize(value) + ", allowed a text");
+            }
+        } else if (name == "seed") {
+            json::error_code not_a_number;
+            file.seed = value.to_number<std::uint64_t>(not_a_number);
+            if (not_a_number) {
+                mistakes.lines.push_back("seed: got " + json::serialize(value) + ", allowed 0 to 2^64 - 1, whole");
+            }
+        } else {
+            read_parameter(name, value, registry, file, mistakes);
+        }
+    }
+    if (!mistakes.lines.empty()) {
+        return mistakes;
+    }
+    const auto named = [&](std::string_view name) {
+        return std::ranges::find_if(file.parameters, [&](const auto& p) { return p.name() == name; });
+    };
+    if (const auto population = named("population_size"); population != file.parameters.end() &&
+                                                          named("reference_population") == file.parameters.end() &&
+                                                          registry.find("reference_population") != nullptr) {
+        v1::ParameterAssignment reference = *population;
+        reference.set_name("reference_population");
+        file.parameters.push_back(std::move(reference));
+    }
+    return file;
+}
+
+} // namespace evod::ctl

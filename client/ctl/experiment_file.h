@@ -1,0 +1,23 @@
+// Experiment files: a flat JSON object of parameters by name, with optional "seed" and "description".
+#pragma once
+
+#include "client/ctl/registry.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evod::ctl {
+
+struct ExperimentFile {
+    std::vector<v1::ParameterAssignment> parameters;
+    std::optional<std::uint64_t> seed;
+    std::string description;
+};
+
+/// As the server reads such a file: reference_population follows population_size where the file names only that.
+Checked<ExperimentFile> parse_experiment(std::string_view text, const Registry& registry);
+
+} // namespace evod::ctl

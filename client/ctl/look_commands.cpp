@@ -1,0 +1,330 @@
+// What only reads: status, worlds, stats, history, organism, describe.
+#include "client/ctl/caller.h"
+#include "client/ctl/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace evod::ctl {
+
+namespace {
+
+using Align = Table::Align;
+
+v1::WorldList worlds_of(Caller& caller) {
+    v1::Request request;
+    request.mutable_list_worlds();
+    return caller.call(std::move(request)).worlds();
+}
+
+void status(const Common& common) {
+    Caller caller{common};
+    v1::WorldList worlds = worlds_of(caller);
+    if (!common.world.empty()) {
+        v1::WorldList one;
+        *one.add_worlds() = caller.world(common.world); // the server says if there is none of that name
+        worlds = std::move(one);
+    }
+    print(common, worlds, [&] {
+        Table table{{{"WORLD"},
+                     {"STATE"},
+                     {"SPEED", Align::Right},
+                     {"GENERATION", Align::Right},
+                     {"TICK", Align::Right},
+                     {"SIMULATED", Align::Right},
+                     {"TICKS/S", Align::Right},
+                     {"ISLANDS", Align::Right},
+                     {"SEED", Align::Right}}};
+        for (const auto& world : worlds.worlds()) {
+            table.add({world.name(), state_of(world), to_text(world.speed()), std::to_string(world.generation()),
+                       std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
+                       std::to_string(world.island_count()), std::to_string(world.seed())});
+        }
+        return "evod " + caller.welcome().server_version() + " at " +
+               link::to_text(*link::parse_endpoint(common.server)) + "\n" +
+               (worlds.worlds().empty() ? "no worlds: make one with `evoctl create NAME`\n" : table.to_text());
+    });
+}
+
+void list_worlds(const Common& common) {
+    Caller caller{common};
+    const v1::WorldList worlds = worlds_of(caller);
+    print(common, worlds, [&] {
+        std::string text;
+        for (const auto& world : worlds.worlds()) {
+            text += world.name() + "\n";
+        }
+        return text;
+    });
+}
+
+std::string gene_text(const google::protobuf::RepeatedPtrField<v1::GeneStatistics>& genes, const v1::WorldInfo& world) {
+    Table table{
+        {{"GENE"}, {"MEAN", Align::Right}, {"DEVIATION", Align::Right}, {"MIN", Align::Right}, {"MAX", Align::Right}}};
+    for (int i = 0; i < genes.size(); ++i) {
+        const auto& gene = genes[i];
+        table.add({i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i), fixed(gene.mean(), 1),
+                   fixed(gene.deviation(), 1), fixed(gene.min(), 1), fixed(gene.max(), 1)});
+    }
+    return table.to_text();
+}
+
+Table generation_table() {
+    return Table{{{"GENERATION", Align::Right},
+                  {"ISLAND", Align::Right},
+                  {"BEST", Align::Right},
+                  {"MEAN", Align::Right},
+                  {"MEDIAN", Align::Right},
+                  {"WORST", Align::Right},
+                  {"DIVERSITY", Align::Right},
+                  {"ALIVE", Align::Right},
+                  {"STARVED", Align::Right},
+                  {"POISONED", Align::Right},
+                  {"LENGTH", Align::Right}}};
+}
+
+void add_generation(Table& table, const v1::GenerationStatistics& g) {
+    table.add({std::to_string(g.generation()), std::to_string(g.island()), fixed(g.fitness_best(), 1),
+               fixed(g.fitness_mean(), 1), fixed(g.fitness_median(), 1), fixed(g.fitness_worst(), 1),
+               fixed(g.diversity(), 3), std::to_string(g.alive_count()) + "/" + std::to_string(g.organism_count()),
+               std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
+}
+
+void statistics(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_get_statistics()->set_world(common.world);
+    const v1::Statistics statistics = caller.call(std::move(request)).statistics();
+    print(common, statistics, [&] {
+        std::string text = sentence(statistics.world()) + "\n";
+        if (statistics.live_size() > 0) {
+            Table live{{{"ISLAND", Align::Right},
+                        {"ALIVE", Align::Right},
+                        {"HEALTH", Align::Right},
+                        {"STARVED", Align::Right},
+                        {"POISONED", Align::Right},
+                        {"FOOD EATEN", Align::Right},
+                        {"POISON EATEN", Align::Right}}};
+            for (const auto& island : statistics.live()) {
+                live.add({std::to_string(island.island()),
+                          std::to_string(island.alive_count()) + "/" + std::to_string(island.organism_count()),
+                          fixed(island.health_mean(), 1), std::to_string(island.starved_count()),
+                          std::to_string(island.poisoned_count()), std::to_string(island.food_eaten()),
+                          std::to_string(island.poison_eaten())});
+            }
+            text += "\nnow\n" + live.to_text();
+        }
+        if (statistics.last_size() > 0) {
+            Table last = generation_table();
+            for (const auto& island : statistics.last()) {
+                add_generation(last, island);
+            }
+            text += "\nthe last generation\n" + last.to_text();
+            for (const auto& island : statistics.last()) {
+                text += "\ngenes of its island " + std::to_string(island.island()) + "\n" +
+                        gene_text(island.genes(), statistics.world());
+            }
+        }
+        return text;
+    });
+}
+
+// ---- history ---------------------------------------------------------------------------------------------------
+
+struct HistoryOptions {
+    bool csv = false;
+    std::optional<std::uint64_t> from, to;
+    std::optional<std::uint32_t> island;
+};
+
+v1::History history_of(Caller& caller, const Common& common, const HistoryOptions& options) {
+    v1::History all;
+    std::optional<std::uint64_t> next = options.from;
+    do {
+        v1::Request request;
+        auto& page = *request.mutable_get_history();
+        page.set_world(common.world);
+        if (next) {
+            page.set_first_generation(*next);
+        }
+        if (options.to) {
+            page.set_last_generation(*options.to);
+        }
+        if (options.island) {
+            page.set_island(*options.island);
+        }
+        v1::Response response = caller.call(std::move(request));
+        auto& history = *response.mutable_history();
+        const std::optional<std::uint64_t> before = next;
+        next = history.has_next_generation() ? std::optional{history.next_generation()} : std::nullopt;
+        if (next && before && *next <= *before) {
+            throw Stop{ExitCode::Refused,
+                       "the server's history does not go on after generation " + std::to_string(*before)};
+        }
+        all.mutable_generations()->MergeFrom(history.generations());
+    } while (next);
+    return all;
+}
+
+std::string csv_of(const v1::History& history, const v1::WorldInfo& world) {
+    std::string text = "generation,island,end_tick,simulated_s,organism_count,fitness_best,fitness_mean,fitness_median,"
+                       "fitness_worst,fitness_deviation,diversity,alive_count,starved_count,poisoned_count,food_eaten,"
+                       "poison_eaten,clamp_count,too_fast_count,speed_limit_count,best_organism";
+    for (const std::string& gene : world.gene_names()) {
+        for (const char* column : {"_mean", "_deviation", "_min", "_max"}) {
+            text += "," + gene + column;
+        }
+    }
+    text += "\n";
+    for (const auto& g : history.generations()) {
+        const auto add = [&](const std::string& cell) { text += "," + cell; };
+        text += std::to_string(g.generation());
+        add(std::to_string(g.island()));
+        add(std::to_string(g.end_tick()));
+        add(exact(g.simulated_s()));
+        add(std::to_string(g.organism_count()));
+        for (const double value : {g.fitness_best(), g.fitness_mean(), g.fitness_median(), g.fitness_worst(),
+                                   g.fitness_deviation(), g.diversity()}) {
+            add(exact(value));
+        }
+        for (const std::uint64_t count : std::initializer_list<std::uint64_t>{
+                 g.alive_count(), g.starved_count(), g.poisoned_count(), g.food_eaten(), g.poison_eaten(),
+                 g.clamp_count(), g.too_fast_count(), g.speed_limit_count(), g.best_organism()}) {
+            add(std::to_string(count));
+        }
+        for (const auto& gene : g.genes()) {
+            for (const double value : {gene.mean(), gene.deviation(), gene.min(), gene.max()}) {
+                add(exact(value));
+            }
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+void history(const Common& common, const HistoryOptions& options) {
+    if (options.from && options.to && *options.from > *options.to) {
+        throw Stop{ExitCode::Usage,
+                   "--from " + std::to_string(*options.from) + " is after --to " + std::to_string(*options.to)};
+    }
+    Caller caller{common};
+    const v1::History all = history_of(caller, common, options);
+    print(common, all, [&] {
+        if (options.csv) {
+            return csv_of(all, caller.world(common.world));
+        }
+        Table table = generation_table();
+        for (const auto& generation : all.generations()) {
+            add_generation(table, generation);
+        }
+        return all.generations().empty() ? std::string{"no generation has ended yet\n"} : table.to_text();
+    });
+}
+
+// ---- organism, describe ----------------------------------------------------------------------------------------
+
+void organism(const Common& common, std::uint32_t id, std::uint32_t island) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_get_organism()->set_world(common.world);
+    request.mutable_get_organism()->set_organism(id);
+    request.mutable_get_organism()->set_island(island);
+    const v1::OrganismInfo info = caller.call(std::move(request)).organism();
+    print(common, info, [&] {
+        const v1::WorldInfo world = caller.world(common.world);
+        std::string text = "organism " + std::to_string(info.id()) + " of island " + std::to_string(info.island()) +
+                           ", generation " + std::to_string(info.generation()) + ": ";
+        if (info.alive()) {
+            text += "alive, health " + fixed(info.health(), 1);
+        } else {
+            text += info.cause_of_death() == v1::CAUSE_OF_DEATH_POISONED ? "poisoned" : "starved";
+        }
+        text += ", lived " + duration(info.lived_s()) + "\n  ate " + std::to_string(info.food_eaten()) + " food and " +
+                std::to_string(info.poison_eaten()) + " poison\n";
+        if (info.alive()) {
+            text += "  at " + fixed(info.x_px(), 1) + ", " + fixed(info.y_px(), 1) + " px, moving " +
+                    fixed(info.velocity_x_px_s(), 1) + ", " + fixed(info.velocity_y_px_s(), 1) + " px/s\n";
+        }
+        text += "  radius " + fixed(info.radius_px(), 2) + " px, mass " + fixed(info.mass_kg(), 2) + " kg\n";
+        if (info.parents_size() > 0) {
+            text += "  parents in the generation before:";
+            for (const std::uint32_t parent : info.parents()) {
+                text += " " + std::to_string(parent);
+            }
+            text += "\n";
+        }
+        Table genes{{{"  GENE"}, {"VALUE", Align::Right}}};
+        for (int i = 0; i < info.genes_size(); ++i) {
+            genes.add({"  " + (i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i)),
+                       fixed(info.genes(i), 2)});
+        }
+        return text + genes.to_text();
+    });
+}
+
+void describe(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_describe();
+    const v1::Description description = caller.call(std::move(request)).description();
+    print(common, description, [&] {
+        const v1::Welcome& welcome = caller.welcome();
+        std::string text = "evod " + welcome.server_version() + ", protocol version " +
+                           std::to_string(welcome.protocol_version()) + ", instance " + welcome.instance_id() +
+                           "\nfeatures:";
+        for (const std::string& feature : welcome.features()) {
+            text += " " + feature;
+        }
+        text += "\n" + std::to_string(description.parameters_size()) +
+                " parameters: see `evoctl params`\nthe protocol's own description: " +
+                std::to_string(description.file_descriptor_set().size()) + " bytes, in --json\n\n";
+        Table limits{{{"LIMIT"}, {"VALUE", Align::Right}}};
+        const auto* descriptor = v1::Limits::descriptor();
+        const auto* reflection = v1::Limits::GetReflection();
+        for (int i = 0; i < descriptor->field_count(); ++i) {
+            const auto* field = descriptor->field(i);
+            const bool real = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
+            limits.add({field->name(), real ? exact(reflection->GetDouble(description.limits(), field))
+                                            : std::to_string(reflection->GetUInt32(description.limits(), field))});
+        }
+        return text + limits.to_text();
+    });
+}
+
+} // namespace
+
+void add_look_commands(CLI::App& app, const Common& common, Selected& selected) {
+    const char* const group = "Look";
+    app.add_subcommand("status", "The server and its worlds at a glance")->group(group)->callback([&] {
+        selected = [&] { status(common); };
+    });
+    app.add_subcommand("worlds", "The names of all worlds, a line each")->group(group)->callback([&] {
+        selected = [&] { list_worlds(common); };
+    });
+    app.add_subcommand("stats", "How a world is doing: now, and in the last generation")->group(group)->callback([&] {
+        selected = [&] { statistics(common); };
+    });
+
+    auto* past = app.add_subcommand("history", "The statistics of ended generations")->group(group);
+    auto options = std::make_shared<HistoryOptions>();
+    past->add_flag("--csv", options->csv, "Comma-separated, with every column and the genes");
+    past->add_option("--from", options->from, "First generation; without it the oldest that is kept");
+    past->add_option("--to", options->to, "Last generation; without it the last that has ended");
+    past->add_option("--island", options->island, "One island only, from 0");
+    past->footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
+    past->callback([&, options] { selected = [&, options] { history(common, *options); }; });
+
+    auto* one = app.add_subcommand("organism", "One organism, its genes, life and parents")->group(group);
+    auto id = std::make_shared<std::uint32_t>(0), island = std::make_shared<std::uint32_t>(0);
+    one->add_option("ID", *id, "Birth order within the generation, from 0")->required();
+    one->add_option("--island", *island, "Island, from 0");
+    one->callback([&, id, island] { selected = [&, id, island] { organism(common, *id, *island); }; });
+
+    app.add_subcommand("describe", "The server: version, features, limits")->group(group)->callback([&] {
+        selected = [&] { describe(common); };
+    });
+}
+
+} // namespace evod::ctl

@@ -1,0 +1,82 @@
+// evoctl: one command a call, to a server of evod.
+#include "client/ctl/caller.h"
+#include "client/ctl/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace evod::ctl;
+
+namespace {
+
+/// The first word that must be a command is looked at before the rest: a slip of the finger should be told as one.
+void require_known_command(const CLI::App& app, int argc, char** argv) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--server" || word == "--world" || word == "--timeout") {
+            ++i; // its value
+        } else if (!word.starts_with('-')) {
+            if (std::ranges::find(names, word) == names.end()) {
+                throw Stop{ExitCode::Usage,
+                           "there is no command '" + word + "'" + did_you_mean(word, names) + "\nSee evoctl --help"};
+            }
+            return;
+        }
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Common common;
+    Selected selected;
+    CLI::App app{"evoctl: one command a call, to a server of evod", "evoctl"};
+    app.set_version_flag("--version", "evoctl " EVOD_VERSION);
+    app.add_option("--server", common.server, "HOST:PORT of the server")->envname("EVOD_SERVER")->capture_default_str();
+    app.add_option("--world", common.world, "World; without it the only one, or 'default'")->envname("EVOD_WORLD");
+    app.add_option("--timeout", common.timeout_s, "Seconds to wait for an answer")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 86400.0));
+    app.add_flag("--json", common.json, "Print the answer as JSON");
+    app.require_subcommand(1);
+    app.fallthrough();
+    app.get_formatter()->column_width(32);
+    app.footer("Examples:\n"
+               "  evoctl run 50 --wait                  fifty generations\n"
+               "  evoctl set selection=tournament       while it runs\n"
+               "  evoctl --server lab:7744 watch        live, from another machine\n"
+               "\n"
+               "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer");
+    add_run_commands(app, common, selected);
+    add_parameter_commands(app, common, selected);
+    add_look_commands(app, common, selected);
+    add_watch_commands(app, common, selected);
+    add_complete_command(app, selected);
+
+    if (argc > 2 && std::strcmp(argv[1], "complete") == 0 && std::strcmp(argv[2], "--") == 0) {
+        complete(app, {argv + 3, argv + argc});
+        return static_cast<int>(ExitCode::Ok);
+    }
+    try {
+        require_known_command(app, argc, argv);
+        app.parse(argc, argv);
+        selected();
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? static_cast<int>(ExitCode::Ok) : static_cast<int>(ExitCode::Usage);
+    } catch (const Stop& stop) {
+        if (!stop.text.empty()) {
+            std::cerr << "evoctl: " << stop.text << '\n';
+        }
+        return static_cast<int>(stop.code);
+    }
+    return static_cast<int>(ExitCode::Ok);
+}

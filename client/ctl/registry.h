@@ -1,0 +1,54 @@
+// Registry: what the server says about its parameters, and how words become values of the right kind.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+
+#include <boost/system/result.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evod::ctl {
+
+/// What is wrong with each word that was given, a line each.
+struct Mistakes {
+    std::vector<std::string> lines;
+    void add(const Mistakes& more) { lines.insert(lines.end(), more.lines.begin(), more.lines.end()); }
+};
+[[noreturn]] void throw_exception_from_error(const Mistakes& mistakes, const boost::source_location& where);
+
+template <class T>
+using Checked = boost::system::result<T, Mistakes>;
+
+class Registry {
+  public:
+    explicit Registry(const v1::Description& description)
+        : parameters_{description.parameters().begin(), description.parameters().end()} {}
+
+    const std::vector<v1::ParameterDescription>& parameters() const { return parameters_; }
+    const v1::ParameterDescription* find(std::string_view name) const;
+    std::vector<std::string> names() const;
+
+    /// "there is no parameter 'mutation_chanse'; did you mean mutation_chance?"
+    std::string unknown(std::string_view name) const;
+
+    /// Words of the form name=value. Ranges are left to the server, which tells all that is wrong with them at once.
+    Checked<std::vector<v1::ParameterAssignment>> assignments(const std::vector<std::string>& words) const;
+
+  private:
+    std::vector<v1::ParameterDescription> parameters_;
+};
+
+/// A value of the parameter's kind from a word: numbers as usual (a count may be written 1e6), flags as true, on, yes,
+/// 1 and their opposites, choices by name.
+Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& parameter, std::string_view word);
+
+/// As it would be typed: "0.15", "true", "roulette"; "-" for none.
+std::string to_text(const v1::ParameterValue& value);
+/// "0 to 1", "true or false", "roulette, tournament".
+std::string allowed(const v1::ParameterDescription& parameter);
+/// "next tick", "next generation", "reset".
+std::string effect_of(const v1::ParameterDescription& parameter);
+
+} // namespace evod::ctl

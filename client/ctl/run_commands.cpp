@@ -1,0 +1,355 @@
+// What changes a world's course: create, delete, reset, start, run, pause, resume, step, until, speed.
+#include "client/ctl/caller.h"
+#include "client/ctl/experiment_file.h"
+#include "client/ctl/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+
+namespace evod::ctl {
+
+namespace {
+
+void print_world(const Common& common, const v1::Response& response) {
+    print(common, response, [&] { return sentence(response.world()) + "\n"; });
+}
+
+// ---- create, delete, reset -------------------------------------------------------------------------------------
+
+struct CreateOptions {
+    std::string name, experiment;
+    std::vector<std::string> words;
+    std::optional<std::uint64_t> seed;
+};
+
+ExperimentFile read_experiment(const std::string& path, const Registry& registry) {
+    std::ifstream file{path, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    if (!file.is_open() || file.bad()) {
+        throw Stop{ExitCode::Usage, "the experiment file " + path + " cannot be read"};
+    }
+    auto experiment = parse_experiment(text, registry);
+    if (!experiment) {
+        stop_for("the experiment file " + path + " is wrong:", experiment.error());
+    }
+    return *std::move(experiment);
+}
+
+void create(const Common& common, const CreateOptions& options) {
+    Caller caller{common};
+    v1::Request request;
+    auto& command = *request.mutable_create_world();
+    command.set_name(options.name);
+    std::optional<std::uint64_t> seed;
+    if (!options.experiment.empty() || !options.words.empty()) {
+        const Registry registry = caller.registry();
+        if (!options.experiment.empty()) {
+            const ExperimentFile file = read_experiment(options.experiment, registry);
+            command.mutable_parameters()->Assign(file.parameters.begin(), file.parameters.end());
+            seed = file.seed;
+        }
+        auto assignments = registry.assignments(options.words);
+        if (!assignments) {
+            stop_for("nothing was created:", assignments.error());
+        }
+        for (const auto& assignment : *assignments) {
+            // What is typed wins over the file; the server takes each name once.
+            auto& given = *command.mutable_parameters();
+            const auto same = std::ranges::find_if(given, [&](const auto& g) { return g.name() == assignment.name(); });
+            *(same == given.end() ? given.Add() : &*same) = assignment;
+        }
+    }
+    if (options.seed) {
+        seed = options.seed;
+    }
+    if (seed) {
+        command.set_seed(*seed);
+    }
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response, [&] {
+        return "created " + response.world().name() + ": seed " + std::to_string(response.world().seed()) + ", " +
+               std::to_string(response.world().island_count()) +
+               (response.world().island_count() == 1 ? " island" : " islands") + ", " + state_of(response.world()) +
+               "\n";
+    });
+}
+
+void remove(const Common& common, const std::string& name) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_delete_world()->set_world(name);
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response, [&] { return "deleted " + name + "\n"; });
+}
+
+void reset(const Common& common, std::optional<std::uint64_t> seed) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_reset_world()->set_world(common.world);
+    if (seed) {
+        request.mutable_reset_world()->set_seed(*seed);
+    }
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response, [&] {
+        return "reset " + response.world().name() + ": seed " + std::to_string(response.world().seed()) +
+               ", generation 1, " + state_of(response.world()) + "\n";
+    });
+}
+
+// ---- running ---------------------------------------------------------------------------------------------------
+
+/// Says on stderr how it goes: one line that is written over for people, a line per generation for files.
+class Progress {
+  public:
+    ~Progress() {
+        if (live_ && shown_) {
+            std::cerr << '\n';
+        }
+    }
+    void show(const v1::GenerationFinished& finished) {
+        double best = 0, mean = 0;
+        for (const auto& island : finished.statistics()) {
+            best = island.island() == 0 ? island.fitness_best() : std::max(best, island.fitness_best());
+            mean += island.fitness_mean() / finished.statistics_size();
+        }
+        if (finished.statistics_size() > 0) {
+            std::cerr << (live_ ? "\r\033[K" : "") << "generation " << finished.statistics(0).generation() << ": best "
+                      << fixed(best, 1) << ", mean " << fixed(mean, 1) << (live_ ? "" : "\n") << std::flush;
+            shown_ = true;
+        }
+    }
+
+  private:
+    const bool live_ = ::isatty(STDERR_FILENO) == 1;
+    bool shown_ = false;
+};
+
+/// Waits until `reached(world)`, or the world stops running before, showing generations as they end.
+///
+/// returns  the world as it then is.
+template <class Reached>
+v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached& reached) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds look_every{500}; // events may be lost; a look now and then is enough
+    catch_interrupts();
+    Progress progress;
+    for (auto look_at = Clock::now();;) {
+        if (interrupted()) {
+            throw Stop{ExitCode::Refused, "no longer waiting; the world goes on"};
+        }
+        if (Clock::now() >= look_at) {
+            v1::WorldInfo world = caller.world(begun.name());
+            if (world.run_id() != begun.run_id()) {
+                throw Stop{ExitCode::Refused, begun.name() + " was reset meanwhile"};
+            }
+            if (reached(world) || world.state() != v1::RUN_STATE_RUNNING) {
+                for (const auto& event : caller.connection().take_events()) {
+                    if (event.world() == begun.name() && event.has_generation_finished()) {
+                        progress.show(event.generation_finished());
+                    }
+                }
+                return world;
+            }
+            look_at = Clock::now() + look_every;
+        }
+        if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100});
+            event && event->world() == begun.name()) {
+            if (event->has_generation_finished()) {
+                progress.show(event->generation_finished());
+            } else {
+                look_at = Clock::now();
+            }
+        }
+    }
+}
+
+/// Ends the call with an error if the world stopped before it got where it should.
+void require_reached(bool reached, const v1::WorldInfo& world) {
+    if (!reached) {
+        throw Stop{ExitCode::Refused, "stopped before its goal: " + sentence(world)};
+    }
+}
+
+void run(const Common& common, std::optional<std::uint64_t> generations, bool wait) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_run()->set_world(common.world);
+    if (generations) {
+        request.mutable_run()->set_generations(*generations);
+    }
+    if (wait) {
+        caller.connection().subscribe(v1::SubscribeEvents{});
+    }
+    v1::Response response = caller.call(std::move(request));
+    if (wait) {
+        const bool has_goal = response.world().has_run_until_generation();
+        const std::uint64_t goal = response.world().run_until_generation();
+        const auto reached = [&](const v1::WorldInfo& world) { return has_goal && world.generation() >= goal; };
+        const v1::WorldInfo world = wait_for(caller, response.world(), reached);
+        *response.mutable_world() = world;
+        print_world(common, response);
+        require_reached(reached(world) || !has_goal || world.state() == v1::RUN_STATE_TERMINATED, world);
+    } else {
+        print_world(common, response);
+    }
+}
+
+void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) {
+    v1::Request request;
+    request.mutable_run_until_tick()->set_world(common.world);
+    request.mutable_run_until_tick()->set_tick(tick);
+    if (wait) {
+        caller.connection().subscribe(v1::SubscribeEvents{});
+    }
+    v1::Response response = caller.call(std::move(request));
+    const auto reached = [&](const v1::WorldInfo& world) { return world.tick() >= tick; };
+    if (wait && !reached(response.world())) {
+        const v1::WorldInfo world = wait_for(caller, response.world(), reached);
+        *response.mutable_world() = world;
+    }
+    print_world(common, response);
+    require_reached(!wait || reached(response.world()) || response.world().state() == v1::RUN_STATE_TERMINATED,
+                    response.world());
+}
+
+void step(const Common& common, std::uint64_t ticks, bool wait) {
+    Caller caller{common};
+    // The goal is a tick, so that a step repeated after a lost connection is not taken twice.
+    until(common, caller, caller.world(common.world).tick() + ticks, wait);
+}
+
+void pause(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_pause()->set_world(common.world);
+    print_world(common, caller.call(std::move(request)));
+}
+
+void resume(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_resume()->set_world(common.world);
+    print_world(common, caller.call(std::move(request)));
+}
+
+v1::Speed parse_speed(std::string_view word) {
+    v1::Speed speed;
+    if (word == "max") {
+        speed.set_max(true);
+        return speed;
+    }
+    std::string_view number = word;
+    if (number.ends_with('x')) {
+        number.remove_suffix(1);
+    }
+    double factor = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
+    if (error != std::errc{} || end != number.data() + number.size() || !std::isfinite(factor)) {
+        throw Stop{ExitCode::Usage, "'" + std::string{word} + "' is not a speed: write 2 for twice real time, or max"};
+    }
+    speed.set_real_time_factor(factor);
+    return speed;
+}
+
+void set_speed(const Common& common, const std::string& word) {
+    const v1::Speed speed = parse_speed(word);
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_set_speed()->set_world(common.world);
+    *request.mutable_set_speed()->mutable_speed() = speed;
+    print_world(common, caller.call(std::move(request)));
+}
+
+void add_world_commands(CLI::App& app, const Common& common, Selected& selected) {
+    const char* const group = "Worlds";
+    auto* create_command = app.add_subcommand("create", "Make a world; it waits to be run")->group(group);
+    auto options = std::make_shared<CreateOptions>();
+    create_command->add_option("NAME", options->name, "1 to 64 of a-z A-Z 0-9 _ -")->required();
+    create_command->add_option("--seed", options->seed,
+                               "Without it, and without one in the file, the server draws one");
+    create_command->add_option("--set", options->words, "Parameters as NAME=VALUE; the others have their defaults");
+    create_command->add_option("--experiment", options->experiment,
+                               "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
+    create_command->footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
+                           "  evoctl create big --set population_size=10000 scale_with_population=true");
+    create_command->callback([&, options] { selected = [&, options] { create(common, *options); }; });
+
+    auto* delete_command = app.add_subcommand("delete", "Remove a world and its history")->group(group);
+    auto name = std::make_shared<std::string>();
+    delete_command->add_option("NAME", *name, "The world")->required();
+    delete_command->callback([&, name] { selected = [&, name] { remove(common, *name); }; });
+
+    auto* reset_command =
+        app.add_subcommand("reset", "Begin again at generation 1, with the parameters last set")->group(group);
+    auto seed = std::make_shared<std::optional<std::uint64_t>>();
+    reset_command->add_option("--seed", *seed, "Without it the same seed again");
+    reset_command->callback([&, seed] { selected = [&, seed] { reset(common, *seed); }; });
+}
+
+} // namespace
+
+void add_run_commands(CLI::App& app, const Common& common, Selected& selected) {
+    add_world_commands(app, common, selected);
+    const char* const group = "Run";
+    app.add_subcommand("start", "Run one generation")->group(group)->callback([&] {
+        selected = [&] { run(common, 1, false); };
+    });
+
+    auto* run_command = app.add_subcommand("run", "Run N more generations, or until paused")->group(group);
+    auto generations = std::make_shared<std::optional<std::uint64_t>>();
+    auto run_wait = std::make_shared<bool>(false);
+    run_command->add_option("N", *generations, "Generations; without it until paused or a termination criterion holds")
+        ->check(at_least_one);
+    run_command->add_flag("--wait", *run_wait, "Return when they have ended; Ctrl-C ends the waiting, not the run");
+    run_command->footer("Examples:\n  evoctl run 100 --wait && evoctl history --csv > fitness.csv\n"
+                        "  evoctl run --world lesson");
+    run_command->callback([&, generations, run_wait] {
+        selected = [&, generations, run_wait] { run(common, *generations, *run_wait); };
+    });
+
+    app.add_subcommand("pause", "Stop a world where it is")->group(group)->callback([&] {
+        selected = [&] { pause(common); };
+    });
+    app.add_subcommand("resume", "Go on after a pause")->group(group)->callback([&] {
+        selected = [&] { resume(common); };
+    });
+
+    auto* step_command =
+        app.add_subcommand("step", "Run N ticks, then pause; returns when they are over")->group(group);
+    auto ticks = std::make_shared<std::uint64_t>(1);
+    auto no_wait = std::make_shared<bool>(false);
+    step_command->add_option("N", *ticks, "Ticks; without it 1")->check(at_least_one);
+    step_command->add_flag("--no-wait", *no_wait, "Return at once");
+    step_command->callback(
+        [&, ticks, no_wait] { selected = [&, ticks, no_wait] { step(common, *ticks, !*no_wait); }; });
+
+    auto* until_command =
+        app.add_subcommand("until", "Run until TICK ticks of the run are over, then pause")->group(group);
+    auto tick = std::make_shared<std::uint64_t>(0);
+    auto until_wait = std::make_shared<bool>(false);
+    until_command->add_option("TICK", *tick, "Ticks since the run began")->required();
+    until_command->add_flag("--wait", *until_wait, "Return when it is reached");
+    until_command->callback([&, tick, until_wait] {
+        selected = [&, tick, until_wait] {
+            Caller caller{common};
+            until(common, caller, *tick, *until_wait);
+        };
+    });
+
+    auto* speed_command = app.add_subcommand("speed", "How fast a world goes")->group(group);
+    auto word = std::make_shared<std::string>();
+    speed_command->add_option("SPEED", *word, "Simulated seconds per second, 0.001 to 10000, or max")->required();
+    speed_command->footer("Examples:\n  evoctl speed 2\n  evoctl speed max");
+    speed_command->callback([&, word] { selected = [&, word] { set_speed(common, *word); }; });
+}
+
+} // namespace evod::ctl

@@ -1,0 +1,20 @@
+// Stop: the end of a call of evoctl, thrown from wherever it is seen and turned into an exit code in main.
+#pragma once
+
+#include <string>
+
+namespace evod::ctl {
+
+enum class ExitCode {
+    Ok = 0,
+    Refused = 1,      // by the server; or what was waited for did not come about
+    Usage = 2,        // this call makes no sense
+    NoConnection = 3, // no server, or no answer
+};
+
+struct Stop {
+    ExitCode code;
+    std::string text; // for stderr; empty: nothing to say
+};
+
+} // namespace evod::ctl

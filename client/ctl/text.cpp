@@ -1,0 +1,141 @@
+#include "client/ctl/text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <utility>
+
+namespace evod::ctl {
+
+void Table::add(std::vector<std::string> cells) {
+    cells.resize(columns_.size());
+    rows_.push_back(std::move(cells));
+}
+
+std::string Table::to_text() const {
+    std::vector<std::size_t> widths;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        std::size_t width = width_of(columns_[c].title);
+        for (const auto& row : rows_) {
+            width = std::max(width, width_of(row[c]));
+        }
+        widths.push_back(width);
+    }
+    std::string text;
+    const auto add_line = [&](const auto& cell) {
+        std::string line;
+        for (std::size_t c = 0; c < columns_.size(); ++c) {
+            const std::string& content = cell(c);
+            const std::string blanks(widths[c] - width_of(content), ' ');
+            line += (c == 0 ? "" : "  ");
+            line += columns_[c].align == Align::Right ? blanks + content : content + blanks;
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + '\n';
+    };
+    add_line([&](std::size_t c) -> const std::string& { return columns_[c].title; });
+    for (const auto& row : rows_) {
+        add_line([&](std::size_t c) -> const std::string& { return row[c]; });
+    }
+    return text;
+}
+
+std::string sparkline(std::span<const double> values, std::size_t width_max) {
+    static constexpr std::array bars{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+    if (values.size() > width_max) {
+        values = values.last(width_max);
+    }
+    std::string line;
+    if (values.empty()) {
+        return line;
+    }
+    const auto [least, most] = std::ranges::minmax_element(values);
+    const double range = *most - *least;
+    for (const double value : values) {
+        const double height = range > 0 && std::isfinite(range) ? (value - *least) / range : 0.5;
+        line += bars[static_cast<std::size_t>(std::clamp(height * 8, 0.0, 7.0))];
+    }
+    return line;
+}
+
+std::string exact(double value) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return {digits.data(), end};
+}
+
+std::string fixed(double value, int decimals) {
+    std::array<char, 400> digits;
+    const int length = std::snprintf(digits.data(), digits.size(), "%.*f", decimals, value);
+    return {digits.data(), static_cast<std::size_t>(length)};
+}
+
+std::string duration(double seconds) {
+    if (!(seconds >= 60 && seconds < 1e15)) {
+        return fixed(seconds, 1) + " s";
+    }
+    const auto whole = static_cast<std::uint64_t>(seconds);
+    const auto two_digits = [](std::uint64_t value) {
+        return std::string(value < 10 ? "0" : "") + std::to_string(value);
+    };
+    if (whole < 3600) {
+        return std::to_string(whole / 60) + ":" + two_digits(whole % 60) + " min";
+    }
+    return std::to_string(whole / 3600) + ":" + two_digits(whole / 60 % 60) + ":" + two_digits(whole % 60) + " h";
+}
+
+std::size_t width_of(std::string_view utf8) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    // Damerau's distance, each piece edited once ("optimal string alignment"): three rows of the usual table.
+    std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+    std::iota(above.begin(), above.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = std::min(row[j], before[j - 2] + 1);
+            }
+        }
+        std::swap(before, above);
+        std::swap(above, row);
+    }
+    return above[b.size()];
+}
+
+std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names) {
+    std::vector<std::pair<std::size_t, std::string>> ranked;
+    for (const std::string& name : names) {
+        const std::size_t distance = edit_distance(word, name);
+        // Someone who typed a part of the name meant it too: "mutation" for "mutation_chance".
+        const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
+        if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
+            ranked.emplace_back(distance, name);
+        }
+    }
+    std::ranges::sort(ranked);
+    std::vector<std::string> result;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, ranked.size()); ++i) {
+        result.push_back(std::move(ranked[i].second));
+    }
+    return result;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
+    const auto candidates = nearest(word, names);
+    std::string text;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        text += (i == 0 ? "; did you mean " : i + 1 == candidates.size() ? " or " : ", ") + candidates[i];
+    }
+    return text.empty() ? text : text + "?";
+}
+
+} // namespace evod::ctl

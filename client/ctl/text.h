@@ -1,0 +1,52 @@
+// Text: tables, sparklines and numbers for people to read.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace evod::ctl {
+
+/// Rows of cells in columns as wide as they need to be.
+class Table {
+  public:
+    enum class Align { Left, Right };
+    struct Column {
+        std::string title;
+        Align align = Align::Left;
+    };
+
+    explicit Table(std::vector<Column> columns) : columns_{std::move(columns)} {}
+
+    void add(std::vector<std::string> cells); // as many as there are columns
+    /// Title and rows, a line each; columns are two blanks apart and no line ends in a blank.
+    std::string to_text() const;
+
+  private:
+    std::vector<Column> columns_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+/// One of eight bars per value, lowest to highest; the newest `width_max` values. Empty for none. Values that are all
+/// equal are bars of middle height.
+std::string sparkline(std::span<const double> values, std::size_t width_max);
+
+/// Shortest text that reads back as the same number: "0.15", "1e-05".
+std::string exact(double value);
+/// With so many decimals.
+std::string fixed(double value, int decimals);
+/// "12.3 s", "4:05 min", "2:00:00 h": simulated time.
+std::string duration(double seconds);
+/// Characters (code points), not bytes.
+std::size_t width_of(std::string_view utf8);
+
+/// How many insertions, deletions, replacements and swaps of neighbours turn one into the other.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+/// Those of `names` that someone may have meant by `word`, likeliest first, at most three.
+std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names);
+/// "; did you mean A or B?", or nothing.
+std::string did_you_mean(std::string_view word, std::span<const std::string> names);
+
+} // namespace evod::ctl

@@ -1,0 +1,340 @@
+// What follows a world: watch, events.
+#include "client/ctl/caller.h"
+#include "client/ctl/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+namespace evod::ctl {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What a generation came to over all islands.
+struct GenerationLine {
+    std::uint64_t generation = 0;
+    double fitness_best = 0, fitness_mean = 0, diversity = 0;
+    std::uint64_t alive_count = 0, organism_count = 0, starved_count = 0, poisoned_count = 0;
+};
+
+GenerationLine line_of(const google::protobuf::RepeatedPtrField<v1::GenerationStatistics>& islands) {
+    GenerationLine line;
+    for (const auto& island : islands) {
+        line.fitness_best =
+            line.organism_count == 0 ? island.fitness_best() : std::max(line.fitness_best, island.fitness_best());
+        line.generation = island.generation();
+        line.fitness_mean += island.fitness_mean() / islands.size();
+        line.diversity += island.diversity() / islands.size();
+        line.alive_count += island.alive_count();
+        line.organism_count += island.organism_count();
+        line.starved_count += island.starved_count();
+        line.poisoned_count += island.poisoned_count();
+    }
+    return line;
+}
+
+std::string text_of(const GenerationLine& line) {
+    return "generation " + std::to_string(line.generation) + ": best " + fixed(line.fitness_best, 1) + ", mean " +
+           fixed(line.fitness_mean, 1) + ", diversity " + fixed(line.diversity, 3) + ", alive " +
+           std::to_string(line.alive_count) + "/" + std::to_string(line.organism_count) + ", starved " +
+           std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
+}
+
+// ---- watch -----------------------------------------------------------------------------------------------------
+
+class Watch {
+  public:
+    Watch(const Common& common, std::optional<std::uint64_t> generations)
+        : common_{common}, generations_{generations}, caller_{common}, redraw_{on_terminal() && !common.json} {}
+
+    void run() {
+        catch_interrupts();
+        world_ = caller_.world(common_.world);
+        v1::SubscribeEvents events;
+        events.set_world(world_.name());
+        const auto answer = caller_.connection().wait_subscribed(caller_.connection().subscribe(events));
+        if (answer && !link::accepted(*answer)) {
+            throw Stop{ExitCode::Refused, link::to_text(answer->status())};
+        }
+        if (redraw_) {
+            load_past();
+        }
+        while (!interrupted() && !ended_) {
+            if (redraw_ && Clock::now() >= draw_at_) {
+                look();
+                draw();
+                draw_at_ = Clock::now() + std::chrono::milliseconds{500};
+            }
+            if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
+                take(*event);
+            }
+            report_connection();
+        }
+        if (redraw_ && !ended_) {
+            draw();
+        }
+    }
+
+  private:
+    /// The line of fitness does not begin empty where generations have ended before.
+    void load_past() {
+        if (world_.generation() < 2) {
+            return;
+        }
+        v1::Request request;
+        auto& history = *request.mutable_get_history();
+        history.set_world(world_.name());
+        history.set_first_generation(world_.generation() > width + 1 ? world_.generation() - width : 1);
+        const auto response = caller_.connection().request(std::move(request), caller_.timeout());
+        if (!response || !link::accepted(*response)) {
+            return; // only the picture of the past is missing
+        }
+        const auto& generations = response->history().generations();
+        for (int first = 0; first < generations.size();) {
+            google::protobuf::RepeatedPtrField<v1::GenerationStatistics> islands;
+            const std::uint64_t generation = generations[first].generation();
+            for (; first < generations.size() && generations[first].generation() == generation; ++first) {
+                *islands.Add() = generations[first];
+            }
+            lines_.push_back(line_of(islands));
+        }
+    }
+
+    void take(const v1::Event& event) {
+        if (event.has_generation_finished()) {
+            lines_.push_back(line_of(event.generation_finished().statistics()));
+            if (lines_.size() > width) {
+                lines_.pop_front();
+            }
+            if (common_.json) {
+                std::cout << to_json(event.generation_finished(), false) << std::flush;
+            } else if (!redraw_) {
+                std::cout << text_of(lines_.back()) << std::endl;
+            }
+            ++seen_;
+            if (generations_ && seen_ >= *generations_) {
+                end("");
+            }
+        } else if (event.has_run_terminated()) {
+            look();
+            end(world_.name() + " has ended: " + state_of(world_));
+        } else if (event.has_world_deleted()) {
+            end(world_.name() + " was deleted by " + event.world_deleted().by());
+        } else if (event.has_world_reset()) {
+            lines_.clear();
+        }
+    }
+
+    void end(const std::string& why) {
+        if (redraw_) {
+            look();
+            draw();
+        }
+        if (!why.empty()) {
+            std::cerr << why << '\n';
+        }
+        ended_ = true;
+    }
+
+    void look() {
+        v1::Request request;
+        request.mutable_get_statistics()->set_world(world_.name());
+        const auto response = caller_.connection().request(std::move(request), std::chrono::milliseconds{1000});
+        if (response && link::accepted(*response)) {
+            statistics_ = response->statistics();
+            world_ = statistics_.world();
+        }
+    }
+
+    void report_connection() {
+        const auto status = caller_.connection().status();
+        if (status.state == link::State::Failed) {
+            throw Stop{ExitCode::NoConnection, status.reason};
+        }
+        const bool lost = status.state != link::State::Connected;
+        if (lost && !lost_) {
+            std::cerr << status.reason << "; trying again\n";
+        }
+        lost_ = lost;
+    }
+
+    void draw() {
+        std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n\n";
+        std::uint64_t alive = 0, born = 0, starved = 0, poisoned = 0;
+        double health = 0;
+        for (const auto& island : statistics_.live()) {
+            alive += island.alive_count();
+            born += island.organism_count();
+            starved += island.starved_count();
+            poisoned += island.poisoned_count();
+            health += island.health_mean() * island.alive_count();
+        }
+        if (born > 0) {
+            text += "now   alive " + std::to_string(alive) + "/" + std::to_string(born) + ", mean health " +
+                    fixed(alive > 0 ? health / static_cast<double>(alive) : 0, 1) + ", starved " +
+                    std::to_string(starved) + ", poisoned " + std::to_string(poisoned) + "\n";
+        }
+        if (!lines_.empty()) {
+            std::vector<double> best, mean;
+            for (const GenerationLine& line : lines_) {
+                best.push_back(line.fitness_best);
+                mean.push_back(line.fitness_mean);
+            }
+            text += "last  " + text_of(lines_.back()) + "\n\nbest  " + sparkline(best, width) + "  " +
+                    fixed(best.back(), 1) + "\nmean  " + sparkline(mean, width) + "  " + fixed(mean.back(), 1) + "\n";
+        } else {
+            text += "no generation has ended yet\n";
+        }
+        for (const auto& island : statistics_.last()) {
+            if (island.island() == 0) {
+                text += "\n" + genes(island);
+            }
+        }
+        text += "\nCtrl-C ends the watching, not the run\n";
+        // Up over the last drawing, and everything below goes.
+        std::cout << (drawn_lines_ > 0 ? "\033[" + std::to_string(drawn_lines_) + "A" : "") << "\r\033[J" << text
+                  << std::flush;
+        drawn_lines_ = std::ranges::count(text, '\n');
+    }
+
+    std::string genes(const v1::GenerationStatistics& island) const {
+        Table table{{{statistics_.last_size() > 1 ? "gene on island 0" : "gene"},
+                     {"mean", Table::Align::Right},
+                     {"deviation", Table::Align::Right}}};
+        for (int i = 0; i < std::min(island.genes_size(), world_.gene_names_size()); ++i) {
+            table.add({world_.gene_names(i), fixed(island.genes(i).mean(), 1), fixed(island.genes(i).deviation(), 1)});
+        }
+        return table.to_text();
+    }
+
+    static constexpr std::size_t width = 60; // generations in a line of fitness
+
+    const Common& common_;
+    const std::optional<std::uint64_t> generations_;
+    Caller caller_;
+    const bool redraw_;
+    v1::WorldInfo world_;
+    v1::Statistics statistics_;
+    std::deque<GenerationLine> lines_; // the newest `width`
+    std::uint64_t seen_ = 0;           // generations that ended while watching
+    std::ptrdiff_t drawn_lines_ = 0;
+    Clock::time_point draw_at_{};
+    bool ended_ = false, lost_ = false;
+};
+
+// ---- events ----------------------------------------------------------------------------------------------------
+
+std::string outcome_of(v1::Outcome outcome) {
+    v1::WorldInfo world;
+    world.set_state(v1::RUN_STATE_TERMINATED);
+    world.set_outcome(outcome);
+    return state_of(world);
+}
+
+std::string text_of(const v1::Event& event) {
+    const std::string where =
+        (event.world().empty() ? "server" : event.world()) + " tick " + std::to_string(event.tick()) + ": ";
+    switch (event.event_case()) {
+    case v1::Event::kGenerationFinished:
+        return where + text_of(line_of(event.generation_finished().statistics()));
+    case v1::Event::kParametersChanged: {
+        const auto& changed = event.parameters_changed();
+        std::string text = where + changed.by() + " set";
+        for (const auto& state : changed.changed()) {
+            text += " " + state.name() + "=" + to_text(state.has_pending() ? state.pending() : state.value());
+        }
+        return text + ", revision " + std::to_string(changed.revision());
+    }
+    case v1::Event::kRunControlChanged:
+        return where + (event.run_control_changed().by().empty() ? "goal reached" : event.run_control_changed().by()) +
+               "; " + sentence(event.run_control_changed().world());
+    case v1::Event::kMigration: {
+        std::uint64_t migrants = 0;
+        for (const auto& edge : event.migration().edges()) {
+            migrants += edge.migrant_count();
+        }
+        return where + std::to_string(migrants) + " migrated into generation " +
+               std::to_string(event.migration().generation());
+    }
+    case v1::Event::kExtinction:
+        return where + "everyone on island " + std::to_string(event.extinction().island()) + " is dead, generation " +
+               std::to_string(event.extinction().generation());
+    case v1::Event::kRunTerminated:
+        return where + outcome_of(event.run_terminated().outcome());
+    case v1::Event::kWorldCreated:
+        return where + "created by " + event.world_created().by() + ", seed " +
+               std::to_string(event.world_created().world().seed());
+    case v1::Event::kWorldReset:
+        return where + "reset by " + event.world_reset().by() + ", seed " +
+               std::to_string(event.world_reset().world().seed());
+    case v1::Event::kWorldDeleted:
+        return where + "deleted by " + event.world_deleted().by();
+    case v1::Event::kServerGoingAway:
+        return "the server is shutting down";
+    case v1::Event::kEventsDropped:
+        return std::to_string(event.events_dropped().dropped_count()) + " events were lost: too many at once";
+    default:
+        return where + "an event that this evoctl does not know: it is older than the server";
+    }
+}
+
+void follow_events(const Common& common, std::optional<std::uint64_t> count) {
+    Caller caller{common};
+    v1::SubscribeEvents subscription;
+    if (!common.world.empty()) {
+        subscription.set_world(common.world);
+    }
+    catch_interrupts();
+    const auto answer =
+        caller.connection().wait_subscribed(caller.connection().subscribe(subscription), caller.timeout());
+    if (!answer) {
+        throw Stop{ExitCode::NoConnection, answer.error().what};
+    }
+    if (!link::accepted(*answer)) {
+        throw Stop{ExitCode::Refused, link::to_text(answer->status())};
+    }
+    bool lost = false;
+    for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
+        if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
+            std::cout << (common.json ? to_json(*event, false) : text_of(*event) + "\n") << std::flush;
+            ++seen;
+        }
+        const auto status = caller.connection().status();
+        if (status.state == link::State::Failed) {
+            throw Stop{ExitCode::NoConnection, status.reason};
+        }
+        if (status.state != link::State::Connected && !lost) {
+            std::cerr << status.reason << "; trying again\n";
+        }
+        lost = status.state != link::State::Connected;
+    }
+}
+
+} // namespace
+
+void add_watch_commands(CLI::App& app, const Common& common, Selected& selected) {
+    const char* const group = "Follow";
+    auto* watch = app.add_subcommand("watch", "Live statistics; a line per generation when piped")->group(group);
+    auto generations = std::make_shared<std::optional<std::uint64_t>>();
+    watch->add_option("--generations", *generations, "End after so many; without it Ctrl-C ends")->check(at_least_one);
+    watch->footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
+    watch->callback([&, generations] { selected = [&, generations] { Watch{common, *generations}.run(); }; });
+
+    auto* events =
+        app.add_subcommand("events", "Everything that happens, a line each, of one world or all")->group(group);
+    auto count = std::make_shared<std::optional<std::uint64_t>>();
+    events->add_option("--count", *count, "End after so many; without it Ctrl-C ends")->check(at_least_one);
+    events->footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
+    events->callback([&, count] { selected = [&, count] { follow_events(common, *count); }; });
+}
+
+} // namespace evod::ctl

@@ -1,0 +1,72 @@
+#include "client/ctl/text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace evod::ctl {
+namespace {
+
+using testing::ElementsAre;
+
+const std::vector<std::string> names{"mutation_chance", "mutate_survivors", "selection",
+                                     "survivors",       "respawn",          "respawn_s"};
+
+TEST(Sparkline, GoesFromTheLowestToTheHighestBar) {
+    EXPECT_EQ(sparkline(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 10), "▁▂▃▄▅▆▇█");
+    EXPECT_EQ(sparkline(std::vector<double>{-5, 5}, 10), "▁█");
+}
+
+TEST(Sparkline, KeepsTheNewest) {
+    EXPECT_EQ(sparkline(std::vector<double>{100, 0, 1}, 2), "▁█");
+}
+
+TEST(Sparkline, HasAnAnswerForNothingAndForNoDifference) {
+    EXPECT_EQ(sparkline({}, 10), "");
+    EXPECT_EQ(sparkline(std::vector<double>{3, 3}, 10), "▅▅");
+    EXPECT_EQ(sparkline(std::vector<double>{3}, 0), "");
+}
+
+TEST(Table, AlignsByCharactersNotBytes) {
+    Table table{{{"NAME"}, {"VALUE", Table::Align::Right}, {"UNIT"}}};
+    table.add({"x", "1.5", "kg px/s²"});
+    table.add({"größe", "10", ""});
+    EXPECT_EQ(table.to_text(), "NAME   VALUE  UNIT\n"
+                               "x        1.5  kg px/s²\n"
+                               "größe     10\n");
+}
+
+TEST(Numbers, AreShortAndReadBack) {
+    EXPECT_EQ(exact(0.15), "0.15");
+    EXPECT_EQ(exact(86'400), "86400");
+    EXPECT_EQ(std::stod(exact(1.0 / 60)), 1.0 / 60);
+    EXPECT_EQ(fixed(2.345, 1), "2.3");
+}
+
+TEST(Durations, AreToldInTheirUnit) {
+    EXPECT_EQ(duration(0), "0.0 s");
+    EXPECT_EQ(duration(59.96), "60.0 s");
+    EXPECT_EQ(duration(245), "4:05 min");
+    EXPECT_EQ(duration(7200), "2:00:00 h");
+    EXPECT_EQ(duration(std::nan("")), "nan s");
+}
+
+TEST(EditDistance, CountsSingleEdits) {
+    EXPECT_EQ(edit_distance("", ""), 0U);
+    EXPECT_EQ(edit_distance("", "abc"), 3U);
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+    EXPECT_EQ(edit_distance("selcetion", "selection"), 1U) << "neighbours swapped are one mistake";
+}
+
+TEST(Nearest, FindsWhatWasMeant) {
+    EXPECT_THAT(nearest("mutation_chanse", names), ElementsAre("mutation_chance"));
+    EXPECT_THAT(nearest("survivor", names), ElementsAre("survivors", "mutate_survivors"));
+    EXPECT_THAT(nearest("respwan", names), ElementsAre("respawn"));
+    EXPECT_THAT(nearest("zebra", names), ElementsAre());
+    EXPECT_EQ(did_you_mean("zebra", names), "");
+    EXPECT_EQ(did_you_mean("survivor", names), "; did you mean survivors or mutate_survivors?");
+}
+
+} // namespace
+} // namespace evod::ctl
