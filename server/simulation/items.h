@@ -67,6 +67,7 @@ class Items {
     std::uint32_t size() const { return static_cast<std::uint32_t>(x_.size()); } // there or not
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return due_tick_[item] == 0; }
+    const std::vector<std::uint32_t>& due_tick() const { return due_tick_; } // by id; 0: there
     const std::vector<physics::Coordinate>& x() const { return x_; } // by id; of one that is away, where it was
     const std::vector<physics::Coordinate>& y() const { return y_; }
     float radius_px() const { return rules_.radius_px; }

@@ -240,7 +240,7 @@ Result<Applied> Laboratory::carry_out(const SetParameters& command) {
                                        std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}}};
     const Result<Parameters> requested =
-        assign(world.parameters().requested, command.assignments, "set_parameters.parameters.");
+        assign(world.parameters().requested, command.assignments, "set_parameters.");
     if (!requested)
         return requested.error();
     Applied applied{.world = entry.name, .tick = world.moment().tick, .parameters = {}};

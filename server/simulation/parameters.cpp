@@ -193,6 +193,27 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name) {
     return names;
 }
 
+namespace {
+
+/// Makes one assignment, or says what is wrong with it.
+std::optional<base::Violation> assign_one(const Assignment& assignment, std::string_view field_prefix,
+                                          Parameters& parameters) {
+    std::string field = std::string{field_prefix} + assignment.name;
+    if (const ParameterDescription* description = find_parameter(assignment.name))
+        return set_value(*description, assignment.value, parameters, std::move(field));
+    std::string allowed = "a parameter of the registry";
+    for (const std::string_view name : similar_parameter_names(assignment.name))
+        allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
+    return base::Violation{std::move(field), std::move(allowed), "an unknown name"};
+}
+
+} // namespace
+
+std::optional<base::Violation> fault_of(const Assignment& assignment, std::string_view field_prefix) {
+    Parameters ignored;
+    return assign_one(assignment, field_prefix, ignored);
+}
+
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix) {
     base::Refusal refusal{.code = base::RefusalCode::InvalidArgument,
@@ -200,20 +221,11 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
                           .violations = {}};
     std::vector<std::string_view> seen;
     for (const Assignment& assignment : assignments) {
-        std::string field = std::string{field_prefix} + assignment.name;
-        const ParameterDescription* description = find_parameter(assignment.name);
-        if (description == nullptr) {
-            std::string allowed = "a parameter of the registry";
-            for (const std::string_view name : similar_parameter_names(assignment.name))
-                allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
-            refusal.violations.push_back({std::move(field), std::move(allowed), "an unknown name"});
-        } else if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end()) {
-            refusal.violations.push_back({std::move(field), "given once", "given twice"});
-        } else {
-            seen.push_back(description->name);
-            if (auto violation = set_value(*description, assignment.value, parameters, std::move(field)))
-                refusal.violations.push_back(std::move(*violation));
-        }
+        if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end())
+            refusal.violations.push_back({std::string{field_prefix} + assignment.name, "given once", "given twice"});
+        else if (auto violation = assign_one(assignment, field_prefix, parameters))
+            refusal.violations.push_back(std::move(*violation));
+        seen.push_back(assignment.name);
     }
     if (refusal.violations.empty())
         refusal.violations = validate(parameters, field_prefix);

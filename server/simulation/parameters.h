@@ -8,6 +8,7 @@
 #include "server/base/result.h"
 #include "server/evolution/parameters.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -125,6 +126,9 @@ struct Assignment {
     std::string name;
     ParameterValue value;
 };
+
+/// What is wrong with an assignment on its own: its name, its kind, its range.
+std::optional<base::Violation> fault_of(const Assignment& assignment, std::string_view field_prefix = "");
 
 /// `parameters` with every assignment made. A count is taken for a real. Refuses unknown and repeated names, wrong kinds,
 /// values outside their range (NaN too) and sets that do not go together, naming every one as `field_prefix` + name.
