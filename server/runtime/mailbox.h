@@ -1,0 +1,69 @@
+// Mailbox: commands and queries on their way to the simulation thread, in the order in which they came.
+//
+// Threads      pushed to by any, drained by the simulation thread between two ticks.
+// Full         at `mailbox_commands_max` waiting, the next is refused; its sender is told "busy" at once.
+#pragma once
+
+#include "server/base/result.h"
+#include "server/runtime/clock.h"
+#include "server/simulation/laboratory.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace evod::runtime {
+
+constexpr std::size_t mailbox_commands_max = 1024;
+
+/// Called on the simulation thread as soon as the command is applied or refused: what it reads of the laboratory is the
+/// state in which the command begins to hold.
+///
+/// command  as applied: it names its world.
+using CommandReply = std::function<void(const simulation::Laboratory&, const simulation::Command& command,
+                                        const base::Result<simulation::Applied>&)>;
+
+struct CommandMail {
+    simulation::Command command;
+    CommandReply reply;
+};
+
+/// Reads; called on the simulation thread between two ticks, so it must be short.
+struct QueryMail {
+    std::function<void(const simulation::Laboratory&)> ask;
+};
+
+using Mail = std::variant<CommandMail, QueryMail>;
+
+class Mailbox {
+  public:
+    explicit Mailbox(std::size_t capacity = mailbox_commands_max) : capacity_{capacity} {}
+
+    /// false: full, and nothing was taken from `mail`.
+    bool try_push(Mail&& mail);
+
+    /// Makes wait() return: something else than mail wants to be looked at.
+    void wake();
+
+    /// Whether there is something to drain or a wake() to mind; cheap enough to ask after every tick.
+    bool pending() const { return pending_.load(std::memory_order_acquire); }
+
+    /// Everything that waits, oldest first. `emptied` lends its memory.
+    std::vector<Mail> drain(std::vector<Mail> emptied = {});
+
+    /// Returns when there is mail, after a wake(), or at `until`; nullopt is never.
+    void wait(std::optional<Clock::time_point> until);
+
+  private:
+    const std::size_t capacity_;
+    std::atomic<bool> pending_ = false;
+    std::mutex mutex_; // guards what follows
+    std::condition_variable changed_;
+    std::vector<Mail> waiting_;
+};
+
+} // namespace evod::runtime

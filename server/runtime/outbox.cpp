@@ -1,0 +1,56 @@
+#include "server/runtime/outbox.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::runtime {
+
+void Outbox::answer(Delivery delivery) {
+    std::unique_lock lock{mutex_};
+    waiting_.deliveries.push_back(std::move(delivery));
+    added(std::move(lock));
+}
+
+void Outbox::event(Delivery delivery) {
+    std::unique_lock lock{mutex_};
+    if (events_waiting_ < events_max_) {
+        waiting_.deliveries.push_back(std::move(delivery));
+        ++events_waiting_;
+    } else {
+        ++waiting_.dropped_events;
+    }
+    added(std::move(lock));
+}
+
+void Outbox::picture(SnapshotPtr snapshot) {
+    std::unique_lock lock{mutex_};
+    const bool after_change = snapshot->after_change;
+    const auto same_world =
+        std::find_if(waiting_.pictures.begin(), waiting_.pictures.end(),
+                     [&](const Picture& picture) { return picture.snapshot->world == snapshot->world; });
+    SnapshotPtr replaced; // released after the lock, as that may give its memory back
+    if (same_world == waiting_.pictures.end()) {
+        waiting_.pictures.push_back({std::move(snapshot), 0, after_change});
+    } else {
+        replaced = std::exchange(same_world->snapshot, std::move(snapshot));
+        ++same_world->replaced_count;
+        same_world->after_change |= after_change;
+    }
+    added(std::move(lock));
+}
+
+void Outbox::added(std::unique_lock<std::mutex> lock) {
+    const bool wake = !std::exchange(woken_, true);
+    lock.unlock();
+    if (wake)
+        wake_();
+}
+
+Outbox::Taken Outbox::take() {
+    const std::lock_guard lock{mutex_};
+    woken_ = false;
+    events_waiting_ = 0;
+    return std::exchange(waiting_, {});
+}
+
+} // namespace evod::runtime

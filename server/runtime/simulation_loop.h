@@ -1,0 +1,93 @@
+// Simulation loop: what the simulation thread does between two sleeps. Owns the laboratory and decides when a world
+// advances; what happens when it does is the laboratory's business and does not depend on this.
+//
+//   mail → paced worlds that are due → worlds at full speed, a slice each → events, pictures → sleep until the next is
+//   due
+//
+// Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
+//              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another
+//              world is due, so answers and paced worlds wait for one tick of another world at most.
+// Threads      called by one; that is the simulation thread.
+// Determinism  time decides how many ticks are taken, never what is in them.
+#pragma once
+
+#include "server/base/executor.h"
+#include "server/runtime/clock.h"
+#include "server/runtime/demand.h"
+#include "server/runtime/mailbox.h"
+#include "server/runtime/snapshot.h"
+#include "server/simulation/laboratory.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace evod::runtime {
+
+/// Where the loop's news go; called on the simulation thread.
+struct LoopOutputs {
+    std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
+    std::function<void(SnapshotPtr)> picture;
+};
+
+class SimulationLoop {
+  public:
+    static constexpr std::chrono::milliseconds slice{5};
+    static constexpr std::chrono::milliseconds catch_up_max{50};
+
+    /// Everything handed in outlives the loop.
+    SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs);
+
+    /// Minds the mail and advances what is due, for about a slice per world. Returns when it wants to be called again
+    /// if nothing comes; nullopt: not until then.
+    std::optional<Clock::time_point> pass();
+
+    /// Minds the mail that waits and advances nothing: at the end.
+    void mind_mail();
+
+    const simulation::Laboratory& laboratory() const { return laboratory_; }
+
+  private:
+    /// What is known of a world here; by name, and forgotten when the run id is another.
+    struct Track {
+        simulation::RunId run_id;
+        simulation::Speed speed;
+        double tick_s = 0;
+        bool running = false;
+        Clock::time_point due; // its next tick, if it is paced
+        // Ticks in the second that is being measured.
+        Clock::time_point measured_since;
+        std::uint64_t ticks = 0;
+        // For those who watch.
+        const Watch* watch = nullptr;
+        std::uint64_t newcomers_served = 0;
+        bool changed = true; // since the last picture, by a command or a goal
+        std::uint64_t pictured_tick = 0;
+        Clock::time_point next_picture;
+    };
+
+    void apply(CommandMail& mail);
+    void mind_demand();
+    void follow_worlds();
+    Track& follow(simulation::Entry& entry);
+    void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
+    void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
+    void show(const simulation::Entry& entry, Track& track, Clock::time_point now);
+    void tell_events();
+    Clock::duration period(const simulation::Entry& entry) const;
+
+    Mailbox& mailbox_;
+    Demand& demand_;
+    base::Executor& executor_;
+    Clock& clock_;
+    const LoopOutputs outputs_;
+    simulation::Laboratory laboratory_;
+    std::map<std::string, Track, std::less<>> tracks_;
+    Watches watches_;
+    SnapshotPool pool_;
+    std::vector<Mail> mail_;
+    std::vector<std::uint32_t> island_indices_; // working memory
+};
+
+} // namespace evod::runtime

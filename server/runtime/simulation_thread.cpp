@@ -1,0 +1,28 @@
+#include "server/runtime/simulation_thread.h"
+
+#include <pthread.h>
+
+#include <utility>
+
+namespace evod::runtime {
+
+SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
+                                   LoopOutputs outputs)
+    : mailbox_{mailbox}, loop_{mailbox, demand, executor, clock, std::move(outputs)}, thread_{[this] {
+        pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
+        while (!stopping_.load(std::memory_order_acquire)) {
+            const auto next = loop_.pass();
+            if (!next || !mailbox_.pending())
+                mailbox_.wait(next);
+        }
+        loop_.mind_mail();
+    }} {}
+
+void SimulationThread::stop() {
+    stopping_.store(true, std::memory_order_release);
+    mailbox_.wake();
+    if (thread_.joinable())
+        thread_.join();
+}
+
+} // namespace evod::runtime

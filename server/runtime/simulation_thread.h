@@ -1,0 +1,27 @@
+// Simulation thread: the one that owns all worlds. Sleeps when nothing is due and no mail comes.
+#pragma once
+
+#include "server/runtime/simulation_loop.h"
+
+#include <atomic>
+#include <thread>
+
+namespace evod::runtime {
+
+class SimulationThread {
+  public:
+    /// Starts. Everything handed in outlives the thread.
+    SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs);
+    ~SimulationThread() { stop(); }
+
+    /// Minds the mail that waits and ends; returns when it has.
+    void stop();
+
+  private:
+    Mailbox& mailbox_;
+    std::atomic<bool> stopping_ = false;
+    SimulationLoop loop_;
+    std::thread thread_;
+};
+
+} // namespace evod::runtime

@@ -1,0 +1,75 @@
+#include "server/runtime/worker_pool.h"
+
+#include "server/base/assert.h"
+
+#ifdef EVOD_THREAD_EXECUTOR
+#include "tests/support/thread_executor.h"
+#else
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
+
+#include <algorithm>
+
+namespace evod::runtime {
+namespace {
+
+class OneThread final : public base::Executor {
+  public:
+    std::size_t thread_count() const override { return 1; }
+
+  protected:
+    void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
+        for (std::size_t begin = 0; begin < count; begin += grain)
+            body({begin, std::min(begin + grain, count)});
+    }
+};
+
+#ifndef EVOD_THREAD_EXECUTOR
+class Pool final : public base::Executor {
+  public:
+    explicit Pool(std::size_t threads)
+        : control_{tbb::global_control::max_allowed_parallelism, threads}
+        , arena_{static_cast<int>(threads)}
+        , threads_{threads} {}
+
+    std::size_t thread_count() const override { return threads_; }
+
+  protected:
+    void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
+        const std::size_t pieces = (count + grain - 1) / grain;
+        arena_.execute([&] {
+            // Ranges of piece numbers, so that the cuts are exactly the multiples of the grain.
+            tbb::parallel_for(
+                tbb::blocked_range<std::size_t>{0, pieces, 1},
+                [&](const tbb::blocked_range<std::size_t>& range) {
+                    for (std::size_t piece = range.begin(); piece < range.end(); ++piece)
+                        body({piece * grain, std::min((piece + 1) * grain, count)});
+                },
+                tbb::simple_partitioner{});
+        });
+    }
+
+  private:
+    tbb::global_control control_; // lets a pool be larger than the machine
+    tbb::task_arena arena_;
+    std::size_t threads_;
+};
+#endif
+
+} // namespace
+
+std::unique_ptr<base::Executor> make_executor(std::size_t threads) {
+    EVOD_ASSERT(threads >= 1);
+    if (threads == 1)
+        return std::make_unique<OneThread>();
+#ifdef EVOD_THREAD_EXECUTOR
+    return std::make_unique<support::ThreadExecutor>(threads);
+#else
+    return std::make_unique<Pool>(threads);
+#endif
+}
+
+} // namespace evod::runtime
