@@ -1,0 +1,218 @@
+#include "server/protocol/commands.h"
+
+#include "server/protocol/parameters.h"
+#include "server/protocol/refusals.h"
+
+#include <cmath>
+#include <utility>
+
+namespace evod::protocol {
+namespace {
+
+using base::Violation;
+using Violations = std::vector<Violation>;
+using RequestCase = v1::Request::RequestCase;
+
+constexpr const char* least_1 = "at least 1";
+
+/// A repeated name is wrong anyway, so nobody needs more assignments than there are parameters. Without this bound, the
+/// longest request would keep the simulation waiting.
+bool too_many(int assignments, std::string field, Violations& violations) {
+    const std::size_t most = simulation::parameter_registry().size();
+    if (static_cast<std::size_t>(assignments) <= most)
+        return false;
+    violations.push_back(
+        {std::move(field), "at most " + std::to_string(most) + " assignments", std::to_string(assignments)});
+    return true;
+}
+
+simulation::Command command_of(const v1::CreateWorld& request, const Draws& draws, Violations& violations) {
+    if (!is_world_name(request.name()))
+        violations.push_back({"create_world.name", std::string{world_name_allowed}, '"' + request.name() + '"'});
+    simulation::CreateWorld command{.name = request.name(),
+                                    .parameters = {},
+                                    .seed = request.has_seed() ? base::Seed{request.seed()} : draws.seed,
+                                    .run_id = draws.run_id};
+    if (!too_many(request.parameters_size(), "create_world.parameters", violations)) {
+        Violations missing;
+        const auto assignments = to_assignments(request.parameters(), "create_world.", missing);
+        if (missing.empty()) {
+            auto parameters = simulation::assign({}, assignments, "create_world.");
+            if (parameters)
+                command.parameters = *parameters;
+            else
+                missing = parameters.error().violations;
+        }
+        violations.insert(violations.end(), missing.begin(), missing.end());
+    }
+    return command;
+}
+
+simulation::Command command_of(const v1::DeleteWorld& request, const Draws&, Violations& violations) {
+    if (request.world().empty())
+        violations.push_back({"delete_world.world", "the name of a world", "nothing"});
+    return simulation::DeleteWorld{lookup_name(request.world())};
+}
+
+simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws, Violations&) {
+    simulation::ResetWorld command{.world = lookup_name(request.world()), .seed = {}, .run_id = draws.run_id};
+    if (request.has_seed())
+        command.seed = base::Seed{request.seed()};
+    return command;
+}
+
+simulation::Command command_of(const v1::Run& request, const Draws&, Violations& violations) {
+    simulation::Run command{.world = lookup_name(request.world()), .generations = {}};
+    if (request.has_generations()) {
+        if (request.generations() == 0)
+            violations.push_back({"run.generations", least_1, "0"});
+        command.generations = request.generations();
+    }
+    return command;
+}
+
+simulation::Command command_of(const v1::RunUntilTick& request, const Draws&, Violations&) {
+    return simulation::RunUntilTick{.world = lookup_name(request.world()), .tick = request.tick()};
+}
+
+simulation::Command command_of(const v1::Pause& request, const Draws&, Violations&) {
+    return simulation::Pause{lookup_name(request.world())};
+}
+
+simulation::Command command_of(const v1::Resume& request, const Draws&, Violations&) {
+    return simulation::Resume{lookup_name(request.world())};
+}
+
+simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violations& violations) {
+    simulation::SetSpeed command{.world = lookup_name(request.world()), .speed = {}};
+    switch (request.speed().speed_case()) {
+    case v1::Speed::kRealTimeFactor: {
+        const double factor = request.speed().real_time_factor();
+        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) // a NaN is in no range
+            violations.push_back({"set_speed.speed.real_time_factor",
+                                  number_text(simulation::speed_min) + " to " + number_text(simulation::speed_max),
+                                  number_text(factor)});
+        command.speed = factor;
+        break;
+    }
+    case v1::Speed::kMax:
+        if (!request.speed().max())
+            violations.push_back({"set_speed.speed.max", "true", "false"});
+        break;
+    case v1::Speed::SPEED_NOT_SET:
+        violations.push_back({"set_speed.speed", "real_time_factor or max", "nothing"});
+        break;
+    }
+    return command;
+}
+
+simulation::Command command_of(const v1::SetParameters& request, const Draws&, Violations& violations) {
+    simulation::SetParameters command{.world = lookup_name(request.world()),
+                                      .assignments = {},
+                                      .dry_run = request.dry_run(),
+                                      .expected_revision = {}};
+    if (!too_many(request.parameters_size(), "set_parameters.parameters", violations))
+        command.assignments = to_assignments(request.parameters(), "set_parameters.", violations);
+    if (request.has_expected_revision())
+        command.expected_revision = request.expected_revision();
+    return command;
+}
+
+} // namespace
+
+RequestKind kind_of(const v1::Request& request) {
+    switch (request.request_case()) {
+    case RequestCase::kCreateWorld:
+    case RequestCase::kDeleteWorld:
+    case RequestCase::kResetWorld:
+    case RequestCase::kRun:
+    case RequestCase::kRunUntilTick:
+    case RequestCase::kPause:
+    case RequestCase::kResume:
+    case RequestCase::kSetSpeed:
+    case RequestCase::kSetParameters:
+        return RequestKind::Command;
+    case RequestCase::kListWorlds:
+    case RequestCase::kGetParameters:
+    case RequestCase::kGetStatistics:
+    case RequestCase::kGetHistory:
+    case RequestCase::kGetOrganism:
+    case RequestCase::kDescribe:
+        return RequestKind::Query;
+    case RequestCase::kSubscribeSnapshots:
+    case RequestCase::kSubscribeEvents:
+    case RequestCase::kUnsubscribe:
+        return RequestKind::Subscription;
+    case RequestCase::REQUEST_NOT_SET:
+        break;
+    }
+    return RequestKind::Unknown;
+}
+
+base::Result<simulation::Command> to_command(const v1::Request& request, const Draws& draws) {
+    Violations violations;
+    if (request.client_key().empty() || request.client_key().size() > client_key_bytes_max)
+        violations.push_back({"client_key", "1 to " + std::to_string(client_key_bytes_max) + " bytes",
+                              std::to_string(request.client_key().size()) + " bytes"});
+    const simulation::Command command = [&]() -> simulation::Command {
+        switch (request.request_case()) {
+        case RequestCase::kCreateWorld:
+            return command_of(request.create_world(), draws, violations);
+        case RequestCase::kDeleteWorld:
+            return command_of(request.delete_world(), draws, violations);
+        case RequestCase::kResetWorld:
+            return command_of(request.reset_world(), draws, violations);
+        case RequestCase::kRun:
+            return command_of(request.run(), draws, violations);
+        case RequestCase::kRunUntilTick:
+            return command_of(request.run_until_tick(), draws, violations);
+        case RequestCase::kPause:
+            return command_of(request.pause(), draws, violations);
+        case RequestCase::kResume:
+            return command_of(request.resume(), draws, violations);
+        case RequestCase::kSetSpeed:
+            return command_of(request.set_speed(), draws, violations);
+        case RequestCase::kSetParameters:
+            return command_of(request.set_parameters(), draws, violations);
+        default:
+            violations.push_back({"request", "a command", "something else"});
+            return simulation::Pause{};
+        }
+    }();
+    if (!violations.empty())
+        return invalid(std::move(violations));
+    return command;
+}
+
+std::vector<base::Violation> faults_of(const v1::Request& request) {
+    Violations violations;
+    if (request.has_get_history()) {
+        const v1::GetHistory& query = request.get_history();
+        if (query.has_first_generation() && query.has_last_generation() &&
+            query.first_generation() > query.last_generation())
+            violations.push_back({"get_history.last_generation",
+                                  "at least first_generation (" + std::to_string(query.first_generation()) + ")",
+                                  std::to_string(query.last_generation())});
+    } else if (request.has_subscribe_snapshots()) {
+        const double rate_hz = request.subscribe_snapshots().rate_hz();
+        if (!(rate_hz > 0 && std::isfinite(rate_hz)))
+            violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(rate_hz)});
+    }
+    return violations;
+}
+
+std::string lookup_name(const std::string& world) {
+    return is_world_name(world) ? world : quotable(world);
+}
+
+base::Refusal invalid(std::vector<base::Violation> violations) {
+    base::Refusal refusal{
+        .code = base::RefusalCode::InvalidArgument, .message = {}, .violations = std::move(violations)};
+    const Violation& first = refusal.violations.front();
+    refusal.message = refusal.violations.size() == 1
+                          ? first.field + " must be " + first.allowed + ", not " + quotable(first.got)
+                          : std::to_string(refusal.violations.size()) + " fields are not as they must be";
+    return refusal;
+}
+
+} // namespace evod::protocol

@@ -1,0 +1,90 @@
+#include "server/protocol/events.h"
+
+#include "server/protocol/parameters.h"
+#include "server/protocol/worlds.h"
+
+namespace evod::protocol {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+    using F::operator()...;
+};
+
+} // namespace
+
+v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory) {
+    v1::Event told;
+    told.set_world(event.world);
+    told.set_run_id(to_text(event.run_id));
+    told.set_tick(event.tick);
+    std::visit(Overloaded{
+                   [&](const simulation::GenerationFinished& finished) {
+                       auto& to = *told.mutable_generation_finished();
+                       for (const auto& statistics : finished.statistics)
+                           *to.add_statistics() = to_proto(statistics);
+                   },
+                   [&](const simulation::MigrationHappened& migration) {
+                       auto& to = *told.mutable_migration();
+                       to.set_generation(migration.generation);
+                       for (const auto& edge : migration.edges) {
+                           auto& to_edge = *to.add_edges();
+                           to_edge.set_from_island(edge.from);
+                           to_edge.set_to_island(edge.to);
+                           to_edge.set_migrant_count(edge.migrant_count);
+                       }
+                   },
+                   [&](const simulation::Extinction& extinction) {
+                       auto& to = *told.mutable_extinction();
+                       to.set_island(extinction.island);
+                       to.set_generation(extinction.generation);
+                   },
+                   [&](const simulation::RunTerminated& terminated) {
+                       told.mutable_run_terminated()->set_outcome(to_proto(terminated.outcome));
+                   },
+                   [&](const simulation::GoalReached&) {
+                       auto& to = *told.mutable_run_control_changed();
+                       if (const auto entry = laboratory.find(event.world))
+                           *to.mutable_world() = to_proto(**entry);
+                   },
+               },
+               event.kind);
+    return told;
+}
+
+std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
+                                  std::string_view by, const simulation::Laboratory& laboratory) {
+    v1::Event told;
+    told.set_world(applied.world);
+    told.set_tick(applied.tick);
+    const auto entry = laboratory.find(applied.world);
+    if (entry)
+        told.set_run_id(to_text((*entry)->run_id));
+    const auto tell_world = [&](auto& to) {
+        to.set_by(std::string{by});
+        if (entry)
+            *to.mutable_world() = to_proto(**entry);
+    };
+    std::visit(Overloaded{
+                   [&](const simulation::CreateWorld&) { tell_world(*told.mutable_world_created()); },
+                   [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
+                   [&](const simulation::DeleteWorld&) { told.mutable_world_deleted()->set_by(std::string{by}); },
+                   [&](const simulation::SetParameters& set) {
+                       if (set.dry_run || !applied.parameters)
+                           return;
+                       auto& to = *told.mutable_parameters_changed();
+                       to.set_by(std::string{by});
+                       to.set_revision(applied.parameters->revision);
+                       for (const auto& assignment : set.assignments)
+                           if (const auto* description = simulation::find_parameter(assignment.name))
+                               *to.add_changed() = state_of(*description, *applied.parameters);
+                   },
+                   [&](const auto&) { tell_world(*told.mutable_run_control_changed()); },
+               },
+               command);
+    if (told.event_case() == v1::Event::EVENT_NOT_SET)
+        return std::nullopt;
+    return told;
+}
+
+} // namespace evod::protocol

@@ -1,0 +1,36 @@
+// Answers to queries, read from the laboratory between two ticks.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "server/base/result.h"
+#include "server/simulation/laboratory.h"
+
+#include <optional>
+#include <vector>
+
+namespace evod::protocol {
+
+/// Answers to a history query at most so many GenerationStatistics, but a whole generation at least.
+constexpr std::size_t history_statistics_max = 1000;
+
+v1::WorldList list_worlds(const simulation::Laboratory& laboratory);
+base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& laboratory, const v1::GetParameters& query);
+base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query);
+base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query);
+
+/// Part of a world's history, copied as it lies so that the simulation need not wait for messages to be made.
+struct HistoryRows {
+    std::vector<simulation::GenerationStatistics> rows;
+    std::optional<std::uint64_t> next_generation;
+};
+base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
+v1::History to_proto(const HistoryRows& rows);
+
+/// The world that is to be watched, as found by name.
+struct Watched {
+    std::string world;
+    std::uint32_t island_count;
+};
+base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, const v1::SubscribeSnapshots& request);
+
+} // namespace evod::protocol

@@ -1,0 +1,70 @@
+#include "server/protocol/refusals.h"
+
+#include "server/simulation/laboratory.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace evod::protocol {
+namespace {
+
+// Enough of them to mend a request; a hostile one should not be answered with megabytes.
+constexpr std::size_t violations_told_max = 200;
+
+} // namespace
+
+v1::Status to_proto(const base::Refusal& refusal) {
+    v1::Status status;
+    status.set_code(static_cast<v1::Code>(refusal.code));
+    status.set_message(quotable(refusal.message, 2000));
+    for (const base::Violation& violation : refusal.violations) {
+        if (static_cast<std::size_t>(status.violations_size()) == violations_told_max) {
+            status.mutable_message()->append(" (" + std::to_string(refusal.violations.size()) +
+                                             " fields are wrong; the first " + std::to_string(violations_told_max) +
+                                             " are listed)");
+            break;
+        }
+        v1::Violation& told = *status.add_violations();
+        told.set_field(quotable(violation.field, 200));
+        told.set_allowed(quotable(violation.allowed, 2000));
+        told.set_got(quotable(violation.got, 200));
+    }
+    return status;
+}
+
+v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal) {
+    v1::Response response;
+    response.set_request_id(request_id);
+    *response.mutable_status() = to_proto(refusal);
+    return response;
+}
+
+std::string quotable(std::string_view text, std::size_t bytes_max) {
+    const bool cut = text.size() > bytes_max;
+    if (cut) {
+        std::size_t end = bytes_max;
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+            --end; // not in the middle of a character
+        text = text.substr(0, end);
+    }
+    std::string quoted{text};
+    std::replace_if(
+        quoted.begin(), quoted.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return cut ? quoted + "…" : quoted;
+}
+
+bool is_world_name(std::string_view name) {
+    return !name.empty() && name.size() <= simulation::world_name_bytes_max &&
+           std::all_of(name.begin(), name.end(), [](char c) {
+               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+                      c == '-';
+           });
+}
+
+std::string number_text(double value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value);
+    return {digits, end.ptr};
+}
+
+} // namespace evod::protocol

@@ -1,0 +1,160 @@
+#include "server/protocol/worlds.h"
+
+#include "server/base/assert.h"
+
+namespace evod::protocol {
+
+v1::RunState to_proto(simulation::RunState state) {
+    switch (state) {
+    case simulation::RunState::Waiting:
+        return v1::RUN_STATE_WAITING;
+    case simulation::RunState::Running:
+        return v1::RUN_STATE_RUNNING;
+    case simulation::RunState::Paused:
+        return v1::RUN_STATE_PAUSED;
+    case simulation::RunState::Terminated:
+        return v1::RUN_STATE_TERMINATED;
+    }
+    return v1::RUN_STATE_UNSPECIFIED;
+}
+
+v1::Outcome to_proto(evolution::Outcome outcome) {
+    switch (outcome) {
+    case evolution::Outcome::Running:
+        return v1::OUTCOME_UNSPECIFIED;
+    case evolution::Outcome::TargetFitness:
+        return v1::OUTCOME_TARGET_FITNESS;
+    case evolution::Outcome::Extinction:
+        return v1::OUTCOME_EXTINCTION;
+    case evolution::Outcome::Stagnation:
+        return v1::OUTCOME_STAGNATION;
+    case evolution::Outcome::GenerationLimit:
+        return v1::OUTCOME_GENERATION_LIMIT;
+    }
+    return v1::OUTCOME_UNSPECIFIED;
+}
+
+v1::Speed to_proto(const simulation::Speed& speed) {
+    v1::Speed to;
+    if (speed)
+        to.set_real_time_factor(*speed);
+    else
+        to.set_max(true);
+    return to;
+}
+
+v1::WorldInfo to_proto(const simulation::Entry& entry) {
+    const simulation::World& world = entry.world;
+    const simulation::Moment& moment = world.moment();
+    v1::WorldInfo to;
+    to.set_name(entry.name);
+    to.set_run_id(to_text(entry.run_id));
+    to.set_seed(world.seed().value);
+    to.set_island_count(static_cast<std::uint32_t>(world.islands().size()));
+    to.set_tick(moment.tick);
+    to.set_generation(moment.generation);
+    to.set_generation_tick(moment.generation_tick);
+    to.set_simulated_s(moment.simulated_s);
+    to.set_state(to_proto(entry.state()));
+    to.set_outcome(to_proto(world.outcome()));
+    *to.mutable_speed() = to_proto(entry.control.speed);
+    to.set_state_hash(to_text(world.hash()));
+    to.set_parameter_revision(world.parameters().revision);
+    if (const auto ended = entry.control.until_generation)
+        to.set_run_until_generation(*ended + (*ended < ~std::uint64_t{0} ? 1 : 0)); // the one that begins then
+    if (entry.control.until_tick)
+        to.set_run_until_tick(*entry.control.until_tick);
+    to.set_ticks_per_s(entry.ticks_per_s);
+    for (const std::string_view name : evolution::gene_names)
+        to.add_gene_names(std::string{name});
+    return to;
+}
+
+v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics) {
+    v1::GenerationStatistics to;
+    to.set_generation(statistics.generation);
+    to.set_island(statistics.island);
+    to.set_end_tick(statistics.end_tick);
+    to.set_organism_count(statistics.organism_count);
+    to.set_fitness_best(statistics.fitness_best);
+    to.set_fitness_mean(statistics.fitness_mean);
+    to.set_fitness_median(statistics.fitness_median);
+    to.set_fitness_worst(statistics.fitness_worst);
+    to.set_fitness_deviation(statistics.fitness_deviation);
+    for (const auto& gene : statistics.genes) {
+        auto& to_gene = *to.add_genes();
+        to_gene.set_mean(gene.mean);
+        to_gene.set_deviation(gene.deviation);
+        to_gene.set_min(gene.min);
+        to_gene.set_max(gene.max);
+    }
+    to.set_diversity(statistics.diversity);
+    to.set_alive_count(statistics.alive_count);
+    to.set_starved_count(statistics.starved_count);
+    to.set_poisoned_count(statistics.poisoned_count);
+    to.set_food_eaten(statistics.food_eaten);
+    to.set_poison_eaten(statistics.poison_eaten);
+    to.set_clamp_count(statistics.clamp_count);
+    to.set_too_fast_count(statistics.too_fast_count);
+    to.set_speed_limit_count(statistics.speed_limit_count);
+    to.set_best_organism(statistics.best_organism);
+    to.set_simulated_s(statistics.simulated_s);
+    return to;
+}
+
+v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::uint32_t island) {
+    v1::LiveStatistics to;
+    to.set_island(island);
+    to.set_organism_count(statistics.organism_count);
+    to.set_alive_count(statistics.alive_count);
+    to.set_health_mean(statistics.health_mean);
+    to.set_food_eaten(statistics.food_eaten);
+    to.set_poison_eaten(statistics.poison_eaten);
+    to.set_starved_count(statistics.starved_count);
+    to.set_poisoned_count(statistics.poisoned_count);
+    return to;
+}
+
+v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id) {
+    const auto& parameters = world.parameters().active;
+    const auto& born = island.born();
+    EVOD_ASSERT(id < born.genes.cols());
+    v1::OrganismInfo to;
+    to.set_id(id);
+    to.set_island(island.index());
+    to.set_generation(world.moment().generation);
+    for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+        to.add_genes(born.genes(gene, id));
+    if (id < born.parents.size()) {
+        to.add_parents(born.parents[id].first);
+        if (born.parents[id].second != born.parents[id].first)
+            to.add_parents(born.parents[id].second);
+    }
+    const auto body = island.body_of(id);
+    to.set_alive(body.has_value() || !world.has_bodies());
+    if (!world.has_bodies())
+        return to;
+
+    const auto shape = simulation::body_shape(born.genes(evolution::BodySize, id), parameters);
+    to.set_radius_px(shape.radius_px);
+    to.set_mass_kg(shape.mass_kg);
+    const simulation::Fate& fate = island.fate();
+    to.set_food_eaten(fate.food_eaten[id]);
+    to.set_poison_eaten(fate.poison_eaten[id]);
+    if (body) {
+        const physics::Circles& bodies = island.bodies();
+        to.set_x_px(physics::to_px(bodies.x[*body]));
+        to.set_y_px(physics::to_px(bodies.y[*body]));
+        to.set_velocity_x_px_s(bodies.velocity_x[*body]);
+        to.set_velocity_y_px_s(bodies.velocity_y[*body]);
+        to.set_health(island.living().health[*body]);
+        to.set_lived_s(static_cast<double>(world.moment().generation_tick) * parameters.tick_s);
+    } else {
+        to.set_lived_s(static_cast<double>(fate.lived_ticks[id]) * parameters.tick_s);
+        to.set_cause_of_death(fate.cause[id] == simulation::CauseOfDeath::Poisoned ? v1::CAUSE_OF_DEATH_POISONED
+                                                                                   : v1::CAUSE_OF_DEATH_STARVED);
+    }
+    return to;
+}
+
+} // namespace evod::protocol

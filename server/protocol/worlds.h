@@ -1,0 +1,20 @@
+// Worlds, statistics and organisms as messages.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "evod/v1/world.pb.h"
+#include "server/simulation/laboratory.h"
+
+namespace evod::protocol {
+
+v1::RunState to_proto(simulation::RunState state);
+v1::Outcome to_proto(evolution::Outcome outcome);
+v1::Speed to_proto(const simulation::Speed& speed);
+v1::WorldInfo to_proto(const simulation::Entry& entry);
+v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statistics);
+v1::LiveStatistics to_proto(const simulation::LiveStatistics& statistics, std::uint32_t island);
+
+/// id  below the number born on the island.
+v1::OrganismInfo organism_info(const simulation::World& world, const simulation::Island& island, std::uint32_t id);
+
+} // namespace evod::protocol
