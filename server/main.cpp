@@ -1,0 +1,133 @@
+// evod: options → objects → run → exit code. The only place that knows everyone.
+#include "server/network/random_ids.h"
+#include "server/network/server.h"
+#include "server/protocol/refusals.h"
+#include "server/simulation/experiment.h"
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <thread>
+
+namespace {
+
+using namespace evod;
+
+struct ServeOptions {
+    std::string bind_address = "127.0.0.1";
+    std::uint16_t port = wire::default_port;
+    std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+    std::string experiment_file;
+    std::optional<std::uint64_t> seed;
+    std::string speed;
+    bool start = false;
+};
+
+/// Says why evod cannot start, and what to do.
+int fail(const std::string& why) {
+    std::cerr << "evod: " << why << '\n';
+    return 1;
+}
+
+base::Result<simulation::Experiment> read_experiment(const std::string& path) {
+    std::ifstream file{path, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    if (!file || file.bad())
+        return base::Refusal{.code = base::RefusalCode::NotFound,
+                             .message = std::string{"it cannot be read: "} + std::strerror(errno),
+                             .violations = {}};
+    return simulation::parse_experiment(text);
+}
+
+/// A file's stem as the name of a world: what a name may not hold becomes '_'.
+std::string world_name(const std::string& path) {
+    std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
+    for (char& c : name)
+        if (!protocol::is_world_name(std::string_view{&c, 1}))
+            c = '_';
+    return name.empty() ? "default" : name;
+}
+
+/// "max" or a factor of real time; nullopt: neither.
+std::optional<simulation::Speed> parse_speed(const std::string& text) {
+    if (text == "max")
+        return simulation::Speed{};
+    double factor = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), factor);
+    if (read.ec != std::errc{} || read.ptr != text.data() + text.size() ||
+        !(factor >= simulation::speed_min && factor <= simulation::speed_max))
+        return std::nullopt;
+    return simulation::Speed{factor};
+}
+
+int serve(const ServeOptions& options) {
+    simulation::CreateWorld create{
+        .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
+    if (!options.experiment_file.empty()) {
+        const auto experiment = read_experiment(options.experiment_file);
+        if (!experiment)
+            return fail("cannot use " + options.experiment_file + ": " + to_text(experiment.error()));
+        create.name = world_name(options.experiment_file);
+        create.parameters = experiment->parameters;
+        create.seed = experiment->seed.value_or(create.seed);
+    }
+    if (options.seed)
+        create.seed = base::Seed{*options.seed};
+
+    const std::string name = create.name;
+    const base::Seed seed = create.seed;
+    network::ServerOptions server_options{
+        .bind_address = options.bind_address, .port = options.port, .threads = options.threads, .first_commands = {}};
+    server_options.first_commands.emplace_back(std::move(create));
+    if (!options.speed.empty())
+        server_options.first_commands.emplace_back(simulation::SetSpeed{name, *parse_speed(options.speed)});
+    if (options.start)
+        server_options.first_commands.emplace_back(simulation::Run{name, {}});
+
+    const auto server = network::Server::open(std::move(server_options));
+    if (!server)
+        return fail(server.error().message);
+    const auto endpoint = (*server)->endpoint();
+    if (!endpoint.address().is_loopback())
+        spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
+                     endpoint.address().to_string());
+    spdlog::info("evod {} listening on {}:{}, world \"{}\", seed {}", EVOD_VERSION, endpoint.address().to_string(),
+                 endpoint.port(), name, seed.value);
+    (*server)->run();
+    spdlog::info("stopped");
+    return 0;
+}
+
+} // namespace
+
+int main(int argument_count, char** arguments) {
+    ServeOptions options;
+    CLI::App app{"An evolution laboratory that runs as a server.", "evod"};
+    app.set_version_flag("--version", std::string{"evod "} + EVOD_VERSION);
+    app.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
+        ->capture_default_str();
+    app.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
+    app.add_option("--threads", options.threads, "Threads that simulate")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    app.add_option("--experiment", options.experiment_file, "JSON file with the parameters of the first world");
+    app.add_option("--seed", options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance");
+    app.add_option("--speed", options.speed, "Simulated seconds per second, 0.001 to 10000, or max")
+        ->check([](const std::string& text) {
+            return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
+        });
+    app.add_flag("--start", options.start, "Run at once, without end");
+    CLI11_PARSE(app, argument_count, arguments);
+
+    spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    spdlog::flush_on(spdlog::level::info);
+    return serve(options);
+}

@@ -1,0 +1,308 @@
+#include "server/network/dispatcher.h"
+
+#include "server/network/description.h"
+#include "server/network/limits.h"
+#include "server/network/random_ids.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/events.h"
+#include "server/protocol/parameters.h"
+#include "server/protocol/queries.h"
+#include "server/protocol/refusals.h"
+#include "server/protocol/worlds.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+base::Refusal refusal(base::RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+const base::Refusal& busy() {
+    static const base::Refusal refused =
+        refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again");
+    return refused;
+}
+
+/// "set_parameters"
+std::string name_of(const v1::Request& request) {
+    return v1::Request::descriptor()->FindFieldByNumber(request.request_case())->name();
+}
+
+/// The core names fields of a command; clients know them by their path in the request.
+base::Refusal with_paths(base::Refusal refused, const std::string& request_name) {
+    for (base::Violation& violation : refused.violations)
+        if (!violation.field.starts_with(request_name + "."))
+            violation.field = request_name + "." + violation.field;
+    return refused;
+}
+
+/// The same bytes for the same request.
+std::string bytes_of(const v1::Request& request) {
+    std::string bytes;
+    google::protobuf::io::StringOutputStream stream{&bytes};
+    google::protobuf::io::CodedOutputStream coded{&stream};
+    coded.SetSerializationDeterministic(true);
+    request.SerializeToCodedStream(&coded);
+    coded.Trim();
+    return bytes;
+}
+
+v1::Response response_to(std::uint64_t request_id) {
+    v1::Response response;
+    response.set_request_id(request_id);
+    response.mutable_status()->set_code(v1::CODE_OK);
+    return response;
+}
+
+v1::Response response_to(const v1::Request& request, const simulation::Laboratory& laboratory,
+                         const base::Result<simulation::Applied>& applied) {
+    if (!applied)
+        return protocol::refusing(request.request_id(), with_paths(applied.error(), name_of(request)));
+    v1::Response response = response_to(request.request_id());
+    response.set_applied_tick(applied->tick);
+    if (applied->parameters)
+        *response.mutable_parameters() = protocol::to_proto(*applied->parameters);
+    else if (const auto entry = laboratory.find(applied->world); entry && !request.has_delete_world())
+        *response.mutable_world() = protocol::to_proto(**entry);
+    return response;
+}
+
+/// Puts a refusal in the place of an answer.
+void refuse(v1::Response& response, const base::Refusal& refused) {
+    *response.mutable_status() = protocol::to_proto(refused);
+    response.clear_answer();
+}
+
+} // namespace
+
+Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams)
+    : mailbox_{mailbox}
+    , outbox_{outbox}
+    , demand_{demand}
+    , streams_{streams}
+    , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max}} {}
+
+void Dispatcher::handle(Session& session, v1::Request request) {
+    const auto refuse_it = [&](const base::Refusal& refused) {
+        session.send_unasked(protocol::refusing(request.request_id(), refused));
+    };
+    if (going_away_)
+        return refuse_it(refusal(base::RefusalCode::Unavailable, "the server is going away"));
+    const auto kind = protocol::kind_of(request);
+    if (kind == protocol::RequestKind::Unknown)
+        return refuse_it(refusal(base::RefusalCode::Unimplemented, "this server does not know the request"));
+    if (request.request_id() == 0)
+        return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
+    if (!session.admit_request())
+        return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
+                                 std::to_string(requests_in_flight_max) +
+                                     " requests of this session are unanswered already: wait for an answer"));
+    switch (kind) {
+    case protocol::RequestKind::Command:
+        return command(session, request);
+    case protocol::RequestKind::Query:
+        return query(session, std::move(request));
+    case protocol::RequestKind::Subscription:
+        return subscription(session, request);
+    case protocol::RequestKind::Unknown:
+        break;
+    }
+}
+
+void Dispatcher::command(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    const auto refused = [id](const base::Refusal& why) { return encode_response(protocol::refusing(id, why)); };
+
+    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    if (!command)
+        return session.answer(refused(command.error()));
+
+    const std::string& key = request.client_key();
+    const auto verdict =
+        retries_.begin(key, id, bytes_of(request), [weak = session.weak_from_this()](const auto& frame) {
+            if (const auto waiting = weak.lock())
+                waiting->answer(frame);
+        });
+    switch (verdict) {
+    case Retries::Verdict::Known:
+        return;
+    case Retries::Verdict::Different:
+        return session.answer(refused({.code = base::RefusalCode::InvalidArgument,
+                                       .message = "this client_key has used the request_id for another request",
+                                       .violations = {{"request_id", "a new one", std::to_string(id)}}}));
+    case Retries::Verdict::TooOld:
+        return session.answer(refused(
+            refusal(base::RefusalCode::FailedPrecondition,
+                    "the request is older than those whose answers are kept, so it may have been run: it is not run "
+                    "again")));
+    case Retries::Verdict::New:
+        break;
+    }
+
+    // On the simulation thread: the answer shows the state in which the command begins to hold.
+    auto reply = [this, request, by = session.by()](const simulation::Laboratory& laboratory,
+                                                    const simulation::Command& applied_command,
+                                                    const base::Result<simulation::Applied>& applied) {
+        outbox_.answer([this, key = request.client_key(), request_id = request.request_id(),
+                        response = response_to(request, laboratory, applied)]() mutable {
+            retries_.finish(key, request_id, encode_response(std::move(response)));
+        });
+        if (!applied || !demand_.events_wanted())
+            return;
+        if (auto event = protocol::event_of(applied_command, *applied, by, laboratory))
+            outbox_.event([this, told = *std::move(event)]() mutable { streams_.tell(std::move(told)); });
+    };
+    if (!mailbox_.try_push(runtime::CommandMail{*std::move(command), std::move(reply)}))
+        retries_.forget(key, id, refused(busy()));
+}
+
+void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) {
+    ask(session, request_id, std::move(answer), [](Session&, v1::Response&) {});
+}
+
+void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, Then then) {
+    auto ask = [this, request_id, answer = std::move(answer), then = std::move(then),
+                weak = session.weak_from_this()](const simulation::Laboratory& laboratory) {
+        v1::Response response = response_to(request_id);
+        answer(laboratory, response);
+        outbox_.answer([weak, then, response = std::move(response)]() mutable {
+            if (const auto asking = weak.lock()) {
+                then(*asking, response);
+                asking->answer(encode_response(std::move(response)));
+            }
+        });
+    };
+    if (!mailbox_.try_push(runtime::QueryMail{std::move(ask)}))
+        session.answer(encode_response(protocol::refusing(request_id, busy())));
+}
+
+void Dispatcher::query(Session& session, v1::Request request) {
+    const std::uint64_t id = request.request_id();
+    if (auto faults = protocol::faults_of(request); !faults.empty())
+        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+    const std::string name = name_of(request);
+    const auto put = [name]<class Message>(base::Result<Message> result, v1::Response& response,
+                                           Message* (v1::Response::*field)()) {
+        if (result)
+            *(response.*field)() = *std::move(result);
+        else
+            refuse(response, with_paths(result.error(), name));
+    };
+    switch (request.request_case()) {
+    case v1::Request::kListWorlds:
+        return ask(session, id, [](const simulation::Laboratory& laboratory, v1::Response& response) {
+            *response.mutable_worlds() = protocol::list_worlds(laboratory);
+        });
+    case v1::Request::kGetParameters:
+        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
+            put(protocol::get_parameters(laboratory, request.get_parameters()), response,
+                &v1::Response::mutable_parameters);
+        });
+    case v1::Request::kGetStatistics:
+        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
+            put(protocol::get_statistics(laboratory, request.get_statistics()), response,
+                &v1::Response::mutable_statistics);
+        });
+    case v1::Request::kGetOrganism:
+        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
+            put(protocol::get_organism(laboratory, request.get_organism()), response, &v1::Response::mutable_organism);
+        });
+    case v1::Request::kGetHistory: {
+        // The rows are copied there and made into messages here, for there can be many.
+        auto rows = std::make_shared<protocol::HistoryRows>();
+        return ask(
+            session, id,
+            [name, request, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
+                if (auto found = protocol::get_history(laboratory, request.get_history()))
+                    *rows = *std::move(found);
+                else
+                    refuse(response, with_paths(found.error(), name));
+            },
+            [rows](Session&, v1::Response& response) {
+                if (response.status().code() == v1::CODE_OK)
+                    *response.mutable_history() = protocol::to_proto(*rows);
+            });
+    }
+    default: {
+        v1::Response response = response_to(id);
+        *response.mutable_description() = description();
+        return session.answer(encode_response(std::move(response)));
+    }
+    }
+}
+
+void Dispatcher::subscription(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    const auto refuse_it = [&](const base::Refusal& refused) {
+        session.answer(encode_response(protocol::refusing(id, refused)));
+    };
+    if (request.has_unsubscribe()) {
+        const std::uint32_t subscription_id = request.unsubscribe().subscription_id();
+        if (!streams_.unsubscribe(session, subscription_id))
+            return refuse_it({.code = base::RefusalCode::NotFound,
+                              .message = "this session has no such subscription",
+                              .violations = {{"unsubscribe.subscription_id", "one of this session's",
+                                              std::to_string(subscription_id)}}});
+        return session.answer(encode_response(response_to(id)));
+    }
+    if (auto faults = protocol::faults_of(request); !faults.empty())
+        return refuse_it(protocol::invalid(std::move(faults)));
+
+    // The world is looked up by the simulation; the subscription begins back here.
+    const auto full = [](const Session& s) { return s.snapshots.size() + s.events.size() >= subscriptions_max; };
+    const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
+                                  "this session has " + std::to_string(subscriptions_max) + " subscriptions already");
+    const std::string name = name_of(request);
+    if (request.has_subscribe_snapshots()) {
+        auto wanted = std::make_shared<SnapshotSubscription>();
+        ask(
+            session, id,
+            [name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
+                const auto& subscribe = request.subscribe_snapshots();
+                const auto watched = protocol::find_watched(laboratory, subscribe);
+                if (!watched)
+                    return refuse(response, with_paths(watched.error(), name));
+                wanted->world = watched->world;
+                if (subscribe.has_island())
+                    wanted->island = subscribe.island();
+                wanted->rate_hz = std::min(subscribe.rate_hz(), snapshot_rate_hz_max);
+            },
+            [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
+                if (response.status().code() != v1::CODE_OK)
+                    return;
+                if (full(subscriber))
+                    return refuse(response, too_many);
+                response.mutable_subscription()->set_rate_hz(wanted->rate_hz);
+                response.mutable_subscription()->set_subscription_id(
+                    streams_.subscribe(subscriber, std::move(*wanted)));
+            });
+        return;
+    }
+    auto wanted = std::make_shared<EventSubscription>();
+    ask(
+        session, id,
+        [name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
+            if (!request.subscribe_events().has_world())
+                return;
+            const auto entry = laboratory.find(protocol::lookup_name(request.subscribe_events().world()));
+            if (!entry)
+                return refuse(response, with_paths(entry.error(), name));
+            wanted->world = (*entry)->name;
+        },
+        [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
+            if (response.status().code() != v1::CODE_OK)
+                return;
+            if (full(subscriber))
+                return refuse(response, too_many);
+            response.mutable_subscription()->set_subscription_id(streams_.subscribe(subscriber, std::move(*wanted)));
+        });
+}
+
+} // namespace evod::network

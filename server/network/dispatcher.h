@@ -1,0 +1,47 @@
+// Dispatcher: from a request to its answer. Decides what a request may do, sends it to the simulation, and sees to it
+// that a command is never run twice.
+//
+// Owner        the server; on the network thread. What it puts into the mailbox runs on the simulation thread, reads
+// the
+//              laboratory there, and comes back through the outbox.
+#pragma once
+
+#include "server/network/retries.h"
+#include "server/network/session.h"
+#include "server/network/streams.h"
+#include "server/runtime/mailbox.h"
+#include "server/runtime/outbox.h"
+
+namespace evod::network {
+
+class Dispatcher {
+  public:
+    /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
+    Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams);
+
+    void handle(Session& session, v1::Request request);
+
+    /// From now on every request is refused: the server is going away.
+    void refuse_all() { going_away_ = true; }
+
+  private:
+    void command(Session& session, const v1::Request& request);
+    void query(Session& session, v1::Request request);
+    void subscription(Session& session, const v1::Request& request);
+
+    /// Asks the simulation; `answer` runs there and fills in the response.
+    using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
+    void ask(Session& session, std::uint64_t request_id, Answer answer);
+    /// The same, for an answer that has to be finished here, by `then`, which may use the session: it is still there.
+    using Then = std::function<void(Session&, v1::Response&)>;
+    void ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
+
+    runtime::Mailbox& mailbox_;
+    runtime::Outbox& outbox_;
+    runtime::Demand& demand_;
+    Streams& streams_;
+    Retries retries_;
+    bool going_away_ = false;
+};
+
+} // namespace evod::network

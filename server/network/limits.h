@@ -1,0 +1,58 @@
+// Limits: every bound of the network in one table, and how clients are told of them.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "proto/wire/framing.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/queries.h"
+#include "server/runtime/mailbox.h"
+#include "server/simulation/world.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace evod::network {
+
+// Told to clients.
+constexpr std::uint32_t requests_in_flight_max = 32; // more: refused with RESOURCE_EXHAUSTED
+constexpr std::uint32_t subscriptions_max = 32;      // of a session; more: refused
+constexpr std::uint32_t sessions_max = 256;          // more: told so, and closed
+constexpr double snapshot_rate_hz_max = 120;         // more: capped
+constexpr std::uint32_t retries_kept = 1000;         // answers per client_key; an older request is refused
+constexpr std::uint32_t client_keys_max = 256;       // the longest unused is forgotten
+constexpr std::chrono::seconds hello_timeout{5};     // then the session is closed
+
+// Of a session's send queue.
+constexpr std::size_t queued_event_bytes_max = 1 << 20;     // more: events are dropped and counted
+constexpr std::size_t queued_response_bytes_max = 16 << 20; // more: the client does not read, and is closed
+constexpr int unsent_bytes_max = 128 << 10; // in the kernel, so that a slow viewer gets new pictures and not old ones
+
+// Of all retries together: the answers of the longest unused keys go first.
+constexpr std::size_t retry_bytes_max = 64 << 20;
+
+constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
+constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
+
+/// The table as clients read it.
+inline v1::Limits limits_message() {
+    v1::Limits limits;
+    limits.set_control_frame_bytes_max(*wire::server_limits.control_bytes_max);
+    limits.set_hello_frame_bytes_max(*wire::hello_limits.control_bytes_max);
+    limits.set_requests_in_flight_max(requests_in_flight_max);
+    limits.set_subscriptions_max(subscriptions_max);
+    limits.set_sessions_max(sessions_max);
+    limits.set_worlds_max(simulation::worlds_max);
+    limits.set_snapshot_rate_hz_max(snapshot_rate_hz_max);
+    limits.set_history_generations_kept(simulation::World::history_generations_kept);
+    limits.set_history_generations_max(protocol::history_statistics_max);
+    limits.set_mailbox_commands_max(runtime::mailbox_commands_max);
+    limits.set_retries_kept(retries_kept);
+    limits.set_world_name_bytes_max(simulation::world_name_bytes_max);
+    limits.set_client_key_bytes_max(protocol::client_key_bytes_max);
+    limits.set_client_keys_max(client_keys_max);
+    limits.set_hello_timeout_s(static_cast<std::uint32_t>(hello_timeout.count()));
+    return limits;
+}
+
+} // namespace evod::network

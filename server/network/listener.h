@@ -1,0 +1,39 @@
+// Listener: the port, and a session for each connection that comes.
+#pragma once
+
+#include "server/base/result.h"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace evod::network {
+
+class Listener {
+  public:
+    /// Takes the port; says what to do about it if that cannot be.
+    ///
+    /// address   of an interface: "127.0.0.1", "0.0.0.0", "::1".
+    /// port      0: any that is free.
+    /// accepted  called for each connection.
+    static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address,
+                                       std::uint16_t port);
+
+    boost::asio::ip::tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
+
+    /// Accepts until close().
+    boost::asio::awaitable<void> accept(std::function<void(boost::asio::ip::tcp::socket)> accepted);
+
+    void close();
+
+  private:
+    explicit Listener(boost::asio::ip::tcp::acceptor acceptor) : acceptor_{std::move(acceptor)} {}
+
+    boost::asio::ip::tcp::acceptor acceptor_;
+};
+
+} // namespace evod::network

@@ -1,0 +1,119 @@
+#include "server/network/retries.h"
+
+#include <cstring>
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+/// 128 bits of the request, so that a different one is told from the same.
+base::StateHash fingerprint(std::string_view bytes) {
+    base::EntityHash hash{0, bytes.size()};
+    while (!bytes.empty()) {
+        std::uint64_t word = 0;
+        const std::size_t taken = std::min(sizeof word, bytes.size());
+        std::memcpy(&word, bytes.data(), taken);
+        hash.add(word);
+        bytes.remove_prefix(taken);
+    }
+    return hash.finish();
+}
+
+} // namespace
+
+Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t request_id, std::string_view request,
+                                Waiter waiter) {
+    Key& key = touch(client_key);
+    const auto print = fingerprint(request);
+    if (const auto found = key.commands.find(request_id); found != key.commands.end()) {
+        Command& command = found->second;
+        if (command.request != print)
+            return Verdict::Different;
+        if (command.answer)
+            waiter(command.answer);
+        else
+            command.waiters.push_back(std::move(waiter));
+        return Verdict::Known;
+    }
+    if (request_id <= key.forgotten_up_to)
+        return Verdict::TooOld;
+    Command& command = key.commands[request_id];
+    command.request = print;
+    command.waiters.push_back(std::move(waiter));
+    ++key.pending_count;
+    trim(key);
+    trim_keys();
+    return Verdict::New;
+}
+
+void Retries::finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
+    const auto found = keys_.find(client_key);
+    if (found == keys_.end())
+        return;
+    Key& key = found->second;
+    const auto command = key.commands.find(request_id);
+    if (command == key.commands.end())
+        return;
+    command->second.answer = answer;
+    answer_bytes_ += answer->size();
+    --key.pending_count;
+    for (const Waiter& waiter : std::exchange(command->second.waiters, {}))
+        waiter(answer);
+    trim(key);
+    trim_keys();
+}
+
+void Retries::forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
+    const auto found = keys_.find(client_key);
+    if (found == keys_.end())
+        return;
+    auto command = found->second.commands.extract(request_id);
+    if (command.empty())
+        return;
+    --found->second.pending_count;
+    for (const Waiter& waiter : command.mapped().waiters)
+        waiter(answer);
+}
+
+Retries::Key& Retries::touch(const std::string& client_key) {
+    const auto found = keys_.find(client_key);
+    if (found != keys_.end()) {
+        used_.splice(used_.begin(), used_, found->second.use);
+        return found->second;
+    }
+    used_.push_front(client_key);
+    Key& key = keys_[client_key];
+    key.use = used_.begin();
+    return key;
+}
+
+void Retries::trim(Key& key) {
+    // One that is still being run stays; there are at most as many as the mailbox holds.
+    for (auto oldest = key.commands.begin();
+         key.commands.size() > bounds_.kept_per_key && oldest != key.commands.end();) {
+        if (!oldest->second.answer) {
+            ++oldest;
+            continue;
+        }
+        key.forgotten_up_to = std::max(key.forgotten_up_to, oldest->first);
+        answer_bytes_ -= oldest->second.answer->size();
+        oldest = key.commands.erase(oldest);
+    }
+}
+
+void Retries::trim_keys() {
+    // The key used last is never forgotten: somebody is using it now.
+    for (auto oldest = used_.end(); oldest != used_.begin() && --oldest != used_.begin();) {
+        if (keys_.size() <= bounds_.keys_max && answer_bytes_ <= bounds_.bytes_max)
+            return;
+        const auto key = keys_.find(*oldest);
+        if (key->second.pending_count > 0)
+            continue;
+        for (const auto& [id, command] : key->second.commands)
+            answer_bytes_ -= command.answer->size();
+        keys_.erase(key);
+        oldest = used_.erase(oldest);
+    }
+}
+
+} // namespace evod::network

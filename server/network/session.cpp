@@ -1,0 +1,354 @@
+#include "server/network/session.h"
+
+#include "server/network/limits.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/refusals.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <spdlog/spdlog.h>
+
+#include <netinet/tcp.h>
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace evod::network {
+namespace {
+
+constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
+constexpr std::size_t name_bytes_max = 64;
+constexpr std::size_t batch_frames_max = 64;
+
+base::Refusal refusal(base::RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+std::string address_of(const tcp::socket& socket) {
+    boost::system::error_code error;
+    const auto endpoint = socket.remote_endpoint(error);
+    if (error)
+        return "nobody";
+    return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+}
+
+} // namespace
+
+SharedBytes encode_control(const v1::ServerMessage& message) {
+    return std::make_shared<const std::string>(wire::encode_frame(wire::Channel::Control, message));
+}
+
+SharedBytes encode_response(v1::Response response) {
+    v1::ServerMessage message;
+    *message.mutable_response() = std::move(response);
+    return encode_control(message);
+}
+
+SharedBytes encode_event(v1::Event event) {
+    v1::ServerMessage message;
+    *message.mutable_event() = std::move(event);
+    return encode_control(message);
+}
+
+Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
+    : socket_{std::move(socket)}
+    , host_{host}
+    , number_{number}
+    , address_{address_of(socket_)}
+    , hello_timer_{socket_.get_executor()}
+    , farewell_timer_{socket_.get_executor()}
+    , writer_signal_{socket_.get_executor(), asio::steady_timer::time_point::max()} {
+    boost::system::error_code ignored; // a socket without these options works, only less well
+    socket_.set_option(tcp::no_delay{true}, ignored);
+    socket_.set_option(asio::socket_base::keep_alive{true}, ignored);
+    const int unsent = unsent_bytes_max;
+    ::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+}
+
+void Session::start(const std::optional<base::Refusal>& refused) {
+    coroutines_ = 2;
+    asio::co_spawn(
+        socket_.get_executor(), [self = shared_from_this()] { return self->read(); }, asio::detached);
+    asio::co_spawn(
+        socket_.get_executor(), [self = shared_from_this()] { return self->write(); }, asio::detached);
+    if (refused) {
+        fail(*refused);
+        return;
+    }
+    hello_timer_.expires_after(hello_timeout);
+    hello_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+        if (const auto self = weak.lock(); self && !error && !self->greeted_)
+            self->fail(refusal(base::RefusalCode::FailedPrecondition,
+                               "no hello came within " + std::to_string(hello_timeout.count()) + " s"));
+    });
+}
+
+std::string Session::by() const {
+    return client_ + " " + address_;
+}
+
+// ---- reading ---------------------------------------------------------------------------------------------------
+
+asio::awaitable<void> Session::read() {
+    std::array<std::byte, 16384> bytes;
+    while (!finishing_ && !ended_) {
+        const auto [error, count] = co_await socket_.async_read_some(asio::buffer(bytes), no_throw);
+        if (error || ended_)
+            break;
+        reader_.feed({bytes.data(), count});
+        while (!finishing_ && !ended_) {
+            const auto frame = reader_.next();
+            if (!frame) {
+                fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what));
+                break;
+            }
+            if (!*frame)
+                break;
+            on_frame(**frame);
+        }
+    }
+    if (finishing_ && !ended_)
+        co_await discard_input();
+    else
+        close();
+    end();
+}
+
+/// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
+asio::awaitable<void> Session::discard_input() {
+    std::array<std::byte, 16384> bytes;
+    for (;;) {
+        const auto [error, count] = co_await socket_.async_read_some(asio::buffer(bytes), no_throw);
+        if (error)
+            break;
+    }
+    close();
+}
+
+void Session::on_frame(const wire::Frame& frame) {
+    auto message = wire::parse_body<v1::ClientMessage>(frame.body);
+    if (!greeted_) {
+        if (!message)
+            return fail(refusal(base::RefusalCode::InvalidArgument, message.error().what));
+        if (!message->has_hello())
+            return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a hello"));
+        return on_hello(message->hello());
+    }
+    if (!message)
+        return send_unasked(protocol::refusing(0, refusal(base::RefusalCode::InvalidArgument, message.error().what)));
+    switch (message->message_case()) {
+    case v1::ClientMessage::kRequest:
+        host_.handle(*this, std::move(*message->mutable_request()));
+        break;
+    case v1::ClientMessage::kHello:
+        send_unasked(protocol::refusing(
+            0, refusal(base::RefusalCode::FailedPrecondition, "this session has had its hello already")));
+        break;
+    case v1::ClientMessage::MESSAGE_NOT_SET:
+        send_unasked(
+            protocol::refusing(0, refusal(base::RefusalCode::Unimplemented, "this server does not know the message")));
+        break;
+    }
+}
+
+void Session::on_hello(const v1::Hello& hello) {
+    std::vector<base::Violation> violations;
+    const auto check_length = [&](const char* field, const std::string& text) {
+        if (text.size() > name_bytes_max)
+            violations.push_back({field, "at most " + std::to_string(name_bytes_max) + " bytes",
+                                  std::to_string(text.size()) + " bytes"});
+    };
+    check_length("hello.client_name", hello.client_name());
+    check_length("hello.client_version", hello.client_version());
+    if (!violations.empty())
+        return fail(protocol::invalid(std::move(violations)));
+    if (hello.protocol_version() != wire::protocol_version)
+        return fail({.code = base::RefusalCode::FailedPrecondition,
+                     .message = "this server speaks another version of the protocol",
+                     .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
+                                     std::to_string(hello.protocol_version())}}});
+    greeted_ = true;
+    hello_timer_.cancel();
+    reader_.set_limits(wire::server_limits);
+    client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
+    spdlog::info("session {}: {} connected, version {}", number_, by(),
+                 hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
+
+    v1::ServerMessage message;
+    v1::Welcome& welcome = *message.mutable_welcome();
+    welcome.set_protocol_version(wire::protocol_version);
+    welcome.set_server_version(EVOD_VERSION);
+    welcome.set_instance_id(host_.instance_id);
+    welcome.add_features("codec:columns");
+    *welcome.mutable_limits() = limits_message();
+    enqueue(encode_control(message), Kind::Unasked);
+}
+
+void Session::fail(const base::Refusal& refused) {
+    if (finishing_ || ended_)
+        return;
+    spdlog::info("session {}: {} is closed: {}", number_, greeted_ ? by() : address_, refused.message);
+    send_unasked(protocol::refusing(0, refused));
+    finish();
+}
+
+// ---- what is sent ----------------------------------------------------------------------------------------------
+
+bool Session::admit_request() {
+    if (in_flight_ >= requests_in_flight_max)
+        return false;
+    ++in_flight_;
+    return true;
+}
+
+void Session::answer(SharedBytes frame) {
+    enqueue(std::move(frame), Kind::Answer);
+}
+
+void Session::send_unasked(const v1::Response& response) {
+    enqueue(encode_response(response), Kind::Unasked);
+}
+
+void Session::event(const SharedBytes& frame) {
+    // Once some are dropped the rest are too until that has been told, so that the gap is where it is said to be.
+    if (dropped_events_ > 0 || event_bytes_ + frame->size() > queued_event_bytes_max)
+        count_dropped_events(1);
+    else
+        enqueue(frame, Kind::Event);
+}
+
+void Session::count_dropped_events(std::uint64_t count) {
+    dropped_events_ += count;
+    wake_writer();
+}
+
+void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SharedBytes fields) {
+    const auto subscription = snapshots.find(subscription_id);
+    if (subscription == snapshots.end() || finishing_ || ended_)
+        return;
+    SharedBytes& waiting = subscription->second.waiting[island];
+    if (waiting)
+        ++subscription->second.dropped_count;
+    else
+        pictures_.push_back({subscription_id, island});
+    waiting = std::move(fields);
+    wake_writer();
+}
+
+void Session::enqueue(SharedBytes frame, Kind kind) {
+    if (finishing_ || ended_)
+        return;
+    (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
+    queue_.push_back({std::move(frame), kind});
+    if (response_bytes_ > queued_response_bytes_max) {
+        spdlog::warn("session {}: {} is closed: it does not read its answers", number_, by());
+        close();
+        return;
+    }
+    wake_writer();
+}
+
+void Session::written(const Queued& queued) {
+    (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.frame->size();
+    if (queued.kind == Kind::Answer)
+        --in_flight_;
+}
+
+void Session::wake_writer() {
+    writer_signal_.cancel();
+}
+
+asio::awaitable<void> Session::write() {
+    std::vector<asio::const_buffer> buffers;
+    while (!ended_) {
+        buffers.clear();
+        if (!queue_.empty()) {
+            // Answers and events first: they are small, and somebody waits for them.
+            const std::size_t batch = std::min(queue_.size(), batch_frames_max);
+            for (std::size_t i = 0; i < batch; ++i)
+                buffers.push_back(asio::buffer(*queue_[i].frame));
+            const auto [error, count] = co_await asio::async_write(socket_, buffers, no_throw);
+            if (error || ended_)
+                break;
+            for (std::size_t i = 0; i < batch; ++i) {
+                written(queue_.front());
+                queue_.pop_front();
+            }
+        } else if (dropped_events_ > 0 && !finishing_) {
+            v1::Event event;
+            event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
+            enqueue(encode_event(std::move(event)), Kind::Event);
+        } else if (!pictures_.empty() && !finishing_) {
+            const Picture picture = pictures_.front();
+            pictures_.pop_front();
+            const auto subscription = snapshots.find(picture.subscription_id);
+            if (subscription == snapshots.end())
+                continue; // unsubscribed meanwhile
+            const SharedBytes fields = std::exchange(subscription->second.waiting[picture.island], nullptr);
+            v1::SnapshotFrame of_viewer;
+            of_viewer.set_subscription_id(picture.subscription_id);
+            of_viewer.set_dropped_count(subscription->second.dropped_count);
+            const std::string tail = of_viewer.SerializeAsString();
+            const auto header =
+                wire::encode_header({.channel = wire::Channel::Stream,
+                                     .body_bytes = static_cast<std::uint32_t>(fields->size() + tail.size())});
+            buffers = {asio::buffer(header), asio::buffer(*fields), asio::buffer(tail)};
+            const auto [error, count] = co_await asio::async_write(socket_, buffers, no_throw);
+            if (error)
+                break;
+        } else if (finishing_) {
+            break;
+        } else {
+            // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
+            writer_signal_.expires_at(asio::steady_timer::time_point::max());
+            co_await writer_signal_.async_wait(no_throw);
+        }
+    }
+    if (finishing_ && !ended_) {
+        boost::system::error_code ignored; // it may be gone already
+        socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    } else {
+        close();
+    }
+    end();
+}
+
+// ---- the end ---------------------------------------------------------------------------------------------------
+
+void Session::finish() {
+    if (finishing_ || ended_)
+        return;
+    finishing_ = true;
+    hello_timer_.cancel();
+    farewell_timer_.expires_after(farewell_timeout);
+    farewell_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+        if (const auto self = weak.lock(); self && !error)
+            self->close();
+    });
+    wake_writer();
+}
+
+void Session::close() {
+    if (std::exchange(ended_, true))
+        return;
+    boost::system::error_code ignored; // closed is closed
+    socket_.close(ignored);
+    hello_timer_.cancel();
+    farewell_timer_.cancel();
+    wake_writer();
+}
+
+void Session::end() {
+    if (--coroutines_ > 0)
+        return;
+    if (greeted_)
+        spdlog::info("session {}: {} disconnected", number_, by());
+    host_.ended(*this);
+}
+
+} // namespace evod::network

@@ -1,0 +1,131 @@
+// Session: one TCP connection. Reads requests, and writes answers, events and pictures, whichever its client takes.
+//
+// Owner        the server's table of sessions, until the connection ends; its two coroutines keep it alive meanwhile.
+// Threads      the network thread.
+// Full         responses: a client that leaves more than queued_response_bytes_max unread is closed. Events: dropped
+// and
+//              counted, then told with EventsDropped. Pictures: one of each subscription and island waits, the newest.
+#pragma once
+
+#include "evod/v1/session.pb.h"
+#include "proto/wire/framing.h"
+#include "server/base/result.h"
+#include "server/network/retries.h"
+#include "server/runtime/clock.h"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace evod::network {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+class Session;
+using SessionPtr = std::shared_ptr<Session>;
+
+/// What a session needs of the rest of the server.
+struct SessionHost {
+    std::string instance_id; // 32 hexadecimal digits
+    std::function<void(Session&, v1::Request)> handle;
+    std::function<void(Session&)> ended; // called once
+};
+
+struct SnapshotSubscription {
+    std::string world;
+    std::optional<std::uint32_t> island; // nullopt: all
+    double rate_hz = 1;
+    std::uint64_t newcomer = 0;              // number of the subscription among all of the server
+    runtime::Clock::time_point next_picture; // not before then
+    std::uint64_t dropped_count = 0;
+    std::map<std::uint32_t, SharedBytes> waiting; // by island: fields 1 to 49 of the newest picture not yet sent
+};
+
+struct EventSubscription {
+    std::optional<std::string> world; // nullopt: all
+};
+
+class Session : public std::enable_shared_from_this<Session> {
+  public:
+    Session(tcp::socket socket, SessionHost& host, std::uint64_t number);
+
+    /// Begins to read and write. refusal: instead of a hello's welcome, and the end.
+    void start(const std::optional<base::Refusal>& refusal = {});
+
+    std::uint64_t number() const { return number_; }
+    bool greeted() const { return greeted_; }
+    /// Client name and address: "evoview 127.0.0.1:51234".
+    std::string by() const;
+
+    /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
+    bool admit_request();
+    /// The answer to an admitted request.
+    void answer(SharedBytes frame);
+    /// A response to something that was not admitted.
+    void send_unasked(const v1::Response& response);
+    void event(const SharedBytes& frame);
+    void count_dropped_events(std::uint64_t count);
+    /// Takes a picture for a subscription in the place of one that has not been sent.
+    void picture(std::uint32_t subscription_id, std::uint32_t island, SharedBytes fields);
+
+    /// Writes what is waiting, then closes; no more requests are read.
+    void finish();
+    /// Closes now.
+    void close();
+
+    std::uint32_t next_subscription_id() { return ++subscription_id_; }
+    std::map<std::uint32_t, SnapshotSubscription> snapshots; // by subscription id
+    std::map<std::uint32_t, EventSubscription> events;
+
+  private:
+    enum class Kind { Answer, Unasked, Event };
+    struct Queued {
+        SharedBytes frame;
+        Kind kind;
+    };
+
+    asio::awaitable<void> read();
+    asio::awaitable<void> write();
+    asio::awaitable<void> discard_input();
+    void on_frame(const wire::Frame& frame);
+    void on_hello(const v1::Hello& hello);
+    /// Says what was wrong, and ends the session.
+    void fail(const base::Refusal& refusal);
+    void enqueue(SharedBytes frame, Kind kind);
+    void written(const Queued& queued);
+    void wake_writer();
+    void end();
+
+    tcp::socket socket_;
+    SessionHost& host_;
+    const std::uint64_t number_;
+    std::string address_, client_;
+    wire::FrameReader reader_{wire::hello_limits};
+    asio::steady_timer hello_timer_, farewell_timer_, writer_signal_;
+    bool greeted_ = false, finishing_ = false, ended_ = false;
+    int coroutines_ = 0; // that still run
+
+    std::deque<Queued> queue_;
+    std::size_t response_bytes_ = 0, event_bytes_ = 0; // in queue_
+    std::size_t in_flight_ = 0;                        // requests whose answer is not yet written
+    std::uint64_t dropped_events_ = 0;                 // not yet told
+    struct Picture {
+        std::uint32_t subscription_id, island;
+    };
+    std::deque<Picture> pictures_; // in the order of their turns; the bytes are in `snapshots`
+    std::uint32_t subscription_id_ = 0;
+};
+
+SharedBytes encode_control(const v1::ServerMessage& message);
+SharedBytes encode_response(v1::Response response);
+SharedBytes encode_event(v1::Event event);
+
+} // namespace evod::network

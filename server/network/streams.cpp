@@ -1,0 +1,177 @@
+#include "server/network/streams.h"
+
+#include "proto/wire/snapshot_codec.h"
+#include "server/protocol/worlds.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace evod::network {
+namespace {
+
+/// The items that are there, with their ids.
+struct PresentItems {
+    std::vector<std::uint32_t> id;
+    std::vector<std::int32_t> x, y;
+};
+
+wire::ItemColumns columns_of(const runtime::ItemsSnapshot& items, PresentItems& present) {
+    const std::size_t count = items.x.size();
+    if (items.due_tick.empty()) {
+        present.id.resize(count);
+        std::iota(present.id.begin(), present.id.end(), 0u);
+        return {present.id, items.x, items.y};
+    }
+    present.id.resize(count);
+    present.x.resize(count);
+    present.y.resize(count);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < count; ++i) { // without a branch: which items are away is unpredictable
+        present.id[kept] = static_cast<std::uint32_t>(i);
+        present.x[kept] = items.x[i];
+        present.y[kept] = items.y[i];
+        kept += items.due_tick[i] == 0;
+    }
+    present.id.resize(kept);
+    present.x.resize(kept);
+    present.y.resize(kept);
+    return {present.id, present.x, present.y};
+}
+
+wire::BoxColumns columns_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end) {
+    const auto part = [=](const auto& column) { return std::span{column}.subspan(begin, end - begin); };
+    return {part(boxes.x), part(boxes.y), part(boxes.half_width_px), part(boxes.half_height_px)};
+}
+
+} // namespace
+
+SharedBytes encode_picture(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
+    v1::SnapshotFrame frame;
+    frame.set_world(snapshot.world);
+    frame.set_run_id(to_text(snapshot.run_id));
+    frame.set_island(island.island);
+    frame.set_island_count(snapshot.island_count);
+    frame.set_tick(snapshot.moment.tick);
+    frame.set_generation(snapshot.moment.generation);
+    frame.set_generation_tick(snapshot.moment.generation_tick);
+    frame.set_simulated_s(snapshot.moment.simulated_s);
+    frame.set_state(protocol::to_proto(snapshot.state));
+    *frame.mutable_speed() = protocol::to_proto(snapshot.speed);
+    frame.set_state_hash(base::to_text(snapshot.hash));
+    frame.set_item_radius_px(snapshot.item_radius_px);
+    *frame.mutable_live() = protocol::to_proto(island.live, island.island);
+    frame.set_ticks_per_s(snapshot.ticks_per_s);
+
+    static thread_local PresentItems food, poison; // working memory, kept warm
+    const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
+    wire::encode({.width_px = island.width_px,
+                  .height_px = island.height_px,
+                  .position_fraction_bits = std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
+                  .organisms = {island.organisms.id, island.organisms.x, island.organisms.y, island.organisms.radius_px,
+                                island.organisms.health},
+                  .food = columns_of(island.food, food),
+                  .poison = columns_of(island.poison, poison),
+                  .crates = columns_of(island.boxes, 0, crates),
+                  .obstacles = columns_of(island.boxes, crates, boxes)},
+                 frame);
+    return std::make_shared<const std::string>(frame.SerializeAsString());
+}
+
+std::uint32_t Streams::subscribe(Session& session, SnapshotSubscription subscription) {
+    const std::uint32_t id = session.next_subscription_id();
+    subscription.newcomer = ++newcomers_;
+    session.snapshots.emplace(id, std::move(subscription));
+    update_demand();
+    return id;
+}
+
+std::uint32_t Streams::subscribe(Session& session, EventSubscription subscription) {
+    const std::uint32_t id = session.next_subscription_id();
+    session.events.emplace(id, std::move(subscription));
+    update_demand();
+    return id;
+}
+
+bool Streams::unsubscribe(Session& session, std::uint32_t subscription_id) {
+    const std::size_t found = session.snapshots.erase(subscription_id) + session.events.erase(subscription_id);
+    update_demand();
+    return found > 0;
+}
+
+void Streams::update_demand() {
+    runtime::Watches watches;
+    bool events = false;
+    for (const auto& [number, session] : sessions_) {
+        events = events || !session->events.empty();
+        for (const auto& [id, subscription] : session->snapshots) {
+            runtime::Watch& watch = watches[subscription.world];
+            watch.rate_hz = std::max(watch.rate_hz, subscription.rate_hz);
+            watch.newcomers = std::max(watch.newcomers, subscription.newcomer);
+            if (subscription.island)
+                watch.islands.push_back(*subscription.island);
+            else
+                watch.all_islands = true;
+        }
+    }
+    for (auto& [world, watch] : watches) {
+        std::sort(watch.islands.begin(), watch.islands.end());
+        watch.islands.erase(std::unique(watch.islands.begin(), watch.islands.end()), watch.islands.end());
+    }
+    demand_.want_events(events);
+    demand_.set(std::move(watches));
+    mailbox_.wake();
+}
+
+void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
+    const runtime::Snapshot& snapshot = *picture.snapshot;
+    std::vector<SharedBytes> encoded(snapshot.islands.size());
+    for (const auto& [number, session] : sessions_) {
+        for (auto& [id, subscription] : session->snapshots) {
+            if (subscription.world != snapshot.world)
+                continue;
+            subscription.dropped_count += picture.replaced_count;
+            const auto between = std::chrono::duration_cast<runtime::Clock::duration>(
+                std::chrono::duration<double>{1 / subscription.rate_hz});
+            // A tenth early rather than a whole picture late.
+            if (!picture.after_change && now + between / 10 < subscription.next_picture)
+                continue;
+            subscription.next_picture += between;
+            if (picture.after_change || subscription.next_picture <= now)
+                subscription.next_picture = now + between;
+            for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
+                const runtime::IslandSnapshot& island = snapshot.islands[i];
+                if (subscription.island && *subscription.island != island.island)
+                    continue;
+                if (!encoded[i])
+                    encoded[i] = encode_picture(snapshot, island);
+                session->picture(id, island.island, encoded[i]);
+            }
+        }
+    }
+}
+
+void Streams::tell(v1::Event event) {
+    const std::string world = event.world();
+    SharedBytes frame;
+    for (const auto& [number, session] : sessions_) {
+        const bool wanted = std::any_of(session->events.begin(), session->events.end(), [&](const auto& item) {
+            return !item.second.world || world.empty() || *item.second.world == world;
+        });
+        if (!wanted)
+            continue;
+        if (!frame)
+            frame = encode_event(std::move(event));
+        session->event(frame);
+    }
+}
+
+void Streams::count_dropped_events(std::uint64_t count) {
+    for (const auto& [number, session] : sessions_)
+        if (!session->events.empty())
+            session->count_dropped_events(count);
+}
+
+} // namespace evod::network
