@@ -1,4 +1,8 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
+#include "server/console/check.h"
+#include "server/console/experiment_file.h"
+#include "server/console/parameter_list.h"
+#include "server/console/run.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
 #include "server/protocol/refusals.h"
@@ -8,13 +12,8 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <thread>
 
 namespace {
@@ -37,25 +36,6 @@ int fail(const std::string& why) {
     return 1;
 }
 
-base::Result<simulation::Experiment> read_experiment(const std::string& path) {
-    std::ifstream file{path, std::ios::binary};
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    if (!file || file.bad())
-        return base::Refusal{.code = base::RefusalCode::NotFound,
-                             .message = std::string{"it cannot be read: "} + std::strerror(errno),
-                             .violations = {}};
-    return simulation::parse_experiment(text);
-}
-
-/// A file's stem as the name of a world: what a name may not hold becomes '_'.
-std::string world_name(const std::string& path) {
-    std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
-    for (char& c : name)
-        if (!protocol::is_world_name(std::string_view{&c, 1}))
-            c = '_';
-    return name.empty() ? "default" : name;
-}
-
 /// "max" or a factor of real time; nullopt: neither.
 std::optional<simulation::Speed> parse_speed(const std::string& text) {
     if (text == "max")
@@ -72,10 +52,10 @@ int serve(const ServeOptions& options) {
     simulation::CreateWorld create{
         .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
     if (!options.experiment_file.empty()) {
-        const auto experiment = read_experiment(options.experiment_file);
+        const auto experiment = console::load_experiment(options.experiment_file);
         if (!experiment)
-            return fail("cannot use " + options.experiment_file + ": " + to_text(experiment.error()));
-        create.name = world_name(options.experiment_file);
+            return fail(to_text(experiment.error()));
+        create.name = console::world_name(options.experiment_file);
         create.parameters = experiment->parameters;
         create.seed = experiment->seed.value_or(create.seed);
     }
@@ -125,7 +105,43 @@ int main(int argument_count, char** arguments) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
         });
     app.add_flag("--start", options.start, "Run at once, without end");
-    CLI11_PARSE(app, argument_count, arguments);
+    app.footer("Without a subcommand evod is a server.");
+
+    console::RunOptions run_options;
+    run_options.threads = options.threads;
+    run_options.drawn_seed = network::draw_seed();
+    CLI::App& run = *app.add_subcommand("run", "Run an experiment without a network");
+    run.add_option("experiment", run_options.experiment, "JSON file; without one, the default world");
+    run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance");
+    run.add_option("--generations", run_options.generations, "How many; takes the place of generation_limit, 0 is no limit");
+    run.add_option("--threads", run_options.threads, "Threads that simulate")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    run.add_option("--set", run_options.changes, "name=value of a parameter; see evod parameters")->take_all();
+    run.add_option("--csv", run_options.csv, "File for the statistics of every generation");
+    run.add_flag("--ask", run_options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
+    run.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error.");
+
+    std::string checked_file;
+    CLI::App& check = *app.add_subcommand("check", "Say what an experiment file changes, or what is wrong with it");
+    check.add_option("experiment", checked_file, "JSON file")->required();
+
+    const CLI::App& parameters = *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
+
+    app.require_subcommand(0, 1);
+    try {
+        app.parse(argument_count, arguments);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    if (run.parsed())
+        return console::run(run_options);
+    if (check.parsed())
+        return console::check(checked_file);
+    if (parameters.parsed()) {
+        std::cout << console::parameter_list();
+        return 0;
+    }
 
     spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
     spdlog::flush_on(spdlog::level::info);

@@ -7,7 +7,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <sstream>
 
 namespace evod::console {
@@ -65,8 +64,10 @@ base::Result<simulation::Parameters> with_changes(const simulation::Parameters& 
             violations.push_back({"--set " + name, description->allowed(), text});
     }
     base::Result<simulation::Parameters> changed = simulation::assign(parameters, assignments, "--set ");
-    if (!changed)
-        violations.insert(violations.end(), changed.error().violations.begin(), changed.error().violations.end());
+    if (!changed) {
+        const base::Refusal refused = changed.error();
+        violations.insert(violations.end(), refused.violations.begin(), refused.violations.end());
+    }
     if (!violations.empty())
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "some parameters cannot have these values",
@@ -80,12 +81,6 @@ std::string world_name(const std::string& path) {
         if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
             c = '_';
     return name.empty() ? "default" : name;
-}
-
-base::Seed random_seed() {
-    std::random_device entropy;
-    const std::uint64_t high = entropy();
-    return {high << 32 | entropy()};
 }
 
 } // namespace evod::console

@@ -19,7 +19,4 @@ base::Result<simulation::Parameters> with_changes(const simulation::Parameters& 
 /// replaced by "_", at most 64.
 std::string world_name(const std::string& path);
 
-/// A seed nobody chose, from the system's entropy.
-base::Seed random_seed();
-
 } // namespace evod::console

@@ -49,7 +49,7 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
     if (options.seed)
         experiment.seed = base::Seed{*options.seed};
     if (!experiment.seed)
-        experiment.seed = random_seed();
+        experiment.seed = options.drawn_seed;
     return experiment;
 }
 

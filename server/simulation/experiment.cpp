@@ -94,10 +94,12 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
             }
 
     const base::Result<Parameters> parameters = assign({}, assignments);
-    if (!parameters)
-        for (const base::Violation& violation : parameters.error().violations)
+    if (!parameters) {
+        const base::Refusal refused = parameters.error();
+        for (const base::Violation& violation : refused.violations)
             if (violation.field != "reference_population" || reference_given)
                 violations.push_back({with_line(text, violation.field), violation.allowed, violation.got});
+    }
     if (!violations.empty())
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "the experiment has fields that cannot be used",

@@ -1,0 +1,140 @@
+"""evod without a network, as a user meets it: run, check, parameters. EVOD names the program."""
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import tempfile
+import unittest
+
+EVOD = os.environ["EVOD"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def evod(*arguments, stdin="", status=0):
+    done = subprocess.run([EVOD, *arguments], input=stdin, capture_output=True, text=True, timeout=100)
+    assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+def state(text):
+    return re.search(r"state ([0-9a-f]{32})", text).group(1)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, text, name="mine.json"):
+        path = pathlib.Path(self.folder.name) / name
+        path.write_text(text)
+        return str(path)
+
+
+class Run(Folder):
+    short = ["--set", "generation_s=2", "--set", "population_size=12"]
+
+    def test_every_preset_runs_a_generation(self):
+        for path in sorted((ROOT / "experiments").glob("*.json")):
+            with self.subTest(path.name):
+                done = evod("run", str(path), "--seed", "1", "--generations", "1", "--set", "generation_s=1")
+                self.assertIn("ended: generation_limit", done.stdout)
+                self.assertIn("M organism-ticks/s", done.stdout)
+
+    def test_the_same_seed_gives_the_same_state_on_any_number_of_threads(self):
+        states = {
+            state(evod("run", "--seed", "7", "--generations", "3", "--threads", str(n), *self.short).stdout)
+            for n in (1, 2, 3)
+        }
+        self.assertEqual(len(states), 1)
+        other = evod("run", "--seed", "8", "--generations", "3", *self.short)
+        self.assertNotIn(state(other.stdout), states)
+
+    def test_the_csv_has_a_row_for_every_generation_and_island(self):
+        path = self.folder.name + "/run.csv"
+        evod("run", "--seed", "1", "--generations", "3", "--csv", path, "--set", "island_count=2", *self.short)
+        rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
+        self.assertEqual([(r["generation"], r["island"]) for r in rows], [(str(g), str(i)) for g in (1, 2, 3) for i in (0, 1)])
+        for row in rows:
+            self.assertEqual(int(row["alive_count"]) + int(row["starved_count"]) + int(row["poisoned_count"]), 12)
+            self.assertLessEqual(float(row["fitness_worst"]), float(row["fitness_mean"]))
+            self.assertLessEqual(float(row["fitness_mean"]), float(row["fitness_best"]))
+
+    def test_the_exit_status_tells_the_outcome(self):
+        evod("run", "--seed", "1", "--set", "stop_at_target_fitness=true", "--set", "target_fitness=1", *self.short)
+        evod("run", "--seed", "1", "--set", "stagnation_limit=2", "--set", "fitness=gene_sum", "--set",
+             "mutation_chance=0", status=3)
+        evod("run", "--seed", "1", "--set", "stop_at_extinction=true", "--set", "food_count=0", status=4)
+
+    def test_an_interrupt_ends_it_with_the_summary(self):
+        process = subprocess.Popen([EVOD, "run", "--seed", "1"], stdout=subprocess.PIPE, text=True)
+        lines = []
+        while not lines or not re.match(r"\s+1 ", lines[-1]):  # until the first generation is over
+            lines.append(process.stdout.readline())
+            self.assertTrue(lines[-1], "ended by itself")
+        process.send_signal(signal.SIGINT)
+        rest = process.communicate(timeout=60)[0]
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("ended: interrupted", rest)
+        self.assertRegex(rest, "state [0-9a-f]{32}")
+
+    def test_ask_takes_answers_proposals_and_asks_again(self):
+        answers = "9\nmany\n11\n\n1.5\n1\n"  # population, food (twice), poison, time, generations; then the input ends
+        done = evod("run", "--seed", "1", "--ask", stdin=answers)
+        self.assertIn("food_count: got many, allowed a whole number, 0 to", done.stdout)
+        for question in ("population_size", "poison_count", "generation_s", "population_model", "selection", "crossover",
+                         "rearranging", "creep", "fitness_scaling", "mutation_chance", "survivors"):
+            self.assertIn(f"  {question} (", done.stdout)
+        same = evod("run", "--seed", "1", "--generations", "1", "--set", "population_size=9", "--set", "food_count=11",
+                    "--set", "generation_s=1.5")
+        self.assertEqual(state(done.stdout), state(same.stdout))
+
+    def test_what_cannot_be_is_named(self):
+        for arguments, words in {
+            ("--set", "mutation_chance=1.5"): ["--set mutation_chance: got 1.5, allowed 0 to 1"],
+            ("--set", "mutation_chanse=0.5"): ["--set mutation_chanse", "did you mean mutation_chance"],
+            ("--set", "selection=luck"): ["--set selection: got luck, allowed roulette, stochastic_universal"],
+            ("--set", "population_size"): ["--set: got population_size, allowed name=value"],
+            ("--set", "generation_s=nan"): ["--set generation_s: got nan"],
+            ("--csv", "/nowhere/run.csv"): ["--csv: cannot write /nowhere/run.csv"],
+            ("/nowhere.json",): ["/nowhere.json: cannot be read: No such file"],
+        }.items():
+            with self.subTest(arguments):
+                done = evod("run", *arguments, status=1)
+                for word in words:
+                    self.assertIn(word, done.stderr)
+
+
+class Check(Folder):
+    def test_a_good_file_is_good(self):
+        done = evod("check", self.file('{"food_count": 3, "seed": 18446744073709551615, "description": "Few meals."}'))
+        self.assertIn("good\nFew meals.", done.stdout)
+        self.assertEqual(json.loads(done.stdout[done.stdout.index("{"):]), {"food_count": 3})
+
+    def test_what_is_wrong_is_named_with_its_line(self):
+        for text, word in {
+            '{\n  "food_count": 3,\n  "mutation_chance": 2\n}': "mutation_chance (line 3): got 2, allowed 0 to 1",
+            '{\n\n "fod_count": 3}': "fod_count (line 3): got an unknown name, allowed a parameter of the registry; did you mean",
+            '{\n "food_count": 3,\n}': "not JSON: line 3",
+            '{\n "food_count": -3}': "food_count (line 2): got -3",
+            '{\n "seed": 1.5}': "seed (line 2): got 1.5E0",
+            '{\n "food_count": [3]}': "food_count (line 2): got [3]",
+            "[1]": "a JSON object of parameters is needed",
+            '{"body_size_min": 300}': "body_size_max (line 1): got 200, allowed at least body_size_min (300)",
+            '{"population_size": 100000}': "population_size (line 1)",
+        }.items():
+            with self.subTest(text):
+                self.assertIn(word, evod("check", self.file(text), status=1).stderr)
+        self.assertIn("this is a folder", evod("check", self.folder.name, status=1).stderr)
+
+
+class Parameters(unittest.TestCase):
+    def test_the_document_is_what_the_program_prints(self):
+        self.assertEqual((ROOT / "docs/PARAMETERS.md").read_text(), evod("parameters").stdout)
+
+
+unittest.main()
