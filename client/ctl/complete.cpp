@@ -67,14 +67,14 @@ void complete_parameter(const Registry& registry, const std::string& word, bool 
         }
         return;
     }
-    const std::string name = word.substr(0, equals);
-    if (const auto* parameter = registry.find(name)) {
+    const std::string assigned = word.substr(0, equals + 1);
+    if (const auto* parameter = registry.find(word.substr(0, equals))) {
         for (const std::string& choice : parameter->choices()) {
-            Candidates{word}.add(name + "=" + choice);
+            Candidates{word}.add(assigned + choice);
         }
         if (parameter->kind() == v1::PARAMETER_KIND_FLAG) {
-            Candidates{word}.add(name + "=true");
-            Candidates{word}.add(name + "=false");
+            Candidates{word}.add(assigned + "true");
+            Candidates{word}.add(assigned + "false");
         }
     }
 }

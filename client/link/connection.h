@@ -111,7 +111,8 @@ struct ConnectionStatus {
 /// Names a subscription for as long as the Connection lives, across reconnections.
 struct SubscriptionHandle {
     std::uint32_t number = 0; // not the server's subscription_id, which changes with each session
-    friend auto operator<=>(const SubscriptionHandle&, const SubscriptionHandle&) = default;
+    friend bool operator==(const SubscriptionHandle&, const SubscriptionHandle&) = default;
+    friend bool operator<(SubscriptionHandle a, SubscriptionHandle b) { return a.number < b.number; }
 };
 
 class Connection {
