@@ -1,0 +1,226 @@
+#include "server/simulation/behaviour.h"
+
+#include "tests/support/chi_square.h"
+#include "tests/support/inline_executor.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+namespace evod::simulation {
+namespace {
+
+using physics::Coordinate;
+using physics::to_units;
+
+constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail
+
+/// One organism beside at most one food and one poison. The items are put at random, so the organism is put beside them.
+class OneOrganism : public testing::Test {
+  protected:
+    static Items item_at_most_one(bool there, base::Purpose purpose) {
+        Items items;
+        items.begin_generation({.placement = purpose,
+                                .respawn_purpose = purpose,
+                                .kind = 2,
+                                .count = there ? 1u : 0u,
+                                .radius_px = 4,
+                                .respawn = true,
+                                .respawn_ticks = 1},
+                               base::Seed{1}, 0, 1, {to_units(100.0), to_units(100.0)}, {});
+        return items;
+    }
+    void SetUp() override {
+        food = item_at_most_one(true, base::Purpose::FoodPlacement);
+        poison = item_at_most_one(true, base::Purpose::PoisonPlacement);
+        none = item_at_most_one(false, base::Purpose::FoodPlacement);
+        evolution::Chromosome genes;
+        genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and flees without fail
+        living.add(genes, Parameters{});
+        bodies.add(0, to_units(50.0), to_units(50.0), 10, 1);
+        rules = {.flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 2};
+    }
+    void put_beside(const Items& items, double dx, double dy) { // item − organism
+        bodies.x[0] = items.x()[0] - to_units(dx);
+        bodies.y[0] = items.y()[0] - to_units(dy);
+    }
+    struct Force {
+        float x, y;
+    };
+    Force choose(const Items& foods, const Items& poisons, std::uint32_t tick = 1) {
+        bodies.force_x[0] = bodies.force_y[0] = 0;
+        perceive_and_choose(living, foods, poisons, rules, key, tick, bodies, sight, executor);
+        return {bodies.force_x[0], bodies.force_y[0]};
+    }
+    float dx_to(const Items& items) const { return physics::distance_px(bodies.x[0], items.x()[0]); }
+    float dy_to(const Items& items) const { return physics::distance_px(bodies.y[0], items.y()[0]); }
+    void expect_along(Force force, float x, float y, float size) {
+        const float length = std::sqrt(x * x + y * y);
+        EXPECT_NEAR(force.x, x / length * size, size * 1e-5f);
+        EXPECT_NEAR(force.y, y / length * size, size * 1e-5f);
+    }
+
+    Items food, poison, none;
+    Living living;
+    physics::Circles bodies;
+    BehaviourRules rules{};
+    Sight sight;
+    base::RandomKey key{base::Seed{2}, base::Purpose::Behaviour, 0, 1};
+    support::InlineExecutor executor;
+};
+
+TEST_F(OneOrganism, SteersToSeenFoodAgainstItsOwnVelocity) {
+    bodies.velocity_x[0] = 40;
+    bodies.velocity_y[0] = -70;
+    living.impulse[0] = 90;
+    put_beside(food, 20, 10);
+    expect_along(choose(food, none), 20 - 40 * 0.3f, 10 + 70 * 0.3f, 180);
+    rules.lookahead_s = 0;
+    expect_along(choose(food, none), 20, 10, 180);
+}
+
+TEST_F(OneOrganism, AddsToTheForceThatIsThere) {
+    put_beside(food, 20, 0);
+    living.impulse[0] = 90;
+    rules.lookahead_s = 0;
+    bodies.force_x[0] = 5;
+    perceive_and_choose(living, food, none, rules, key, 1, bodies, sight, executor);
+    EXPECT_FLOAT_EQ(bodies.force_x[0], 185);
+}
+
+TEST_F(OneOrganism, SeesAtExactlyItsRadiusAndNotBeyond) {
+    living.impulse[0] = 90;
+    put_beside(food, 3, 4);
+    rules.lookahead_s = 0;
+    living.food_radius[0] = 5;
+    expect_along(choose(food, none), 3, 4, 180);
+    EXPECT_EQ(sight.food_distance[0], 5);
+    living.food_radius[0] = 4.999f;
+    const Force wandering = choose(food, none);
+    EXPECT_NEAR(std::hypot(wandering.x, wandering.y), 100, 1e-3) << "normal_speed times force_per_unit";
+
+    living.poison_radius[0] = 5;
+    living.impulse[0] = 200;
+    put_beside(poison, 3, 4);
+    expect_along(choose(none, poison), -3, -4, 400);
+    living.poison_radius[0] = 4.999f;
+    const Force again = choose(none, poison);
+    EXPECT_NEAR(std::hypot(again.x, again.y), 100, 1e-3);
+}
+
+TEST_F(OneOrganism, FleesPoisonThatIsNearerThanTheNearestFood) {
+    rules.lookahead_s = 0;
+    put_beside(poison, 1, 2);
+    ASSERT_GT(std::hypot(dx_to(food), dy_to(food)), 3);
+    living.impulse[0] = 200;
+    expect_along(choose(food, poison), -1, -2, 400);
+}
+
+TEST_F(OneOrganism, GoesForFoodThatIsNearerThanPoisonUnlessItFleesAlways) {
+    rules.lookahead_s = 0;
+    put_beside(food, 1, 2);
+    ASSERT_GT(std::hypot(dx_to(poison), dy_to(poison)), 3);
+    living.impulse[0] = 200;
+    expect_along(choose(food, poison), 1, 2, 400);
+    rules.flee_rule = FleeRule::Always;
+    expect_along(choose(food, poison), -dx_to(poison), -dy_to(poison), 400);
+    living.poison_radius[0] = 0; // not seen
+    expect_along(choose(food, poison), 1, 2, 400);
+}
+
+TEST_F(OneOrganism, GoesForFoodThatIsJustAsFarAsPoison) {
+    // A poison that lies as the food does: equal distances to the last bit.
+    const Items twin = item_at_most_one(true, base::Purpose::FoodPlacement);
+    rules.lookahead_s = 0;
+    living.impulse[0] = 200;
+    put_beside(food, 7, -3);
+    expect_along(choose(food, twin), 7, -3, 400);
+    rules.flee_rule = FleeRule::Always;
+    expect_along(choose(food, twin), -7, 3, 400);
+}
+
+TEST_F(OneOrganism, FleesWithChanceImpulseOverTheCertainOne) {
+    // Binomial counts as a chi-square of two cells.
+    put_beside(poison, 5, 0);
+    rules.lookahead_s = 0;
+    for (const float impulse : {0.0f, 20.0f, 100.0f, 190.0f, 200.0f, 250.0f}) {
+        living.impulse[0] = impulse;
+        constexpr std::uint32_t trials = 20'000;
+        std::array<std::uint64_t, 2> counts{};
+        for (std::uint32_t tick = 1; tick <= trials; ++tick) {
+            const Force force = choose(none, poison, tick);
+            ++counts[force.x == -2 * impulse && force.y == 0 && impulse > 0 ? 0 : 1];
+        }
+        const double chance = std::min(1.0, static_cast<double>(impulse) / 200);
+        if (chance == 0 || chance == 1) {
+            EXPECT_EQ(counts[0], chance == 0 ? 0u : trials);
+            continue;
+        }
+        const std::array<double, 2> expected{chance * trials, (1 - chance) * trials};
+        EXPECT_GT(support::p_value(support::chi_square(counts, expected), 1), alpha) << "impulse " << impulse;
+    }
+}
+
+TEST_F(OneOrganism, ThatDoesNotFleeSteersToFoodItSees) {
+    living.impulse[0] = 0.001f; // almost never flees
+    rules.lookahead_s = 0;
+    rules.flee_rule = FleeRule::Always;
+    put_beside(food, 6, 8);
+    expect_along(choose(food, poison), 6, 8, 0.002f);
+}
+
+TEST_F(OneOrganism, WandersInAFreshUniformDirectionEachTick) {
+    // Pearson chi-square over 36 equal sectors.
+    std::array<std::uint64_t, 36> sectors{};
+    for (std::uint32_t tick = 1; tick <= 36'000; ++tick) {
+        const Force force = choose(none, none, tick);
+        ASSERT_NEAR(std::hypot(force.x, force.y), 100, 1e-3);
+        const double turn = std::atan2(static_cast<double>(force.y), static_cast<double>(force.x)) / (2 * 3.14159265358979) + 0.5;
+        ++sectors[static_cast<std::size_t>(std::min(turn * 36, 35.0))];
+    }
+    EXPECT_GT(support::p_value_of_equal_cells(sectors), alpha);
+}
+
+TEST_F(OneOrganism, GoesInARandomDirectionWhereTheRightOneHasNoLength) {
+    living.impulse[0] = 200;
+    std::array<std::uint64_t, 4> quarters{};
+    const auto count = [&](Force force) {
+        ASSERT_NEAR(std::hypot(force.x, force.y), 400, 1e-2);
+        ++quarters[(force.x > 0 ? 1u : 0u) + (force.y > 0 ? 2u : 0u)];
+    };
+    put_beside(poison, 0, 0); // on the poison
+    for (std::uint32_t tick = 1; tick <= 2000; ++tick)
+        count(choose(none, poison, tick));
+    EXPECT_GT(support::p_value_of_equal_cells(quarters), alpha);
+    quarters = {};
+    put_beside(food, 3, -6); // the velocity will just bring it there
+    rules.lookahead_s = 0.5f;
+    bodies.velocity_x[0] = 6;
+    bodies.velocity_y[0] = -12;
+    for (std::uint32_t tick = 1; tick <= 2000; ++tick)
+        count(choose(food, none, tick));
+    EXPECT_GT(support::p_value_of_equal_cells(quarters), alpha);
+}
+
+TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
+    for (std::uint32_t id = 1; id < 40; ++id) {
+        evolution::Chromosome genes;
+        genes << 50, 100, 100, 100, 0, 0;
+        living.add(genes, Parameters{});
+        bodies.add(id, to_units(50.0), to_units(50.0), 10, 1);
+    }
+    choose(none, none, 9);
+    const std::vector<float> before = bodies.force_x;
+    std::vector<std::uint8_t> keep(40, 1);
+    keep[0] = keep[7] = keep[20] = 0;
+    bodies.keep_only(keep);
+    living.keep_only(keep);
+    std::fill(bodies.force_x.begin(), bodies.force_x.end(), 0.0f);
+    choose(none, none, 9);
+    for (std::size_t i = 1; i < bodies.size(); ++i)
+        EXPECT_EQ(bodies.force_x[i], before[bodies.id[i]]);
+}
+
+} // namespace
+} // namespace evod::simulation

@@ -1,0 +1,248 @@
+#include "server/simulation/items.h"
+
+#include "server/physics/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+using physics::Area;
+using physics::Boxes;
+using physics::Coordinate;
+using physics::to_units;
+
+ItemRules rules(std::uint32_t count, std::uint32_t respawn_ticks = 1, bool respawn = true) {
+    return {.placement = base::Purpose::FoodPlacement,
+            .respawn_purpose = base::Purpose::FoodRespawn,
+            .kind = 2,
+            .count = count,
+            .radius_px = 4,
+            .respawn = respawn,
+            .respawn_ticks = respawn_ticks};
+}
+
+Items some_items(std::uint32_t count, Area area, const Boxes& obstacles = {}, std::uint64_t seed = 1) {
+    Items items;
+    items.begin_generation(rules(count), base::Seed{seed}, 0, 1, area, obstacles);
+    return items;
+}
+
+base::RandomStream stream(std::uint64_t seed) {
+    return {base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};
+}
+
+float square_to(const Items& items, std::uint32_t item, Coordinate x, Coordinate y) {
+    const float dx = physics::distance_px(x, items.x()[item]), dy = physics::distance_px(y, items.y()[item]);
+    return dx * dx + dy * dy;
+}
+
+std::uint32_t nearest_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius) {
+    std::uint32_t best = Items::none;
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        if (items.present(item) && square_to(items, item, x, y) <= radius * radius &&
+            (best == Items::none || square_to(items, item, x, y) < square_to(items, best, x, y)))
+            best = item;
+    return best;
+}
+
+using Found = std::vector<std::pair<std::uint32_t, float>>;
+
+Found within_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius) {
+    Found found;
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        if (items.present(item) && square_to(items, item, x, y) <= radius * radius)
+            found.emplace_back(item, square_to(items, item, x, y));
+    return found;
+}
+
+Found within(const Items& items, Coordinate x, Coordinate y, float radius) {
+    Found found;
+    items.for_each_within(x, y, radius,
+                          [&](std::uint32_t item, float square) { found.emplace_back(item, square); });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+void expect_queries_agree(const Items& items, const Area& area, base::RandomStream& random, int queries) {
+    for (int i = 0; i < queries; ++i) {
+        // From up to 10 px beyond the walls, with radii from nothing to the greatest that a gene can have.
+        const auto place = [&](Coordinate size) { return to_units(random.uniform(-10, physics::to_px(size) + 10)); };
+        const Coordinate x = place(area.width), y = place(area.height);
+        const auto radius = static_cast<float>(random.chance(0.2) ? random.uniform(0, 10'000) : random.uniform(0, 200));
+        const Items::Nearest nearest = items.nearest(x, y, radius);
+        ASSERT_EQ(nearest.item, nearest_by_trying_all(items, x, y, radius));
+        if (nearest.item != Items::none) {
+            ASSERT_EQ(nearest.square, square_to(items, nearest.item, x, y));
+            ASSERT_EQ(nearest.dx, physics::distance_px(x, items.x()[nearest.item]));
+            ASSERT_EQ(nearest.dy, physics::distance_px(y, items.y()[nearest.item]));
+        }
+        ASSERT_EQ(within(items, x, y, radius), within_by_trying_all(items, x, y, radius));
+    }
+}
+
+base::StateHash recomputed_hash(const Items& items, const std::vector<std::uint32_t>& due) {
+    base::StateHash hash;
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
+        base::EntityHash entity{2, item};
+        if (due[item] == 0)
+            entity.add(items.x()[item], items.y()[item]);
+        else
+            entity.add(std::uint64_t{due[item]});
+        hash += entity.finish();
+    }
+    return hash;
+}
+
+TEST(Items, AreFoundAsByTryingAll) {
+    base::RandomStream random = stream(1);
+    for (const std::uint32_t count : {0u, 1u, 7u, 100u, 3000u})
+        for (const auto& [width, height] : {std::pair{1280.0, 720.0}, {150.0, 5000.0}, {100.0, 100.0}, {5e5, 5e5}}) {
+            const Area area{to_units(width), to_units(height)};
+            expect_queries_agree(some_items(count, area), area, random, count > 1000 ? 60 : 200);
+        }
+}
+
+TEST(Items, AreFoundWhenThousandsShareACell) {
+    // Only a corner is free of obstacles, so all items lie in a few cells, far more than a bucket holds.
+    const Area area{to_units(2000.0), to_units(2000.0)};
+    Boxes obstacles;
+    obstacles.add(to_units(1020.0), to_units(1000.0), 980, 1000, 0);
+    obstacles.add(to_units(1000.0), to_units(1030.0), 1000, 970, 0);
+    Items items = some_items(4000, area, obstacles);
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
+        ASSERT_LT(items.x()[item], to_units(40.0));
+        ASSERT_LT(items.y()[item], to_units(60.0));
+    }
+    base::RandomStream random = stream(2);
+    const Area corner{to_units(60.0), to_units(80.0)};
+    expect_queries_agree(items, corner, random, 50);
+    for (std::uint32_t tick = 1; tick <= 40; ++tick) { // and while they come and go
+        items.reappear(tick, obstacles);
+        for (int eaten = 0; eaten < 150; ++eaten)
+            if (const std::uint32_t item = random.below(items.size()); items.present(item))
+                items.consume(item, tick);
+        expect_queries_agree(items, corner, random, 5);
+    }
+}
+
+TEST(Items, AtExactlyTheRadiusAreFoundAndOfEquallyNearOnesTheLowestIdIsNearest) {
+    Items items = some_items(400, {to_units(300.0), to_units(300.0)});
+    base::RandomStream random = stream(3);
+    int ties = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const std::uint32_t a = random.below(400), b = random.below(400);
+        // A place just as far from both, on the whole units there are.
+        const Coordinate x = items.x()[a] / 2 + items.x()[b] / 2, y = items.y()[a] / 2 + items.y()[b] / 2;
+        const float square = square_to(items, a, x, y);
+        ties += a != b && square == square_to(items, b, x, y);
+        const float radius = std::sqrt(square);
+        ASSERT_EQ(items.nearest(x, y, radius).item, nearest_by_trying_all(items, x, y, radius));
+        ASSERT_EQ(within(items, x, y, radius), within_by_trying_all(items, x, y, radius));
+    }
+    EXPECT_GT(ties, 200);
+
+    const Coordinate x = items.x()[7] - to_units(3.0), y = items.y()[7] - to_units(4.0);
+    EXPECT_FALSE(within(items, x, y, 5).empty());
+    EXPECT_TRUE(std::ranges::any_of(within(items, x, y, 5), [](const auto& found) { return found.first == 7; }));
+    EXPECT_FALSE(std::ranges::any_of(within(items, x, y, 4.9999f), [](const auto& found) { return found.first == 7; }));
+}
+
+TEST(Items, OfTheSamePlaceGoByTheLowestId) {
+    // An island with one place for an item: all lie on it.
+    Items items = some_items(50, {to_units(8.0), to_units(8.0)});
+    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 0).item, 0u);
+    items.consume(0, 1);
+    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 0).item, 1u);
+    items.consume(2, 1);
+    items.consume(1, 1);
+    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 1).item, 3u);
+    items.reappear(2, {});
+    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 1).item, 0u);
+}
+
+TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
+    for (const std::uint32_t respawn_ticks : {1u, 2u, 17u, 100u}) {
+        const Area area{to_units(600.0), to_units(400.0)};
+        Items items;
+        items.begin_generation(rules(300, respawn_ticks), base::Seed{4}, 0, 1, area, {});
+        std::vector<std::uint32_t> due(300, 0);
+        ASSERT_EQ(items.hash(), recomputed_hash(items, due));
+        base::RandomStream random = stream(respawn_ticks);
+        for (std::uint32_t tick = 1; tick <= 400; ++tick) {
+            items.reappear(tick, {});
+            for (std::uint32_t& when : due)
+                when = when <= tick ? 0 : when;
+            for (int eaten = 0; eaten < 3; ++eaten)
+                if (const std::uint32_t item = random.below(300); due[item] == 0) {
+                    items.consume(item, tick);
+                    due[item] = tick + respawn_ticks;
+                }
+            std::uint32_t there = 0;
+            for (std::uint32_t item = 0; item < 300; ++item) {
+                ASSERT_EQ(items.present(item), due[item] == 0) << "item " << item << ", tick " << tick;
+                there += due[item] == 0;
+            }
+            ASSERT_EQ(items.present_count(), there);
+            ASSERT_EQ(items.hash(), recomputed_hash(items, due)) << "tick " << tick;
+            if (tick % 20 == 0)
+                expect_queries_agree(items, area, random, 10);
+        }
+    }
+}
+
+TEST(Items, ThatDoNotReappearStayAway) {
+    Items items;
+    items.begin_generation(rules(20, 1, false), base::Seed{5}, 0, 1, {to_units(500.0), to_units(500.0)}, {});
+    items.consume(3, 1);
+    for (std::uint32_t tick = 2; tick < 1000; ++tick)
+        items.reappear(tick, {});
+    EXPECT_FALSE(items.present(3));
+    EXPECT_EQ(items.present_count(), 19u);
+}
+
+TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
+    const Area area{to_units(400.0), to_units(300.0)};
+    Boxes obstacles;
+    base::RandomStream random = stream(6);
+    for (int i = 0; i < 10; ++i)
+        obstacles.add(to_units(random.uniform(30, 370)), to_units(random.uniform(30, 270)), 25, 15, 0);
+    Items items = some_items(500, area, obstacles);
+    const auto expect_clear = [&] {
+        for (std::uint32_t item = 0; item < items.size(); ++item) {
+            ASSERT_GE(items.x()[item], to_units(4.0));
+            ASSERT_LE(items.x()[item], area.width - to_units(4.0));
+            ASSERT_GE(items.y()[item], to_units(4.0));
+            ASSERT_LE(items.y()[item], area.height - to_units(4.0));
+            for (std::size_t box = 0; box < obstacles.size(); ++box)
+                ASSERT_FALSE(physics::box_circle(physics::distance_px(obstacles.x[box], items.x()[item]),
+                                                 physics::distance_px(obstacles.y[box], items.y()[item]), {25, 15}, 4)
+                                 .touching);
+        }
+    };
+    expect_clear();
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        items.consume(item, 1);
+    EXPECT_EQ(items.nearest(to_units(200.0), to_units(150.0), 1000).item, Items::none);
+    items.reappear(2, obstacles);
+    EXPECT_EQ(items.present_count(), 500u);
+    expect_clear();
+}
+
+TEST(Items, ReappearElsewhere) {
+    Items items = some_items(100, {to_units(1000.0), to_units(1000.0)});
+    const std::vector<Coordinate> x = items.x();
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        items.consume(item, 5);
+    items.reappear(6, {});
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        EXPECT_NE(items.x()[item], x[item]);
+}
+
+} // namespace
+} // namespace evod::simulation
