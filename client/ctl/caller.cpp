@@ -112,7 +112,7 @@ std::string sentence(const v1::WorldInfo& world) {
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
     if (world.has_run_until_generation()) {
-        text += ", until generation " + std::to_string(world.run_until_generation()) + " begins";
+        text += ", until the end of generation " + std::to_string(world.run_until_generation() - 1);
     }
     if (world.has_run_until_tick()) {
         text += ", until tick " + std::to_string(world.run_until_tick());

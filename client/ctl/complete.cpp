@@ -83,7 +83,8 @@ void complete_world(const Common& common, const std::string& word) {
     Caller caller{common};
     v1::Request request;
     request.mutable_list_worlds();
-    for (const auto& world : caller.call(std::move(request)).worlds().worlds()) {
+    const v1::Response response = caller.call(std::move(request));
+    for (const auto& world : response.worlds().worlds()) {
         Candidates{word}.add(world.name());
     }
 }

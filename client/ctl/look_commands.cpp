@@ -219,7 +219,8 @@ void history(const Common& common, const HistoryOptions& options) {
         for (const auto& generation : all.generations()) {
             add_generation(table, generation);
         }
-        return all.generations().empty() ? std::string{"no generation has ended yet\n"} : table.to_text();
+        return all.generations().empty() ? std::string{"no such generation has ended, or it is kept no longer\n"}
+                                         : table.to_text();
     });
 }
 

@@ -191,13 +191,11 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
     v1::Response response = caller.call(std::move(request));
     if (wait) {
-        const bool has_goal = response.world().has_run_until_generation();
-        const std::uint64_t goal = response.world().run_until_generation();
-        const auto reached = [&](const v1::WorldInfo& world) { return has_goal && world.generation() >= goal; };
-        const v1::WorldInfo world = wait_for(caller, response.world(), reached);
+        // A world that has run its generations waits; one that someone stopped is paused.
+        const v1::WorldInfo world = wait_for(caller, response.world(), [](const v1::WorldInfo&) { return false; });
         *response.mutable_world() = world;
         print_world(common, response);
-        require_reached(reached(world) || !has_goal || world.state() == v1::RUN_STATE_TERMINATED, world);
+        require_reached(!generations || world.state() != v1::RUN_STATE_PAUSED, world);
     } else {
         print_world(common, response);
     }

@@ -62,8 +62,12 @@ std::string sparkline(std::span<const double> values, std::size_t width_max) {
 }
 
 std::string exact(double value) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    std::array<char, 64> digits;
+    const double size = std::abs(value);
+    const bool plain = value == 0 || (size >= 1e-5 && size < 1e15);
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
+                                   plain ? std::chars_format::fixed : std::chars_format::scientific)
+                         .ptr;
     return {digits.data(), end};
 }
 
@@ -77,7 +81,7 @@ std::string duration(double seconds) {
     if (!(seconds >= 60 && seconds < 1e15)) {
         return fixed(seconds, 1) + " s";
     }
-    const auto whole = static_cast<std::uint64_t>(seconds);
+    const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
     const auto two_digits = [](std::uint64_t value) {
         return std::string(value < 10 ? "0" : "") + std::to_string(value);
     };
@@ -90,6 +94,19 @@ std::string duration(double seconds) {
 std::size_t width_of(std::string_view utf8) {
     return static_cast<std::size_t>(
         std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+std::string clip_lines(std::string_view utf8, std::size_t width) {
+    std::string text;
+    std::size_t column = 0;
+    for (const char c : utf8) {
+        const bool begins = (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+        column = c == '\n' ? 0 : column + (begins ? 1 : 0);
+        if (column <= width) {
+            text += c;
+        }
+    }
+    return text;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {

@@ -33,7 +33,7 @@ class Table {
 /// equal are bars of middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
-/// Shortest text that reads back as the same number: "0.15", "1e-05".
+/// Shortest text that reads back as the same number, without an exponent where that is not long: "0.15", "500000".
 std::string exact(double value);
 /// With so many decimals.
 std::string fixed(double value, int decimals);
@@ -41,6 +41,9 @@ std::string fixed(double value, int decimals);
 std::string duration(double seconds);
 /// Characters (code points), not bytes.
 std::size_t width_of(std::string_view utf8);
+
+/// Each line cut after `width` characters, so that none takes two lines of a terminal.
+std::string clip_lines(std::string_view utf8, std::size_t width);
 
 /// How many insertions, deletions, replacements and swaps of neighbours turn one into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <unistd.h>
+#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -47,6 +47,11 @@ std::string text_of(const GenerationLine& line) {
            fixed(line.fitness_mean, 1) + ", diversity " + fixed(line.diversity, 3) + ", alive " +
            std::to_string(line.alive_count) + "/" + std::to_string(line.organism_count) + ", starved " +
            std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
+}
+
+std::size_t terminal_width() {
+    winsize size{};
+    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 // ---- watch -----------------------------------------------------------------------------------------------------
@@ -200,6 +205,7 @@ class Watch {
             }
         }
         text += "\nCtrl-C ends the watching, not the run\n";
+        text = clip_lines(text, terminal_width());
         // Up over the last drawing, and everything below goes.
         std::cout << (drawn_lines_ > 0 ? "\033[" + std::to_string(drawn_lines_) + "A" : "") << "\r\033[J" << text
                   << std::flush;

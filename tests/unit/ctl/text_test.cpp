@@ -39,7 +39,10 @@ TEST(Table, AlignsByCharactersNotBytes) {
 
 TEST(Numbers, AreShortAndReadBack) {
     EXPECT_EQ(exact(0.15), "0.15");
-    EXPECT_EQ(exact(86'400), "86400");
+    EXPECT_EQ(exact(500'000), "500000");
+    EXPECT_EQ(exact(1e-4), "0.0001");
+    EXPECT_EQ(exact(-1e300), "-1e+300");
+    EXPECT_EQ(exact(0), "0");
     EXPECT_EQ(std::stod(exact(1.0 / 60)), 1.0 / 60);
     EXPECT_EQ(fixed(2.345, 1), "2.3");
 }
@@ -48,8 +51,14 @@ TEST(Durations, AreToldInTheirUnit) {
     EXPECT_EQ(duration(0), "0.0 s");
     EXPECT_EQ(duration(59.96), "60.0 s");
     EXPECT_EQ(duration(245), "4:05 min");
+    EXPECT_EQ(duration(119.9999), "2:00 min") << "a sum of ticks is seldom whole";
     EXPECT_EQ(duration(7200), "2:00:00 h");
     EXPECT_EQ(duration(std::nan("")), "nan s");
+}
+
+TEST(ClipLines, CutsEachLineAtACharacter) {
+    EXPECT_EQ(clip_lines("größe\nab\n\n12345", 3), "grö\nab\n\n123");
+    EXPECT_EQ(clip_lines("ab\n", 0), "\n");
 }
 
 TEST(EditDistance, CountsSingleEdits) {
