@@ -21,6 +21,9 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (!listener)
         return listener.error();
     server->listener_ = *std::move(listener);
+    // From now on: whoever reads that the server listens may send them.
+    server->signals_.add(SIGINT);
+    server->signals_.add(SIGTERM);
     return server;
 }
 
@@ -65,8 +68,6 @@ void Server::run() {
                 },
             .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }});
 
-    signals_.add(SIGINT);
-    signals_.add(SIGTERM);
     signals_.async_wait([this](boost::system::error_code error, int signal) {
         if (error)
             return;

@@ -98,6 +98,13 @@ asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
     while (!finishing_ && !ended_) {
         const auto [error, count] = co_await socket_.async_read_some(asio::buffer(bytes), no_throw);
+        if (error == asio::error::eof && in_flight_ + queue_.size() > 0 && !finishing_ && !ended_) {
+            // It has said all it wants, and may still read: it gets its answers.
+            input_over_ = true;
+            wake_writer();
+            end();
+            co_return;
+        }
         if (error || ended_)
             break;
         reader_.feed({bytes.data(), count});
@@ -263,6 +270,12 @@ void Session::wake_writer() {
     writer_signal_.cancel();
 }
 
+asio::awaitable<void> Session::wait_for_work() {
+    // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
+    writer_signal_.expires_at(asio::steady_timer::time_point::max());
+    co_await writer_signal_.async_wait(no_throw);
+}
+
 asio::awaitable<void> Session::write() {
     std::vector<asio::const_buffer> buffers;
     while (!ended_) {
@@ -279,6 +292,10 @@ asio::awaitable<void> Session::write() {
                 written(queue_.front());
                 queue_.pop_front();
             }
+        } else if (input_over_) {
+            if (in_flight_ == 0)
+                break;
+            co_await wait_for_work();
         } else if (dropped_events_ > 0 && !finishing_) {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
@@ -304,9 +321,7 @@ asio::awaitable<void> Session::write() {
         } else if (finishing_) {
             break;
         } else {
-            // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
-            writer_signal_.expires_at(asio::steady_timer::time_point::max());
-            co_await writer_signal_.async_wait(no_throw);
+            co_await wait_for_work();
         }
     }
     if (finishing_ && !ended_) {

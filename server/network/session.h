@@ -95,6 +95,7 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::awaitable<void> read();
     asio::awaitable<void> write();
     asio::awaitable<void> discard_input();
+    asio::awaitable<void> wait_for_work();
     void on_frame(const wire::Frame& frame);
     void on_hello(const v1::Hello& hello);
     /// Says what was wrong, and ends the session.
@@ -111,6 +112,7 @@ class Session : public std::enable_shared_from_this<Session> {
     wire::FrameReader reader_{wire::hello_limits};
     asio::steady_timer hello_timer_, farewell_timer_, writer_signal_;
     bool greeted_ = false, finishing_ = false, ended_ = false;
+    bool input_over_ = false; // the client will send nothing more
     int coroutines_ = 0; // that still run
 
     std::deque<Queued> queue_;

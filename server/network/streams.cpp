@@ -132,12 +132,12 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
         for (auto& [id, subscription] : session->snapshots) {
             if (subscription.world != snapshot.world)
                 continue;
-            subscription.dropped_count += picture.replaced_count;
             const auto between = std::chrono::duration_cast<runtime::Clock::duration>(
                 std::chrono::duration<double>{1 / subscription.rate_hz});
             // A tenth early rather than a whole picture late.
             if (!picture.after_change && now + between / 10 < subscription.next_picture)
                 continue;
+            subscription.dropped_count += picture.replaced_count;
             subscription.next_picture += between;
             if (picture.after_change || subscription.next_picture <= now)
                 subscription.next_picture = now + between;

@@ -27,7 +27,7 @@ v1::Status to_proto(const base::Refusal& refusal) {
         v1::Violation& told = *status.add_violations();
         told.set_field(quotable(violation.field, 200));
         told.set_allowed(quotable(violation.allowed, 2000));
-        told.set_got(quotable(violation.got, 200));
+        told.set_got(violation.got.empty() ? "nothing" : quotable(violation.got, 200));
     }
     return status;
 }

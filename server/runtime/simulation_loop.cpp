@@ -11,7 +11,7 @@ Clock::duration seconds(double s) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{s});
 }
 
-constexpr std::chrono::seconds measuring_time{1};
+constexpr std::chrono::milliseconds measuring_time{1000};
 
 } // namespace
 
@@ -161,7 +161,8 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
 
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {
     const std::chrono::duration<double> passed = now - track.measured_since;
-    if (passed < measuring_time || !track.running)
+    // The first figure comes soon, for somebody may be waiting to see one.
+    if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time))
         return;
     entry.ticks_per_s = static_cast<double>(track.ticks) / passed.count();
     track.ticks = 0;
