@@ -1,0 +1,1266 @@
+"""A stranger's client against a real server: everything docs/PROTOCOL.md promises, and what it says of abuse.
+
+Plain Python 3, protobuf and numpy, with message classes made by protoc; nothing else of this repository. Each class below
+is one test of ctest:
+
+    plain_client.py EVOD MESSAGES PROTOCOL.md [CLASS …]
+
+No test waits for a while; each waits for a condition, and gives up after `patience_s`.
+"""
+import contextlib
+import errno
+import itertools
+import math
+import os
+import re
+import resource
+import secrets
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+evod_path, messages_path, protocol_path = sys.argv[1:4]
+sys.path.insert(0, messages_path)
+
+import numpy  # noqa: E402
+from google.protobuf import descriptor_pb2  # noqa: E402
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2 as w  # noqa: E402
+
+patience_s = 60
+OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 12, 14
+
+
+def until(condition, what, pause_s=0.005):
+    """The first true value of condition()."""
+    end = time.monotonic() + patience_s
+    while time.monotonic() < end:
+        if value := condition():
+            return value
+        time.sleep(pause_s)
+    raise AssertionError(f"did not happen within {patience_s} s: {what}")
+
+
+class Server:
+    def __init__(self, *options, **popen):
+        self.log = tempfile.TemporaryFile()
+        self.process = subprocess.Popen([evod_path, "--port", "0", *options], stdout=self.log, stderr=self.log, **popen)
+        line = until(lambda: self.process.poll() is not None or
+                     re.search(r"listening on 127\.0\.0\.1:(\d+), world \"(\S+)\", seed (\d+)", self.output()), "ready")
+        if line is True:
+            raise AssertionError("evod ended at once:\n" + self.output())
+        self.port, self.world, self.seed = int(line[1]), line[2], int(line[3])
+
+    def output(self):
+        return os.pread(self.log.fileno(), 1 << 24, 0).decode(errors="replace")
+
+    def end(self, how=signal.SIGTERM):
+        if self.process.poll() is None:
+            self.process.send_signal(how)
+        try:
+            status = self.process.wait(patience_s)
+        finally:
+            self.process.kill()
+        if status != 0:
+            raise AssertionError(f"evod ended with {status}:\n" + self.output())
+
+
+class Client:
+    def __init__(self, server, hello=True, key=None):
+        self.socket = socket.create_connection(("127.0.0.1", server.port))
+        self.socket.settimeout(patience_s)
+        self.key, self.request_id = key or secrets.token_hex(8), 0
+        self.events, self.pictures, self.responses = [], [], {}
+        if hello:
+            self.hello()
+            self.welcome = self.control().welcome
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+
+    def hello(self, **fields):
+        self.send(session_pb2.ClientMessage(
+            hello=session_pb2.Hello(**{"protocol_version": 1, "client_name": "plain", **fields})))
+
+    def send(self, message):
+        self.send_body(message.SerializeToString())
+
+    def send_body(self, body):
+        self.socket.sendall(b"EV\x01\x01" + struct.pack("<I", len(body)) + body)
+
+    def read(self, count):
+        data = bytearray()
+        while len(data) < count:
+            try:
+                more = self.socket.recv(count - len(data))
+            except ConnectionResetError:
+                more = b""
+            if not more:
+                raise EOFError(f"closed after {len(data)} of {count} bytes")
+            data += more
+        return bytes(data)
+
+    def frame(self):
+        magic, version, channel, length = struct.unpack("<2sBBI", self.read(8))
+        assert (magic, version) == (b"EV", 1)
+        return channel, self.read(length)
+
+    def control(self):
+        """The next control message; pictures are put aside."""
+        while True:
+            channel, body = self.frame()
+            if channel == 1:
+                return session_pb2.ServerMessage.FromString(body)
+            assert channel == 2
+            self.pictures.append(stream_pb2.SnapshotFrame.FromString(body))
+
+    def step(self):
+        """One frame, put where it belongs."""
+        channel, body = self.frame()
+        if channel == 2:
+            self.pictures.append(stream_pb2.SnapshotFrame.FromString(body))
+            return
+        message = session_pb2.ServerMessage.FromString(body)
+        if message.HasField("event"):
+            self.events.append(message.event)
+        else:
+            assert message.HasField("response")
+            response = message.response
+            assert response.request_id == 0 or response.request_id not in self.responses, "answered twice"
+            self.responses[response.request_id] = response
+
+    def ask(self, **request):
+        """Sends a request; returns its id."""
+        if "request_id" not in request:
+            self.request_id += 1
+            request["request_id"] = self.request_id
+        request.setdefault("client_key", self.key)
+        self.send(session_pb2.ClientMessage(request=c.Request(**request)))
+        return request["request_id"]
+
+    def response(self, request_id):
+        while request_id not in self.responses:
+            self.step()
+        return self.responses.pop(request_id)
+
+    def call(self, expected=OK, **request):
+        response = self.response(self.ask(**request))
+        assert response.status.code == expected, f"{request}: {response.status}"
+        assert bool(response.status.message) == (expected != OK)
+        return response
+
+    def world(self, name=""):
+        worlds = self.call(list_worlds=c.ListWorlds()).worlds.worlds
+        return next(x for x in worlds if not name or x.name == name)
+
+    def wait_world(self, condition, name=""):
+        return until(lambda: (lambda x: x if condition(x) else None)(self.world(name)), "world in a state")
+
+    def next_picture(self, condition=lambda picture: True):
+        while True:
+            while self.pictures:
+                picture = self.pictures.pop(0)
+                if condition(picture):
+                    return picture
+            self.step()
+
+    def next_event(self, kind, condition=lambda event: True):
+        while True:
+            while self.events:
+                event = self.events.pop(0)
+                if event.WhichOneof("event") == kind and condition(event):
+                    return event
+            self.step()
+
+    def run_to(self, tick, world=""):
+        self.call(run_until_tick=c.RunUntilTick(world=world, tick=tick))
+        return self.wait_world(lambda x: x.tick == tick and x.state == w.RUN_STATE_PAUSED, world)
+
+    def assert_closed(self):
+        """Nothing more comes, and the server has closed its end."""
+        while True:
+            try:
+                self.step()
+            except EOFError:
+                return
+
+
+def value(number_or_text):
+    kind = {bool: "flag", int: "count", float: "real", str: "choice"}[type(number_or_text)]
+    return w.ParameterValue(**{kind: number_or_text})
+
+
+def assignments(**values):
+    return [w.ParameterAssignment(name=name, value=value(x)) for name, x in values.items()]
+
+
+def set_parameters(world="", dry_run=False, expected_revision=None, **values):
+    return c.SetParameters(world=world, parameters=assignments(**values), dry_run=dry_run,
+                           expected_revision=expected_revision)
+
+
+def as_dict(parameter_set):
+    return {p.name: p for p in parameter_set.parameters}
+
+
+def columns(picture):
+    position = "<u2" if picture.position_bytes == 2 else "<u4"
+    items = [("id", "<u4"), ("x", position), ("y", position)]
+    boxes = [("x", position), ("y", position), ("half_width", "<u2"), ("half_height", "<u2")]
+    layout = [("organisms", picture.organism_count, items + [("radius", "<u2"), ("health", "<u2")]),
+              ("food", picture.food_count, items), ("poison", picture.poison_count, items),
+              ("crates", picture.crate_count, boxes), ("obstacles", picture.obstacle_count, boxes)]
+    result, offset = {}, 0
+    for name, count, fields in layout:
+        result[name] = {}
+        for field, kind in fields:
+            column = numpy.frombuffer(picture.body, kind, count, offset)
+            offset += column.nbytes
+            result[name][field] = column if field == "id" else column / 16
+    assert offset == len(picture.body)
+    return result
+
+
+def documented_python():
+    text = open(protocol_path, encoding="utf-8").read()
+    return re.search(r"```python\n(.*?)```", text, re.S)[1]
+
+
+class WithServer(unittest.TestCase):
+    options = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server(*cls.options)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.end()
+        assert "Sanitizer" not in cls.server.output(), cls.server.output()
+
+    def setUp(self):
+        self.client = self.enterContext(Client(self.server))
+
+    def enterContext(self, context):  # as in Python 3.11's, for older ones
+        result = context.__enter__()
+        self.addCleanup(context.__exit__, None, None, None)
+        return result
+
+    def tearDown(self):
+        with Client(self.server) as stranger:  # whatever was done to it, the server lives and serves
+            stranger.call(list_worlds=c.ListWorlds())
+
+    def new_world(self, name=None, seed=1, **parameters):
+        name = name or "w" + secrets.token_hex(4)
+        self.client.call(create_world=c.CreateWorld(name=name, seed=seed, parameters=assignments(**parameters)))
+        self.addCleanup(self.delete_world, name)
+        return name
+
+    def delete_world(self, name):
+        with Client(self.server) as client:
+            client.call(delete_world=c.DeleteWorld(world=name))
+
+
+class Handshake(WithServer):
+    def refused(self, client, code, words):
+        message = client.control()
+        self.assertEqual((message.response.request_id, message.response.status.code), (0, code))
+        self.assertIn(words, message.response.status.message)
+        client.assert_closed()
+        return message.response.status
+
+    def raw(self, data):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.socket.sendall(data)
+        return client
+
+    def test_welcome_says_who_the_server_is(self):
+        welcome = self.client.welcome
+        self.assertEqual(welcome.protocol_version, 1)
+        self.assertRegex(welcome.server_version, r"^\d+\.\d+\.\d+$")
+        self.assertRegex(welcome.instance_id, r"^[0-9a-f]{32}$")
+        self.assertIn("codec:columns", welcome.features)
+        for field, limit in welcome.limits.ListFields():
+            self.assertGreater(limit, 0, field.name)
+        self.assertEqual(len(welcome.limits.ListFields()), len(c.Limits.DESCRIPTOR.fields))
+
+    def test_a_hello_may_come_byte_by_byte(self):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        body = session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1)).SerializeToString()
+        for byte in b"EV\x01\x01" + struct.pack("<I", len(body)) + body:
+            client.socket.sendall(bytes([byte]))
+        self.assertEqual(client.control().welcome.protocol_version, 1)
+
+    def test_other_protocols_are_told_and_closed(self):
+        self.refused(self.raw(b"GET / HTTP/1.1\r\nHost: evod\r\n\r\n"), INVALID, "'EV'")
+
+    def test_a_wrong_framing_version_is_told_and_closed(self):
+        self.refused(self.raw(b"EV\x02\x01\0\0\0\0"), INVALID, "version 2")
+
+    def test_a_wrong_channel_is_told_and_closed(self):
+        self.refused(self.raw(b"EV\x01\x02\0\0\0\0"), INVALID, "channel 2")
+        self.refused(self.raw(b"EV\x01\x09\0\0\0\0"), INVALID, "channel 9")
+
+    def test_a_long_first_frame_is_refused_by_its_header_alone(self):
+        self.refused(self.raw(b"EV\x01\x01" + struct.pack("<I", 4097)), INVALID, "4096")
+        self.refused(self.raw(b"EV\x01\x01" + struct.pack("<I", 0xffffffff)), INVALID, "4096")
+
+    def test_a_request_before_the_hello_is_refused(self):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.ask(list_worlds=c.ListWorlds())
+        self.refused(client, PRECONDITION, "hello")
+
+    def test_an_empty_first_message_is_refused(self):
+        self.refused(self.raw(b"EV\x01\x01\0\0\0\0"), PRECONDITION, "hello")
+
+    def test_another_protocol_version_is_refused(self):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.hello(protocol_version=2)
+        status = self.refused(client, PRECONDITION, "version")
+        self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
+                         [("hello.protocol_version", "1", "2")])
+
+    def test_long_names_are_refused_each(self):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.hello(client_name="n" * 65, client_version="v" * 65)
+        status = self.refused(client, INVALID, "2 fields")
+        self.assertEqual({v.field for v in status.violations}, {"hello.client_name", "hello.client_version"})
+
+    def test_a_second_hello_is_refused_and_the_session_lives(self):
+        self.client.hello()
+        response = self.client.control().response
+        self.assertEqual((response.request_id, response.status.code), (0, PRECONDITION))
+        self.client.call(list_worlds=c.ListWorlds())
+
+    def test_who_says_nothing_is_closed_in_time(self):
+        began = time.monotonic()
+        client = self.enterContext(Client(self.server, hello=False))
+        self.refused(client, PRECONDITION, "no hello")
+        self.assertGreater(time.monotonic() - began, self.client.welcome.limits.hello_timeout_s - 0.5)
+
+    def test_one_session_too_many_is_told(self):
+        limit = self.client.welcome.limits.sessions_max
+        with contextlib.ExitStack() as stack:
+            sessions = [stack.enter_context(Client(self.server)) for _ in range(limit - 1)]
+            client = stack.enter_context(Client(self.server, hello=False))
+            self.refused(client, EXHAUSTED, "sessions")
+            sessions[0].call(list_worlds=c.ListWorlds())
+            sessions[0].socket.close()
+            until(lambda: self.admitted(), "a place is free again")
+
+    def admitted(self):
+        with Client(self.server, hello=False) as client:
+            client.hello()
+            return client.control().HasField("welcome")
+
+
+class Requests(WithServer):
+    def test_an_unknown_request_is_unimplemented_and_the_session_lives(self):
+        body = session_pb2.ClientMessage(request=c.Request(request_id=7, client_key="k")).SerializeToString()
+        unknown = b"\xfa\x3e\x02\x08\x01"  # field 1007, two bytes
+        inner = c.Request(request_id=7, client_key="k").SerializeToString() + unknown
+        self.client.send_body(b"\x12" + bytes([len(inner)]) + inner)
+        self.assertEqual(self.client.response(7).status.code, UNIMPLEMENTED)
+        self.client.send_body(body)  # no request at all
+        self.assertEqual(self.client.response(7).status.code, UNIMPLEMENTED)
+        self.client.send_body(unknown)  # no message that is known
+        self.assertEqual(self.client.response(0).status.code, UNIMPLEMENTED)
+        self.client.call(list_worlds=c.ListWorlds())
+
+    def test_a_body_that_is_no_message_is_refused_and_the_session_lives(self):
+        for body in (b"\xff\xff\xff", b"\x12\x7f", os.urandom(100), b"\x12\x06\x12\x04\xff\xfe\xfd\xfc"):
+            self.client.send_body(body)
+            self.client.responses.clear()
+            self.assertIn(self.client.response(0).status.code, (INVALID, UNIMPLEMENTED))
+        self.client.call(list_worlds=c.ListWorlds())
+
+    def test_a_frame_too_long_is_told_and_closed(self):
+        self.client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", (1 << 20) + 1))
+        status = self.client.response(0).status
+        self.assertEqual(status.code, INVALID)
+        self.assertIn("1048576", status.message)
+        self.client.assert_closed()
+
+    def test_a_stream_out_of_step_is_told_and_closed(self):
+        self.client.send(session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())))
+        self.client.socket.sendall(b"xx" * 100)
+        self.assertEqual(self.client.response(1).status.code, OK)
+        self.assertEqual(self.client.response(0).status.code, INVALID)
+        self.client.assert_closed()
+
+    def test_noise_never_ends_the_server(self):
+        for seed in range(50):
+            noise = numpy.random.default_rng(seed).bytes(2000)
+            with Client(self.server, hello=seed % 2 == 0) as client:
+                with contextlib.suppress(OSError):
+                    client.socket.sendall((b"EV\x01\x01" if seed % 4 > 1 else b"") + noise)
+                    client.socket.shutdown(socket.SHUT_WR)
+                client.assert_closed()
+
+    def test_half_a_frame_and_gone(self):
+        for cut in (1, 5, 8, 9):
+            with Client(self.server) as client:
+                client.socket.sendall((b"EV\x01\x01" + struct.pack("<I", 100) + b"x" * 50)[:cut])
+
+    def test_request_ids_begin_at_1(self):
+        status = self.client.call(INVALID, request_id=0, list_worlds=c.ListWorlds()).status
+        self.assertEqual(status.violations[0].field, "request_id")
+
+    def test_commands_need_a_client_key(self):
+        for key in ("", "k" * 65):
+            status = self.client.call(INVALID, client_key=key, pause=c.Pause()).status
+            self.assertEqual([v.field for v in status.violations], ["client_key"])
+        self.client.call(client_key="", list_worlds=c.ListWorlds())
+
+    def test_every_request_sent_ahead_is_answered_once(self):
+        ids = [self.client.ask(list_worlds=c.ListWorlds()) for _ in range(500)]
+        codes = [self.client.response(i).status.code for i in ids]
+        self.assertEqual(set(codes) - {OK, EXHAUSTED}, set())
+        self.assertGreaterEqual(codes.count(OK), self.client.welcome.limits.requests_in_flight_max)
+        self.client.call(list_worlds=c.ListWorlds())
+
+    def test_requests_are_answered_in_order(self):
+        ids = [self.client.ask(run_until_tick=c.RunUntilTick(tick=0)) for _ in range(20)]
+        order = []
+        while len(order) < len(ids):
+            order.append(self.client.control().response.request_id)
+        self.assertEqual(order, ids)
+
+    def test_who_says_no_more_still_gets_the_answers(self):
+        ids = [self.client.ask(get_parameters=c.GetParameters()) for _ in range(20)]
+        self.client.socket.shutdown(socket.SHUT_WR)
+        for i in ids:
+            self.assertEqual(self.client.response(i).status.code, OK)
+        self.client.assert_closed()
+
+    def test_who_does_not_read_the_answers_is_closed(self):
+        one = session_pb2.ClientMessage(request=c.Request(request_id=1, describe=c.Describe())).SerializeToString()
+        frame = b"EV\x01\x01" + struct.pack("<I", len(one)) + one
+        with Client(self.server) as silent:
+            end = time.monotonic() + patience_s
+            with self.assertRaises(OSError) as closed:
+                while time.monotonic() < end:
+                    silent.socket.sendall(frame * 1000)
+            self.assertIn(closed.exception.errno, (errno.EPIPE, errno.ECONNRESET))
+        until(lambda: "does not read its answers" in self.server.output(), "it is logged")
+
+    def test_describe_tells_messages_parameters_and_limits(self):
+        description = self.client.call(describe=c.Describe()).description
+        files = descriptor_pb2.FileDescriptorSet.FromString(description.file_descriptor_set)
+        names = [f.name for f in files.file]
+        self.assertEqual(sorted(names), ["evod/v1/commands.proto", "evod/v1/session.proto", "evod/v1/stream.proto",
+                                         "evod/v1/world.proto"])
+        for index, file in enumerate(files.file):  # a file after all that it imports
+            self.assertLessEqual(set(file.dependency), set(names[:index]))
+        self.assertEqual(description.limits, self.client.welcome.limits)
+        self.assertGreater(len(description.parameters), 60)
+        for p in description.parameters:
+            self.assertTrue(p.name and p.help and p.kind and p.effect, p.name)
+
+    def test_an_unknown_world_is_not_found_by_any_request(self):
+        for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields:
+            kind = getattr(c, field.message_type.name)
+            if "world" not in kind.DESCRIPTOR.fields_by_name:
+                continue
+            extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1}}
+            for world in ("nowhere", "no\nwhere", "ü" * 1000):
+                request = {field.name: kind(world=world, **extra.get(field.name, {}))}
+                status = self.client.call(NOT_FOUND, **request).status
+                self.assertEqual([v.field for v in status.violations], [field.name + ".world"])
+
+
+class Commands(WithServer):
+    def test_create_delete_and_what_can_be_wrong_with_them(self):
+        world = self.client.call(create_world=c.CreateWorld(
+            name="a_World-1", seed=5, parameters=assignments(population_size=7))).world
+        self.assertEqual((world.name, world.seed, world.tick, world.generation, world.state),
+                         ("a_World-1", 5, 0, 1, w.RUN_STATE_WAITING))
+        self.assertRegex(world.run_id, r"^[0-9a-f]{32}$")
+        self.assertRegex(world.state_hash, r"^[0-9a-f]{32}$")
+        self.client.call(EXISTS, create_world=c.CreateWorld(name="a_World-1"))
+        for name in ("", "a b", "ä", "a/b", "x" * 65, "a\n"):
+            status = self.client.call(INVALID, create_world=c.CreateWorld(name=name)).status
+            self.assertEqual([v.field for v in status.violations], ["create_world.name"])
+        status = self.client.call(INVALID, create_world=c.CreateWorld(
+            name="", parameters=assignments(mutation_chance=2.0, food_count=-0.5))).status
+        self.assertEqual({v.field for v in status.violations},
+                         {"create_world.name", "create_world.mutation_chance", "create_world.food_count"})
+        status = self.client.call(INVALID, delete_world=c.DeleteWorld()).status
+        self.assertEqual([v.field for v in status.violations], ["delete_world.world"])
+        answer = self.client.call(delete_world=c.DeleteWorld(world="a_World-1"))
+        self.assertIsNone(answer.WhichOneof("answer"))
+        self.client.call(NOT_FOUND, delete_world=c.DeleteWorld(world="a_World-1"))
+
+    def test_an_absent_seed_is_drawn_and_0_is_a_seed(self):
+        a, b, zero = self.new_world(seed=None), self.new_world(seed=None), self.new_world(seed=0)
+        self.assertNotEqual(self.client.world(a).seed, self.client.world(b).seed)
+        self.assertEqual(self.client.world(zero).seed, 0)
+
+    def test_no_more_worlds_than_the_limit(self):
+        for _ in range(self.client.welcome.limits.worlds_max - 1):
+            self.new_world(population_size=1, food_count=0, poison_count=0)
+        self.client.call(EXHAUSTED, create_world=c.CreateWorld(name="one_more"))
+
+    def test_an_empty_name_is_the_only_world_or_the_default_one(self):
+        self.assertEqual(self.client.call(pause=c.Pause()).world.name, "default")
+        self.new_world()
+        self.assertEqual(self.client.call(pause=c.Pause()).world.name, "default")
+
+    def test_run_pause_resume_step(self):
+        world = self.new_world(generation_s=0.5)  # 30 ticks
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(PRECONDITION, resume=c.Resume(world=world))
+        answer = self.client.call(run=c.Run(world=world, generations=2))
+        self.assertEqual((answer.applied_tick, answer.world.state), (0, w.RUN_STATE_RUNNING))
+        self.assertEqual(answer.world.run_until_generation, 3)
+        ended = self.client.wait_world(lambda x: x.state == w.RUN_STATE_WAITING, world)
+        self.assertEqual((ended.tick, ended.generation, ended.HasField("run_until_generation")), (60, 2, False))
+        self.assertAlmostEqual(ended.simulated_s, 1, places=9)
+
+        self.client.call(run=c.Run(world=world))
+        self.client.wait_world(lambda x: x.tick > 100, world)
+        paused = self.client.call(pause=c.Pause(world=world)).world
+        self.assertEqual(paused.state, w.RUN_STATE_PAUSED)
+        self.assertEqual(self.client.world(world).state_hash, paused.state_hash)
+        stepped = self.client.run_to(paused.tick + 7, world)
+        self.assertEqual(stepped.tick, paused.tick + 7)
+        again = self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=3)).world  # reached long ago
+        self.assertEqual((again.state, again.tick), (w.RUN_STATE_PAUSED, stepped.tick))
+        self.assertEqual(self.client.call(resume=c.Resume(world=world)).world.state, w.RUN_STATE_RUNNING)
+        self.client.wait_world(lambda x: x.tick > stepped.tick, world)
+
+        status = self.client.call(INVALID, run=c.Run(world=world, generations=0)).status
+        self.assertEqual([v.field for v in status.violations], ["run.generations"])
+
+    def test_a_run_can_be_as_long_as_the_numbers_go(self):
+        world = self.new_world()
+        for generations in (1 << 40, (1 << 64) - 1):
+            answer = self.client.call(run=c.Run(world=world, generations=generations)).world
+            self.assertEqual(answer.state, w.RUN_STATE_RUNNING)
+            self.assertGreater(answer.run_until_generation, 1)
+        answer = self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=(1 << 64) - 1)).world
+        self.assertEqual(answer.run_until_tick, (1 << 64) - 1)
+
+    def test_speed(self):
+        world = self.new_world()
+        for factor in (0.001, 1.5, 10000.0):
+            answer = self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=factor)))
+            self.assertEqual(answer.world.speed.real_time_factor, factor)
+        self.assertTrue(self.client.call(
+            set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True))).world.speed.max)
+        for factor in (0.0, -1.0, 0.0009, 10001.0, math.nan, math.inf, -math.inf):
+            status = self.client.call(
+                INVALID, set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=factor))).status
+            self.assertEqual([(v.field, v.allowed) for v in status.violations],
+                             [("set_speed.speed.real_time_factor", "0.001 to 10000")])
+        self.client.call(INVALID, set_speed=c.SetSpeed(world=world))
+        self.client.call(INVALID, set_speed=c.SetSpeed(world=world, speed=w.Speed()))
+        self.client.call(INVALID, set_speed=c.SetSpeed(world=world, speed=w.Speed(max=False)))
+        self.assertTrue(self.client.world(world).speed.max)
+
+    def test_a_paced_world_keeps_its_pace_beside_one_at_full_speed(self):
+        busy, paced = self.new_world(), self.new_world()
+        self.client.call(set_speed=c.SetSpeed(world=busy, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=busy))
+        self.client.call(run=c.Run(world=paced))
+        began, first = time.monotonic(), self.client.world(paced).tick
+        ended = self.client.wait_world(lambda x: x.tick >= first + 90, paced)
+        took = time.monotonic() - began
+        self.assertGreater(took, 1.3)  # 90 ticks are 1.5 s: never faster
+        self.assertGreater(self.client.world(busy).tick, 1)
+        self.assertLess(abs(ended.ticks_per_s - 60), 45)
+
+    def test_the_same_seed_gives_the_same_hashes_and_another_does_not(self):
+        world = self.new_world(seed=42, generation_s=2)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        first = [self.client.run_to(t, world).state_hash for t in (1, 100, 333)]
+        before = self.client.world(world)
+        reset = self.client.call(reset_world=c.ResetWorld(world=world)).world
+        self.assertEqual((reset.tick, reset.generation, reset.seed, reset.state), (0, 1, 42, w.RUN_STATE_WAITING))
+        self.assertNotEqual(reset.run_id, before.run_id)
+        self.assertTrue(reset.speed.max)
+        self.assertEqual([self.client.run_to(t, world).state_hash for t in (1, 100, 333)], first)
+        self.client.call(reset_world=c.ResetWorld(world=world, seed=43))
+        self.assertNotEqual(self.client.run_to(333, world).state_hash, first[-1])
+        self.assertEqual(self.client.world(world).seed, 43)
+
+    def test_viewers_and_speed_change_nothing(self):
+        parameters = {"generation_s": 2}
+        watched, alone = self.new_world(seed=9, **parameters), self.new_world(seed=9, **parameters)
+        viewer = self.enterContext(Client(self.server))
+        viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=watched, rate_hz=120))
+        viewer.call(subscribe_events=c.SubscribeEvents())
+        self.client.call(set_speed=c.SetSpeed(world=watched, speed=w.Speed(real_time_factor=20)))
+        self.client.call(set_speed=c.SetSpeed(world=alone, speed=w.Speed(max=True)))
+        for world in (watched, alone):
+            self.client.run_to(77, world)
+            self.client.call(set_parameters=set_parameters(world, food_health=60.0, mutation_chance=0.5))
+            self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=400))
+        hashes = {self.client.wait_world(lambda x: x.tick == 400, world).state_hash for world in (watched, alone)}
+        self.assertEqual(len(hashes), 1)
+
+    def test_a_run_that_has_ended_says_so(self):
+        world = self.new_world(fitness="gene_sum", generation_limit=3)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world))
+        ended = self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED, world)
+        self.assertEqual((ended.generation, ended.outcome), (3, w.OUTCOME_GENERATION_LIMIT))
+        for request in ({"run": c.Run(world=world)}, {"resume": c.Resume(world=world)},
+                        {"run_until_tick": c.RunUntilTick(world=world, tick=1 << 30)}):
+            status = self.client.call(PRECONDITION, **request).status
+            self.assertIn("generation_limit", status.message)
+        self.client.call(set_parameters=set_parameters(world, generation_limit=5))  # and on it goes
+        self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED and x.generation == 5, world)
+
+
+class Parameters(WithServer):
+    def setUp(self):
+        super().setUp()
+        self.registry = self.client.call(describe=c.Describe()).description.parameters
+        self.world = self.new_world()
+
+    def get(self):
+        return self.client.call(get_parameters=c.GetParameters(world=self.world)).parameters
+
+    def refused(self, **values):
+        """The paths of a refusal; nothing has changed."""
+        before = self.get()
+        status = self.client.call(INVALID, set_parameters=set_parameters(self.world, **values)).status
+        self.assertEqual(self.get(), before)
+        for v in status.violations:
+            self.assertTrue(v.field and v.allowed and v.got, v)
+        return {v.field for v in status.violations}
+
+    def test_a_new_world_has_the_defaults_of_the_registry(self):
+        parameters = self.get()
+        self.assertEqual([p.name for p in parameters.parameters], [p.name for p in self.registry])
+        for p, description in zip(parameters.parameters, self.registry):
+            self.assertEqual(p.value, description.default_value, p.name)
+            self.assertFalse(p.HasField("pending"), p.name)
+
+    def test_every_parameter_refuses_what_is_out_of_its_range_or_of_another_kind(self):
+        for p in self.registry:
+            wrong = {w.PARAMETER_KIND_REAL: [math.nan, math.inf, -math.inf, math.nextafter(p.max, math.inf),
+                                             math.nextafter(p.min, -math.inf), True, "much"],
+                     w.PARAMETER_KIND_COUNT: [1.0, False, "many"] + ([int(p.max) + 1] if p.max < 0xffffffff else [])
+                                             + ([int(p.min) - 1] if p.min > 0 else []),
+                     w.PARAMETER_KIND_FLAG: [1, 1.0, "true"],
+                     w.PARAMETER_KIND_CHOICE: [0, "", "nothing", p.choices[0].upper() if p.choices else "", True]}[p.kind]
+            for x in wrong:
+                self.assertEqual(self.refused(**{p.name: x}), {"set_parameters." + p.name}, x)
+
+    def test_all_or_nothing_and_every_fault_is_named(self):
+        self.assertEqual(
+            self.refused(food_health=30.0, mutation_chance=1.5, selection="best", mutate_chance=0.1, tick_s=math.nan),
+            {"set_parameters." + n for n in ("mutation_chance", "selection", "mutate_chance", "tick_s")})
+
+    def test_a_missing_value_and_a_repeated_name_are_faults(self):
+        bad = c.SetParameters(world=self.world, parameters=[
+            w.ParameterAssignment(name="mutation_step"), w.ParameterAssignment(name="elite_count", value=w.ParameterValue()),
+            *assignments(mutation_chance=7.0)])
+        status = self.client.call(INVALID, set_parameters=bad).status
+        self.assertEqual({v.field for v in status.violations},
+                         {"set_parameters." + n for n in ("mutation_step", "elite_count", "mutation_chance")})
+        twice = c.SetParameters(world=self.world, parameters=assignments(food_health=1.0) + assignments(food_health=2.0))
+        self.assertEqual(self.client.call(INVALID, set_parameters=twice).status.violations[0].got, "given twice")
+
+    def test_values_that_do_not_go_together_are_refused(self):
+        self.assertEqual(self.refused(initial_gene_min=200.0), {"set_parameters.initial_gene_max"})
+
+    def test_a_misspelt_name_is_answered_with_the_right_one(self):
+        status = self.client.call(INVALID, set_parameters=set_parameters(self.world, mutation_chanse=0.1)).status
+        self.assertIn("mutation_chance", status.violations[0].allowed)
+
+    def test_a_hundred_thousand_assignments_are_refused_quickly(self):
+        many = c.SetParameters(world=self.world, parameters=[w.ParameterAssignment(name="x")] * 100_000)
+        status = self.client.call(INVALID, set_parameters=many).status
+        self.assertEqual([v.field for v in status.violations], ["set_parameters.parameters"])
+
+    def test_what_holds_now_and_what_waits(self):
+        answer = self.client.call(set_parameters=set_parameters(
+            self.world, food_health=31.0, population_size=60, island_count=2, steering_lookahead_s=1))
+        self.assertEqual(answer.applied_tick, 0)
+        now = as_dict(answer.parameters)
+        self.assertEqual(len(now), len(self.registry))
+        self.assertEqual((now["food_health"].value.real, now["food_health"].HasField("pending")), (31, False))
+        self.assertEqual(now["steering_lookahead_s"].value.real, 1)  # a whole number is taken for a real
+        self.assertEqual((now["population_size"].value.count, now["population_size"].pending.count), (50, 60))
+        self.assertEqual((now["island_count"].value.count, now["island_count"].pending.count), (1, 2))
+        self.assertEqual(answer.parameters, self.get())
+        self.assertEqual(self.client.call(reset_world=c.ResetWorld(world=self.world)).world.island_count, 2)
+        after = as_dict(self.get())
+        self.assertEqual((after["population_size"].value.count, after["population_size"].HasField("pending")), (60, False))
+
+    def test_a_dry_run_answers_and_changes_nothing(self):
+        before = self.get()
+        answer = self.client.call(set_parameters=set_parameters(self.world, dry_run=True, food_health=99.0))
+        self.assertEqual(as_dict(answer.parameters)["food_health"].value.real, 99)
+        self.assertEqual(self.get(), before)
+        self.client.call(INVALID, set_parameters=set_parameters(self.world, dry_run=True, food_health=-1.0))
+
+    def test_compare_and_set(self):
+        revision = self.get().revision
+        answer = self.client.call(set_parameters=set_parameters(self.world, expected_revision=revision, food_health=1.0))
+        self.assertGreater(answer.parameters.revision, revision)
+        status = self.client.call(PRECONDITION, set_parameters=set_parameters(
+            self.world, expected_revision=revision, food_health=2.0)).status
+        self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
+                         [("set_parameters.expected_revision", str(answer.parameters.revision), str(revision))])
+        self.client.call(PRECONDITION, set_parameters=set_parameters(self.world, expected_revision=0, food_health=2.0))
+        self.assertEqual(as_dict(self.get())["food_health"].value.real, 1)
+
+
+class Retries(WithServer):
+    def again(self, client, request):
+        client.send(session_pb2.ClientMessage(request=request))
+        return client.response(request.request_id)
+
+    def test_the_first_answer_comes_again_on_any_session(self):
+        request = c.Request(request_id=1, client_key="retry-create", create_world=c.CreateWorld(name="once"))
+        first = self.again(self.client, request)
+        self.assertEqual(first.status.code, OK)
+        self.assertEqual(self.again(self.client, request), first)
+        with Client(self.server) as other:
+            other.call(run_until_tick=c.RunUntilTick(world="once", tick=3))
+            self.assertEqual(self.again(other, request), first)
+        self.client.call(delete_world=c.DeleteWorld(world="once"))
+        self.assertEqual(self.again(self.client, request), first)
+        self.client.call(NOT_FOUND, get_parameters=c.GetParameters(world="once"))
+
+    def test_a_refusal_by_the_world_is_kept_too(self):
+        world = self.new_world()
+        request = c.Request(request_id=1, client_key="retry-resume", resume=c.Resume(world=world))
+        first = self.again(self.client, request)
+        self.assertEqual(first.status.code, PRECONDITION)
+        self.client.call(run=c.Run(world=world))
+        self.assertEqual(self.again(self.client, request), first)
+
+    def test_a_request_that_was_wrong_in_itself_may_be_mended_with_the_same_id(self):
+        world = self.new_world()
+        self.client.call(INVALID, request_id=900, run=c.Run(world=world, generations=0))
+        self.client.call(request_id=900, run=c.Run(world=world, generations=1))
+
+    def test_an_id_serves_one_request(self):
+        self.client.call(request_id=5, client_key="retry-different", run_until_tick=c.RunUntilTick(tick=0))
+        status = self.client.call(INVALID, request_id=5, client_key="retry-different",
+                                  run_until_tick=c.RunUntilTick(tick=1)).status
+        self.assertEqual([v.field for v in status.violations], ["request_id"])
+        self.client.call(request_id=5, client_key="retry-other-key", pause=c.Pause())
+
+    def test_one_too_old_is_refused_and_not_run_again(self):
+        kept = self.client.welcome.limits.retries_kept
+        world = self.new_world()
+        old = c.Request(request_id=1, client_key="retry-old", run=c.Run(world=world))
+        self.again(self.client, old)
+        self.again(self.client, c.Request(request_id=2, client_key="retry-old", pause=c.Pause(world=world)))
+        for i in range(3, kept + 3):
+            self.again(self.client, c.Request(request_id=i, client_key="retry-old",
+                                              run_until_tick=c.RunUntilTick(world=world, tick=0)))
+        answer = self.again(self.client, old)
+        self.assertEqual(answer.status.code, PRECONDITION)
+        self.assertEqual(self.client.world(world).state, w.RUN_STATE_PAUSED)
+        newest = c.Request(request_id=kept + 2, client_key="retry-old",
+                           run_until_tick=c.RunUntilTick(world=world, tick=0))
+        self.assertEqual(self.again(self.client, newest).status.code, OK)
+
+    def test_a_client_that_hangs_up_can_ask_what_became_of_it(self):
+        request = c.Request(request_id=1, client_key="retry-gone", create_world=c.CreateWorld(name="gone"))
+        with Client(self.server) as hasty:
+            hasty.send(session_pb2.ClientMessage(request=request))
+        self.assertEqual(self.again(self.client, request).status.code, OK)
+        self.client.call(delete_world=c.DeleteWorld(world="gone"))
+
+
+class Events(WithServer):
+    def setUp(self):
+        super().setUp()
+        self.watcher = self.enterContext(Client(self.server))
+
+    def subscribe(self, world=None):
+        return self.watcher.call(subscribe_events=c.SubscribeEvents(world=world)).subscription.subscription_id
+
+    def test_everyone_is_told_of_commands_and_by_whom(self):
+        self.subscribe()
+        world = self.new_world(seed=3)
+        event = self.watcher.next_event("world_created")
+        self.assertEqual((event.world, event.world_created.world.seed), (world, 3))
+        self.assertRegex(event.world_created.by, r"^plain 127\.0\.0\.1:\d+$")
+        self.client.call(set_parameters=set_parameters(world, food_health=5.0, population_size=9))
+        changed = self.watcher.next_event("parameters_changed").parameters_changed
+        self.assertEqual([(p.name, p.HasField("pending")) for p in changed.changed],
+                         [("food_health", False), ("population_size", True)])
+        self.assertEqual(changed.revision, self.client.world(world).parameter_revision)
+        for request in ({"run": c.Run(world=world)}, {"pause": c.Pause(world=world)}, {"resume": c.Resume(world=world)},
+                        {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
+            answer = self.client.call(**request)
+            event = self.watcher.next_event("run_control_changed")
+            self.assertEqual(event.run_control_changed.world, answer.world)
+            self.assertEqual((event.tick, event.run_id), (answer.applied_tick, answer.world.run_id))
+        reset = self.client.call(reset_world=c.ResetWorld(world=world)).world
+        self.assertEqual(self.watcher.next_event("world_reset").world_reset.world.run_id, reset.run_id)
+        self.client.call(set_parameters=set_parameters(world, dry_run=True, food_health=6.0))  # tells nobody
+        self.client.call(create_world=c.CreateWorld(name="brief"))
+        self.client.call(delete_world=c.DeleteWorld(world="brief"))
+        following = [self.watcher.next_event(kind) for kind in ("world_created", "world_deleted")]
+        self.assertEqual({e.world for e in following}, {"brief"})
+
+    def test_a_subscription_to_one_world_hears_of_that_alone(self):
+        mine, other = self.new_world(), self.new_world()
+        self.subscribe(mine)
+        self.client.call(pause=c.Pause(world=other))
+        self.client.call(pause=c.Pause(world=mine))
+        self.watcher.next_event("run_control_changed")
+        self.client.call(run=c.Run(world=mine))
+        self.watcher.next_event("run_control_changed")
+        self.assertEqual([e.world for e in self.watcher.events], [])
+
+    def test_a_reached_goal_is_told(self):
+        world = self.new_world()
+        self.subscribe(world)
+        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
+        event = self.watcher.next_event("run_control_changed", lambda e: not e.run_control_changed.by)
+        self.assertEqual((event.tick, event.run_control_changed.world.state), (5, w.RUN_STATE_PAUSED))
+
+    def test_generations_migrations_and_the_end_of_a_run(self):
+        world = self.new_world(fitness="gene_sum", island_count=3, migration="ring", migration_epoch=2, migrant_count=2,
+                               generation_limit=5)
+        self.subscribe(world)
+        self.client.call(run=c.Run(world=world))
+        kinds = []
+        while "run_terminated" not in kinds:
+            self.watcher.step()
+            while self.watcher.events:
+                event = self.watcher.events.pop(0)
+                kinds.append(event.WhichOneof("event"))
+                if kinds[-1] == "generation_finished":
+                    statistics = event.generation_finished.statistics
+                    self.assertEqual([s.island for s in statistics], [0, 1, 2])
+                    self.assertEqual(len(statistics[0].genes), 6)
+                if kinds[-1] == "migration":
+                    self.assertEqual([(e.from_island, e.to_island, e.migrant_count) for e in event.migration.edges],
+                                     [(2, 0, 2), (0, 1, 2), (1, 2, 2)])
+        self.assertEqual(kinds.count("generation_finished"), 5)
+        self.assertEqual(kinds.count("migration"), 2)
+        self.assertEqual(event.run_terminated.outcome, w.OUTCOME_GENERATION_LIMIT)
+        history = self.client.call(get_history=c.GetHistory(world=world)).history
+        self.assertEqual([(s.generation, s.island) for s in history.generations],
+                         list(itertools.product(range(1, 6), range(3))))
+
+    def test_an_island_that_dies_out_is_told(self):
+        world = self.new_world(food_count=0, poison_count=0, generation_s=600)
+        self.subscribe(world)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world, generations=1))
+        extinction = self.watcher.next_event("extinction")
+        self.assertEqual((extinction.extinction.island, extinction.extinction.generation), (0, 1))
+        finished = self.watcher.next_event("generation_finished").generation_finished.statistics[0]
+        self.assertEqual((finished.alive_count, finished.starved_count), (0, 50))
+
+    def test_the_answer_comes_before_its_event(self):
+        self.subscribe()
+        request_id = self.watcher.ask(pause=c.Pause())
+        self.watcher.response(request_id)
+        self.assertEqual(self.watcher.events, [])
+        self.watcher.next_event("run_control_changed")
+
+    def test_no_more_events_after_unsubscribing(self):
+        subscription = self.subscribe()
+        self.watcher.call(unsubscribe=c.Unsubscribe(subscription_id=subscription))
+        status = self.watcher.call(NOT_FOUND, unsubscribe=c.Unsubscribe(subscription_id=subscription)).status
+        self.assertEqual([v.field for v in status.violations], ["unsubscribe.subscription_id"])
+        self.client.call(pause=c.Pause())
+        self.watcher.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.watcher.events, [])
+
+    def test_who_reads_too_slowly_is_told_how_much_was_left_out(self):
+        world = self.new_world(fitness="gene_sum", island_count=8)
+        self.subscribe(world)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world))
+        self.client.wait_world(lambda x: x.generation > 15000, world)  # some 60 MB of events
+        self.client.call(pause=c.Pause(world=world))
+        self.assertGreater(self.watcher.next_event("events_dropped").events_dropped.dropped_count, 0)
+
+
+class Pictures(WithServer):
+    def setUp(self):
+        super().setUp()
+        self.viewer = self.enterContext(Client(self.server))
+
+    def subscribe(self, world, rate_hz=100.0, island=None):
+        return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
+            world=world, rate_hz=rate_hz, island=island)).subscription
+
+    def test_a_picture_shows_the_world_as_it_is(self):
+        world = self.new_world(seed=11, obstacle_count=3, crate_count=2, obstacle_size_px=50, crate_size_px=30)
+        self.client.run_to(50, world)
+        subscription = self.subscribe(world)
+        picture = self.viewer.next_picture()
+        info = self.client.world(world)
+        for field in ("tick", "generation", "generation_tick", "simulated_s", "state", "state_hash", "run_id"):
+            self.assertEqual(getattr(picture, field), getattr(info, field), field)
+        self.assertEqual((picture.world, picture.island, picture.island_count), (world, 0, 1))
+        self.assertEqual((picture.width_px, picture.height_px, picture.item_radius_px), (1280, 720, 4))
+        self.assertEqual((picture.codec, picture.subscription_id), (stream_pb2.CODEC_COLUMNS, subscription.subscription_id))
+        live = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics.live[0]
+        self.assertEqual(picture.live, live)
+        self.assertEqual(picture.organism_count, live.alive_count)
+        self.assertEqual((picture.crate_count, picture.obstacle_count), (2, 3))
+        self.assertLessEqual(picture.food_count, 25)
+        seen = columns(picture)
+        self.assertEqual(set(seen["obstacles"]["half_width"]), {25.0})
+        self.assertEqual(set(seen["crates"]["half_height"]), {15.0})
+        for kind in ("organisms", "food", "poison"):
+            self.assertTrue((numpy.diff(seen[kind]["id"].astype(int)) > 0).all())
+            self.assertTrue((seen[kind]["x"] <= 1280).all() and (seen[kind]["y"] <= 720).all())
+        organisms = seen["organisms"]
+        for row, organism in enumerate(organisms["id"]):
+            told = self.client.call(get_organism=c.GetOrganism(world=world, organism=int(organism))).organism
+            self.assertTrue(told.alive)
+            self.assertLessEqual(abs(told.x_px - organisms["x"][row]), 1 / 32)
+            self.assertLessEqual(abs(told.y_px - organisms["y"][row]), 1 / 32)
+            self.assertLessEqual(abs(told.radius_px - organisms["radius"][row]), 1 / 32)
+            self.assertLessEqual(abs(told.health - organisms["health"][row]), 1 / 32)
+            self.assertAlmostEqual(told.lived_s, 50 / 60)
+            self.assertAlmostEqual(told.radius_px, told.genes[2] * 0.1, places=4)
+
+    def test_pictures_follow_the_run_and_end_with_its_last_tick(self):
+        world = self.new_world()
+        self.subscribe(world, 30.0)
+        self.assertEqual(self.viewer.next_picture().tick, 0)
+        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=40))
+        ticks, picture = [], None
+        while picture is None or picture.tick < 40:
+            picture = self.viewer.next_picture()
+            ticks.append(picture.tick)
+        self.assertEqual(ticks, sorted(ticks))
+        self.assertLess(len(ticks), 30)  # 40 ticks are 2/3 s: at 30 a second some 20, and a few out of turn
+        self.assertEqual((picture.state, picture.state_hash), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.viewer.pictures, [])  # it stands still: nothing more
+
+    def test_a_newcomer_sees_a_world_that_stands_still(self):
+        world = self.new_world()
+        self.subscribe(world)
+        self.viewer.next_picture()
+        with Client(self.server) as newcomer:
+            newcomer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=1))
+            self.assertEqual(newcomer.next_picture().tick, 0)
+
+    def test_changes_are_shown_at_once_however_low_the_rate(self):
+        world = self.new_world()
+        self.subscribe(world, 0.001)
+        self.viewer.next_picture()
+        for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)}, {"reset_world": c.ResetWorld(world=world)},
+                        {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
+            answer = self.client.call(**request).world
+            self.viewer.next_picture(lambda p: p.run_id == answer.run_id and p.speed == answer.speed)
+        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=9))
+        self.viewer.next_picture(lambda p: p.tick == 9 and p.state == w.RUN_STATE_PAUSED)
+
+    def test_islands_alone_and_together(self):
+        world = self.new_world(island_count=3)
+        everyone, one = self.subscribe(world), self.subscribe(world, island=2)
+        self.assertEqual((everyone.subscription_id, one.subscription_id), (1, 2))
+        seen = {}
+        while len(seen) < 4:
+            picture = self.viewer.next_picture()
+            seen[picture.subscription_id, picture.island] = picture
+        self.assertEqual(set(seen), {(1, 0), (1, 1), (1, 2), (2, 2)})
+        self.assertEqual(seen[1, 2].body, seen[2, 2].body)
+        status = self.viewer.call(NOT_FOUND, subscribe_snapshots=c.SubscribeSnapshots(
+            world=world, rate_hz=1, island=3)).status
+        self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
+                         [("subscribe_snapshots.island", "0 to 2", "3")])
+
+    def test_rates(self):
+        world = self.new_world()
+        self.assertEqual(self.subscribe(world, 1e6).rate_hz, self.viewer.welcome.limits.snapshot_rate_hz_max)
+        for rate in (0.0, -1.0, math.nan, math.inf):
+            status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=rate)).status
+            self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.rate_hz"])
+
+    def test_no_more_subscriptions_than_the_limit(self):
+        world = self.new_world()
+        limit = self.viewer.welcome.limits.subscriptions_max
+        ids = [self.subscribe(world).subscription_id for _ in range(limit)]
+        self.viewer.call(EXHAUSTED, subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=1))
+        self.viewer.call(EXHAUSTED, subscribe_events=c.SubscribeEvents())
+        self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=ids[0]))
+        self.viewer.call(subscribe_events=c.SubscribeEvents())
+
+    def test_a_fitness_of_genes_alone_has_empty_pictures(self):
+        world = self.new_world(fitness="rastrigin")
+        self.subscribe(world)
+        picture = self.viewer.next_picture()
+        self.assertEqual((picture.organism_count, len(picture.body)), (0, 0))
+        self.assertGreater(picture.width_px, 0)
+
+    def test_a_wide_island_has_wide_positions(self):
+        world = self.new_world(island_width_px=5000.0)
+        self.subscribe(world)
+        picture = self.viewer.next_picture()
+        self.assertEqual(picture.position_bytes, 4)
+        self.assertGreater(columns(picture)["food"]["x"].max(), 1280)
+
+    def test_a_slow_viewer_gets_the_newest_and_is_told_what_it_missed(self):
+        world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)  # 400 KB a picture
+        self.subscribe(world, 120.0)  # and does not read
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        with Client(self.server) as reader:
+            reader.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
+            self.client.call(run=c.Run(world=world))
+            for _ in range(60):  # 24 MB, more than lies between the programs
+                reader.next_picture()
+            paused = self.client.call(pause=c.Pause(world=world)).world
+            newest = reader.next_picture(lambda p: p.tick == paused.tick)
+        picture = self.viewer.next_picture(lambda p: p.tick == paused.tick)
+        self.assertGreater(picture.dropped_count, 0)
+        self.assertEqual(picture.body, newest.body)
+
+    def test_a_viewer_that_dies_in_mid_picture_leaves_no_trace(self):
+        world = self.new_world(food_count=50_000, island_width_px=4000.0, island_height_px=4000.0)
+        self.client.call(run=c.Run(world=world))
+        for _ in range(5):
+            with Client(self.server) as viewer:
+                viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
+                viewer.read(100)
+        now = self.client.world(world).tick
+        self.client.wait_world(lambda x: x.tick > now, world)
+
+
+class Queries(WithServer):
+    def test_history_in_parts(self):
+        world = self.new_world(fitness="gene_sum", island_count=7)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world, generations=300))
+        self.client.wait_world(lambda x: x.state == w.RUN_STATE_WAITING, world)
+        got, first, answers = [], None, 0
+        while True:
+            history = self.client.call(get_history=c.GetHistory(world=world, first_generation=first)).history
+            self.assertLessEqual(len(history.generations), self.client.welcome.limits.history_generations_max)
+            got += [(s.generation, s.island) for s in history.generations]
+            answers += 1
+            if not history.HasField("next_generation"):
+                break
+            first = history.next_generation
+        self.assertEqual(got, list(itertools.product(range(1, 301), range(7))))
+        self.assertGreater(answers, 1)
+        part = self.client.call(get_history=c.GetHistory(world=world, first_generation=5, last_generation=7, island=6))
+        self.assertEqual([(s.generation, s.island) for s in part.history.generations], [(5, 6), (6, 6), (7, 6)])
+        self.assertEqual(len(self.client.call(
+            get_history=c.GetHistory(world=world, first_generation=1 << 60)).history.generations), 0)
+        self.client.call(INVALID, get_history=c.GetHistory(world=world, first_generation=5, last_generation=4))
+        self.client.call(NOT_FOUND, get_history=c.GetHistory(world=world, island=7))
+
+    def test_statistics_before_and_after_a_generation(self):
+        world = self.new_world(generation_s=1)
+        before = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics
+        self.assertEqual((len(before.live), len(before.last)), (1, 0))
+        self.assertEqual((before.live[0].organism_count, before.live[0].alive_count), (50, 50))
+        self.client.run_to(61, world)
+        after = self.client.call(get_statistics=c.GetStatistics(world=world)).statistics
+        self.assertEqual((after.world.generation, after.last[0].generation, after.last[0].end_tick), (2, 1, 60))
+        self.assertGreaterEqual(after.last[0].fitness_best, after.last[0].fitness_mean)
+
+    def test_organisms_of_a_second_generation_have_parents(self):
+        world = self.new_world(generation_s=1)
+        first = self.client.call(get_organism=c.GetOrganism(world=world, organism=49)).organism
+        self.assertEqual((first.id, first.generation, len(first.genes), len(first.parents)), (49, 1, 6, 0))
+        self.client.run_to(61, world)
+        child = self.client.call(get_organism=c.GetOrganism(world=world, organism=49)).organism
+        self.assertEqual(child.generation, 2)
+        self.assertIn(len(child.parents), (1, 2))
+        status = self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, organism=50)).status
+        self.assertEqual([(v.field, v.allowed) for v in status.violations], [("get_organism.organism", "0 to 49")])
+        self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, island=1))
+
+    def test_the_dead_can_be_asked_about(self):
+        world = self.new_world(food_count=0, poison_count=0, generation_s=600)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world, generations=1))
+        self.client.wait_world(lambda x: x.state == w.RUN_STATE_WAITING, world)
+        dead = self.client.call(get_organism=c.GetOrganism(world=world)).organism
+        self.assertEqual((dead.alive, dead.health, dead.cause_of_death), (False, 0, w.CAUSE_OF_DEATH_STARVED))
+        self.assertGreater(dead.lived_s, 10)
+
+
+class StartAndEnd(unittest.TestCase):
+    def start_refused(self, *options, status=1):
+        ended = subprocess.run([evod_path, *options], capture_output=True, text=True, timeout=patience_s)
+        self.assertEqual(ended.returncode, status, ended.stderr)
+        return ended.stderr
+
+    def file(self, text):
+        path = os.path.join(self.enter(tempfile.TemporaryDirectory()), "two_islands.json")
+        with open(path, "w") as file:
+            file.write(text)
+        return path
+
+    def enter(self, context):
+        result = context.__enter__()
+        self.addCleanup(context.__exit__, None, None, None)
+        return result
+
+    def serve(self, *options, **popen):
+        server = Server(*options, **popen)
+        self.addCleanup(server.end)
+        return server
+
+    def test_a_taken_port_is_said_to_be_taken(self):
+        server = self.serve()
+        message = self.start_refused("--port", str(server.port))
+        self.assertIn("port is taken", message)
+        self.assertIn("--port", message)
+
+    def test_a_bad_address_is_said_to_be_one(self):
+        self.assertIn("--bind", self.start_refused("--port", "0", "--bind", "localhorst"))
+
+    def test_a_bad_experiment_names_line_and_field(self):
+        message = self.start_refused("--port", "0", "--experiment",
+                                     self.file('{\n  "food_count": 3,\n  "mutation_chance": 1.5\n}'))
+        self.assertIn("mutation_chance (line 3)", message)
+        self.assertIn("line 2", self.start_refused("--port", "0", "--experiment", self.file('{\n  "food_count": ,\n}')))
+
+    def test_an_experiment_that_cannot_be_read_is_said_so(self):
+        self.assertIn("No such file", self.start_refused("--port", "0", "--experiment", "/nowhere/at_all.json"))
+        self.assertIn("folder", self.start_refused("--port", "0", "--experiment", "/"))
+
+    def test_bad_options_are_refused(self):
+        for options in (["--speed", "fast"], ["--speed", "nan"], ["--speed", "0"], ["--threads", "0"], ["--port", "70000"],
+                        ["--seed", "x"], ["--colour"]):
+            self.assertIn(options[0], self.start_refused(*options, status=2))
+
+    def test_an_experiment_gives_the_first_world_its_name_seed_and_parameters(self):
+        path = self.file('{"seed": 77, "island_count": 2, "description": "two"}')
+        server = self.serve("--experiment", path, "--speed", "max", "--start")
+        self.assertEqual((server.world, server.seed), ("two_islands", 77))
+        with Client(server) as client:
+            world = client.world()
+            self.assertEqual((world.name, world.seed, world.island_count, world.speed.max, world.state),
+                             ("two_islands", 77, 2, True, w.RUN_STATE_RUNNING))
+            client.wait_world(lambda x: x.tick > 10)
+        self.assertEqual(self.serve("--experiment", path, "--seed", "78").seed, 78)
+
+    def test_thread_counts_give_the_same_hashes(self):
+        path = self.file('{"population_size": 3000, "scale_with_population": true, "reference_population": 50,'
+                         ' "island_count": 2}')
+        hashes = set()
+        for threads in ("1", "2", "3"):
+            server = self.serve("--experiment", path, "--seed", "6", "--threads", threads, "--speed", "max")
+            with Client(server) as client:
+                hashes.add(client.run_to(60).state_hash)
+        self.assertEqual(len(hashes), 1)
+
+    def test_either_signal_says_goodbye_and_ends_well(self):
+        for how in (signal.SIGTERM, signal.SIGINT):
+            server = Server("--start", "--speed", "max")
+            with Client(server) as client, Client(server) as deaf, Client(server, hello=False):
+                client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
+                deaf.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=120))
+                client.next_picture(lambda p: p.tick > 0)
+                server.process.send_signal(how)
+                client.next_event("server_going_away")
+                client.assert_closed()
+                began = time.monotonic()
+                server.end(how)
+                self.assertLess(time.monotonic() - began, 10)
+
+    def test_signals_in_a_row_do_no_harm(self):
+        server = Server("--start", "--speed", "max")
+        for _ in range(5):
+            with contextlib.suppress(ProcessLookupError):
+                server.process.send_signal(signal.SIGTERM)
+        server.end()
+
+    def test_too_few_file_descriptors_do_not_stop_it_for_good(self):
+        server = self.serve(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (40, 40)))
+        with contextlib.ExitStack() as stack:
+            first = stack.enter_context(Client(server))
+            for _ in range(60):
+                stack.enter_context(Client(server, hello=False))
+            until(lambda: "cannot accept a connection" in server.output(), "it runs out of them")
+            used = self.processor_time_s(server)
+            began = time.monotonic()
+            for _ in range(20):
+                first.call(list_worlds=c.ListWorlds())
+            until(lambda: time.monotonic() - began > 0.5, "some time to spin in")
+            self.assertLess(self.processor_time_s(server) - used, 0.4)
+        until(lambda: self.admitted(server), "it takes connections again")
+
+    def processor_time_s(self, server):
+        fields = open(f"/proc/{server.process.pid}/stat").read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+    def admitted(self, server):
+        with Client(server, hello=False) as client:
+            client.hello()
+            readable, _, _ = select.select([client.socket], [], [], 1)
+            return bool(readable) and client.control().HasField("welcome")
+
+
+class Documentation(unittest.TestCase):
+    """docs/PROTOCOL.md is right."""
+
+    def test_its_client_runs(self):
+        server = Server()
+        self.addCleanup(server.end)
+        ended = subprocess.run([sys.executable, "-c", documented_python(), str(server.port)], capture_output=True,
+                               text=True, timeout=patience_s, env={**os.environ, "PYTHONPATH": messages_path})
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertTrue(ended.stdout.startswith("evod "), ended.stdout)
+        self.assertTrue(ended.stdout.endswith("the same again\n"), ended.stdout)
+
+    def test_its_bytes_mean_what_it_says(self):
+        text = open(protocol_path, encoding="utf-8").read()
+        blocks = [bytes.fromhex("".join(line.split("#")[0] for line in block.splitlines()))
+                  for block in re.findall(r"```\n(45 56 .*?)```", text, re.S)]
+        self.assertEqual(len(blocks), 2)
+        self.assertEqual(blocks[0][:8], b"EV\x01\x01\x08\0\0\0")
+        hello = session_pb2.ClientMessage.FromString(blocks[0][8:])
+        self.assertEqual((hello.hello.protocol_version, hello.hello.client_name), (1, "me"))
+        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xc6\0\0\0")
+        self.assertEqual(len(blocks[1]), 8 + 0xc6)
+        picture = stream_pb2.SnapshotFrame.FromString(blocks[1][8:])
+        self.assertEqual((picture.world, picture.tick, picture.dropped_count), ("default", 120, 3))
+        names = {}
+        exec(compile(documented_python(), protocol_path, "exec"), names)
+        seen = names["columns"](picture)
+        self.assertEqual({k: list(v) for k, v in seen["organisms"].items()},
+                         {"id": [0, 2], "x": [10.5, 50.25], "y": [20, 30.0625], "radius": [10, 8.5], "health": [100, 42.5]})
+        self.assertEqual((seen["food"]["x"][0], seen["poison"]["y"][0], seen["obstacles"]["half_width"][0]), (5, 55, 15))
+
+    def test_its_table_of_limits_is_that_of_the_server(self):
+        server = Server()
+        self.addCleanup(server.end)
+        text = open(protocol_path, encoding="utf-8").read()
+        with Client(server) as client:
+            limits = client.welcome.limits
+        for row, limit in (("sessions", limits.sessions_max), ("unanswered requests of a session", limits.requests_in_flight_max),
+                           ("commands and queries waiting for the simulation", limits.mailbox_commands_max),
+                           ("subscriptions of a session", limits.subscriptions_max),
+                           ("pictures a second", int(limits.snapshot_rate_hz_max)), ("worlds", limits.worlds_max)):
+            self.assertRegex(text, rf"\| {row} \| {limit:,} \|")
+        self.assertIn(f"{limits.retries_kept:,} of each key, {limits.client_keys_max:,} keys", text)
+        self.assertIn(f"{limits.history_generations_kept:,} of each world", text)
+        self.assertEqual((limits.hello_frame_bytes_max, limits.control_frame_bytes_max), (4 << 10, 1 << 20))
+
+    def test_it_tells_of_every_request_and_event(self):
+        text = open(protocol_path, encoding="utf-8").read()
+        for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields:
+            self.assertIn(f"`{field.message_type.name}`", text)
+        for field in stream_pb2.Event.DESCRIPTOR.oneofs_by_name["event"].fields:
+            self.assertIn(f"`{field.name}`", text)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2, warnings="ignore")
