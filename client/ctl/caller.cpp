@@ -111,10 +111,11 @@ std::string sentence(const v1::WorldInfo& world) {
     std::string text = world.name() + ": " + state_of(world) + " at " + to_text(world.speed()) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
-    if (world.has_run_until_generation()) {
+    const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED;
+    if (under_way && world.has_run_until_generation()) {
         text += ", until the end of generation " + std::to_string(world.run_until_generation() - 1);
     }
-    if (world.has_run_until_tick()) {
+    if (under_way && world.has_run_until_tick()) {
         text += ", until tick " + std::to_string(world.run_until_tick());
     }
     return text;

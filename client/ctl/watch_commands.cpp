@@ -87,6 +87,10 @@ class Watch {
         if (redraw_ && !ended_) {
             draw();
         }
+        if (ended_ && generations_ && seen_ < *generations_) {
+            throw Stop{ExitCode::Refused, "only " + std::to_string(seen_) + " of " + std::to_string(*generations_) +
+                                              " generations were seen"};
+        }
     }
 
   private:
