@@ -25,27 +25,17 @@ constexpr std::array<double, 24> inverse_factorials() {
 }
 constexpr auto inverse_factorial = inverse_factorials();
 
-// Both for |x| <= π/4, where the first term left out is below 1e-19.
+/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4: with 18 or 19 the first
+/// term left out is below 1e-19.
 template <class Real>
-constexpr Real sin_series(Real x, int last) {
-    const Real square = x * x;
-    Real sum = 0;
-    for (int n = last; n >= 1; n -= 2) {
-        const Real coefficient = static_cast<Real>(inverse_factorial[static_cast<unsigned>(n)]);
-        sum = sum * square + (n % 4 == 1 ? coefficient : -coefficient);
-    }
-    return sum * x;
-}
-
-template <class Real>
-constexpr Real cos_series(Real x, int last) {
+constexpr Real series(Real x, int last) {
     const Real square = x * x;
     Real sum = 0;
     for (int n = last; n >= 0; n -= 2) {
         const Real coefficient = static_cast<Real>(inverse_factorial[static_cast<unsigned>(n)]);
-        sum = sum * square + (n % 4 == 0 ? coefficient : -coefficient);
+        sum = sum * square + (n % 4 < 2 ? coefficient : -coefficient);
     }
-    return sum;
+    return last % 2 == 1 ? sum * x : sum;
 }
 
 struct Octant {
@@ -65,13 +55,13 @@ double cos_turns(double turns) {
     const Octant o = reduce(turns);
     switch (o.quarter) {
     case 0:
-        return cos_series(o.angle, 18);
+        return series(o.angle, 18);
     case 1:
-        return -sin_series(o.angle, 19);
+        return -series(o.angle, 19);
     case 2:
-        return -cos_series(o.angle, 18);
+        return -series(o.angle, 18);
     default:
-        return sin_series(o.angle, 19);
+        return series(o.angle, 19);
     }
 }
 
@@ -79,13 +69,13 @@ double sin_turns(double turns) {
     const Octant o = reduce(turns);
     switch (o.quarter) {
     case 0:
-        return sin_series(o.angle, 19);
+        return series(o.angle, 19);
     case 1:
-        return cos_series(o.angle, 18);
+        return series(o.angle, 18);
     case 2:
-        return -sin_series(o.angle, 19);
+        return -series(o.angle, 19);
     default:
-        return -cos_series(o.angle, 18);
+        return -series(o.angle, 18);
     }
 }
 
@@ -135,7 +125,7 @@ Direction direction(unsigned word) {
     const unsigned quarter = (word + 0x2000'0000u) >> 30;
     const auto rest = static_cast<std::int32_t>(word - (quarter << 30));
     const float angle = static_cast<float>(rest) * static_cast<float>(2 * pi / 4294967296.0);
-    const float s = sin_series(angle, 9), c = cos_series(angle, 8);
+    const float s = series(angle, 9), c = series(angle, 8);
     switch (quarter & 3) {
     case 0:
         return {c, s};

@@ -42,6 +42,10 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
                                                         ": change that parameter to go on, or reset the world");
 }
 
+Applied applied_now(const Entry& entry) {
+    return {.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+}
+
 bool has_goal(const RunControl& control) { return control.endless || control.until_generation; }
 
 } // namespace
@@ -119,7 +123,18 @@ Result<const Entry*> Laboratory::find(std::string_view name) const {
 }
 
 Result<Applied> Laboratory::apply(const Command& command) {
-    return std::visit([&](const auto& c) { return carry_out(c); }, command);
+    return std::visit(
+        [this](const auto& c) -> Result<Applied> {
+            if constexpr (requires { carry_out(c); }) {
+                return carry_out(c);
+            } else {
+                const Result<Entry*> found = find(c.world);
+                if (!found)
+                    return found.error();
+                return carry_out(**found, c);
+            }
+        },
+        command);
 }
 
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
@@ -146,24 +161,16 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
     return applied;
 }
 
-Result<Applied> Laboratory::carry_out(const ResetWorld& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
     entry.world.reset(command.seed.value_or(entry.world.seed()));
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;
     entry.control = {};
     entry.control.speed = speed;
-    return Applied{.world = entry.name, .tick = 0, .parameters = {}};
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const Run& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
     if (auto refused = refusal_if_terminated(entry.world))
         return *refused;
     entry.control.endless = !command.generations;
@@ -175,14 +182,10 @@ Result<Applied> Laboratory::carry_out(const Run& command) {
     }
     entry.control.until_tick.reset();
     entry.control.paused = false;
-    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const RunUntilTick& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command) {
     const std::uint64_t now = entry.world.moment().tick;
     if (command.tick > now)
         if (auto refused = refusal_if_terminated(entry.world))
@@ -191,24 +194,16 @@ Result<Applied> Laboratory::carry_out(const RunUntilTick& command) {
     entry.control.until_tick.reset();
     if (command.tick > now)
         entry.control.until_tick = command.tick;
-    return Applied{.world = entry.name, .tick = now, .parameters = {}};
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const Pause& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const Pause&) {
     entry.control.paused = true;
     entry.control.until_tick.reset();
-    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const Resume& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
     if (auto refused = refusal_if_terminated(entry.world))
         return *refused;
     if (!has_goal(entry.control))
@@ -216,22 +211,15 @@ Result<Applied> Laboratory::carry_out(const Resume& command) {
                        "there is nothing to resume: tell the world how far to run with start or run");
     entry.control.paused = false;
     entry.control.until_tick.reset();
-    return Applied{.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const SetSpeed& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    (*found)->control.speed = command.speed;
-    return Applied{.world = (*found)->name, .tick = (*found)->world.moment().tick, .parameters = {}};
+Result<Applied> Laboratory::carry_out(Entry& entry, const SetSpeed& command) {
+    entry.control.speed = command.speed;
+    return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(const SetParameters& command) {
-    const Result<Entry*> found = find(command.world);
-    if (!found)
-        return found.error();
-    Entry& entry = **found;
+Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command) {
     World& world = entry.world;
     if (command.expected_revision && *command.expected_revision != world.parameters().revision)
         return Refusal{.code = RefusalCode::FailedPrecondition,
@@ -243,7 +231,7 @@ Result<Applied> Laboratory::carry_out(const SetParameters& command) {
         assign(world.parameters().requested, command.assignments, "set_parameters.");
     if (!requested)
         return requested.error();
-    Applied applied{.world = entry.name, .tick = world.moment().tick, .parameters = {}};
+    Applied applied = applied_now(entry);
     applied.parameters = after_request(world.parameters(), *requested);
     if (!command.dry_run)
         world.request_parameters(*requested);

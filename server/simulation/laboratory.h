@@ -74,13 +74,13 @@ class Laboratory {
   private:
     base::Result<Applied> carry_out(const CreateWorld&);
     base::Result<Applied> carry_out(const DeleteWorld&);
-    base::Result<Applied> carry_out(const ResetWorld&);
-    base::Result<Applied> carry_out(const Run&);
-    base::Result<Applied> carry_out(const RunUntilTick&);
-    base::Result<Applied> carry_out(const Pause&);
-    base::Result<Applied> carry_out(const Resume&);
-    base::Result<Applied> carry_out(const SetSpeed&);
-    base::Result<Applied> carry_out(const SetParameters&);
+    base::Result<Applied> carry_out(Entry& entry, const ResetWorld&);
+    base::Result<Applied> carry_out(Entry& entry, const Run&);
+    base::Result<Applied> carry_out(Entry& entry, const RunUntilTick&);
+    base::Result<Applied> carry_out(Entry& entry, const Pause&);
+    base::Result<Applied> carry_out(Entry& entry, const Resume&);
+    base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
+    base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
     base::Refusal not_found(std::string_view name) const;
     void collect_events(Entry& entry);
 
