@@ -1,0 +1,66 @@
+// Camera: which part of an island is seen, and how large.
+//
+// Two spaces, both with +x right and +y down: the world, in px of the model, and the screen, in pixels of the window.
+// The island is seen in the viewport, the part of the window that no text strip covers.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+namespace evod::viewer {
+
+struct Point {
+    double x = 0, y = 0;
+    friend bool operator==(const Point&, const Point&) = default;
+};
+
+struct Rectangle {
+    double left = 0, top = 0, width = 0, height = 0;
+    Point centre() const { return {left + width / 2, top + height / 2}; }
+    bool contains(Point point) const {
+        return point.x >= left && point.x <= left + width && point.y >= top && point.y <= top + height;
+    }
+};
+
+class Camera {
+  public:
+    static constexpr double zoom_max = 64;     // pixels per px of the world
+    static constexpr double wall_pixels = 6;   // thickness of the walls at any zoom
+    static constexpr double margin_pixels = 6; // around the walls of a fitted island
+
+    /// Where on the screen the island is seen. A fitted island stays fitted, another keeps its centre and its zoom.
+    void set_viewport(Rectangle screen);
+
+    /// The size of the island, in px of the world. Another size is fitted.
+    void set_island(double width, double height);
+
+    /// Shows the whole island with its walls, as large as it goes.
+    void fit();
+    bool fitted() const { return fitted_; }
+
+    /// Moves the picture by so many pixels, as a hand moves paper; the middle of the viewport stays on the island.
+    void pan(Point pixels);
+
+    /// Enlarges by `factor` around what is seen at `screen`, which stays there; within zoom_min() to zoom_max.
+    void zoom_at(Point screen, double factor);
+
+    Point to_screen(Point world) const;
+    Point to_world(Point screen) const;
+
+    const Rectangle& viewport() const { return viewport_; }
+    Point centre() const { return centre_; } // of the viewport, in the world
+    double zoom() const { return zoom_; }    // pixels per px of the world
+    double zoom_min() const;                 // half of the fitted one
+    Rectangle visible() const;               // of the world
+
+  private:
+    double zoom_to_fit() const;
+    void stay_on_island();
+
+    Rectangle viewport_{0, 0, 1, 1};
+    double island_width_ = 1, island_height_ = 1;
+    Point centre_{0.5, 0.5};
+    double zoom_ = 1;
+    bool fitted_ = true;
+};
+
+} // namespace evod::viewer

@@ -1,0 +1,150 @@
+#include "client/viewer/input.h"
+
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+using Key = sf::Keyboard;
+
+struct KeyBinding {
+    Key::Key key;
+    Action action;
+};
+constexpr KeyBinding key_bindings[] = {
+    {Key::Space, Action::PauseOrResume},
+    {Key::M, Action::MaxSpeed},
+    {Key::Tab, Action::NextIsland},
+    {Key::PageDown, Action::NextIsland},
+    {Key::PageUp, Action::PreviousIsland},
+    {Key::W, Action::NextWorld},
+    {Key::F, Action::Fit},
+    {Key::Home, Action::Fit},
+    {Key::S, Action::Screenshot},
+    {Key::H, Action::Help},
+    {Key::F1, Action::Help},
+    {Key::Q, Action::Quit},
+    {Key::Escape, Action::Close},
+};
+
+struct SignBinding {
+    sf::Uint32 sign;
+    Action action;
+};
+constexpr SignBinding sign_bindings[] = {
+    {'+', Action::Faster}, {'=', Action::Faster},   {'-', Action::Slower},
+    {'_', Action::Slower}, {'1', Action::RealTime}, {'?', Action::Help},
+};
+
+constexpr HelpLine lines[] = {
+    {"Space", "run, pause, go on"},
+    {".", "one tick, then pause"},
+    {"Shift + .", "60 ticks, then pause"},
+    {"+   -", "twice, half as fast"},
+    {"1", "as fast as real time"},
+    {"M", "as fast as the server can; again: as before"},
+    {"Tab   Page Up   Page Down", "next or previous island"},
+    {"W", "next world"},
+    {"Wheel", "zoom at the cursor"},
+    {"Drag   arrow keys", "move the picture"},
+    {"F   Home", "show the whole island"},
+    {"S", "save the picture as PNG"},
+    {"H   F1", "show or hide this help"},
+    {"Q   Esc", "quit; the worlds run on"},
+};
+
+constexpr double zoom_of_one_notch = 1.2;
+constexpr double pan_pixels_per_s = 700;
+
+} // namespace
+
+std::span<const HelpLine> help_lines() {
+    return lines;
+}
+
+std::optional<Action> Input::press(const sf::Event::KeyEvent& key) {
+    const bool repeated = !held_.insert(key.code).second;
+    if (key.control || key.alt || key.system) {
+        return std::nullopt;
+    }
+    if (key.code == Key::Period) {
+        return key.shift ? Action::StepMany : Action::StepOne;
+    }
+    if (repeated) {
+        return std::nullopt;
+    }
+    if (key.code == Key::Tab && key.shift) {
+        return Action::PreviousIsland;
+    }
+    for (const KeyBinding& binding : key_bindings) {
+        if (binding.key == key.code) {
+            return binding.action;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Action> Input::handle(const sf::Event& event, Captured captured, Camera& camera) {
+    switch (event.type) {
+    case sf::Event::Closed:
+        return Action::Quit;
+    case sf::Event::LostFocus: // the releases will be told to somebody else
+        held_.clear();
+        dragging_ = false;
+        break;
+    case sf::Event::KeyPressed:
+        if (!captured.keyboard) {
+            return press(event.key);
+        }
+        break;
+    case sf::Event::KeyReleased:
+        held_.erase(event.key.code);
+        break;
+    case sf::Event::TextEntered:
+        if (!captured.keyboard) {
+            for (const SignBinding& binding : sign_bindings) {
+                if (binding.sign == event.text.unicode) {
+                    return binding.action;
+                }
+            }
+        }
+        break;
+    case sf::Event::MouseButtonPressed:
+        dragging_ = !captured.mouse && event.mouseButton.button != sf::Mouse::Right;
+        mouse_ = Point{double(event.mouseButton.x), double(event.mouseButton.y)};
+        break;
+    case sf::Event::MouseButtonReleased:
+        dragging_ = false;
+        break;
+    case sf::Event::MouseMoved: {
+        const Point now{double(event.mouseMove.x), double(event.mouseMove.y)};
+        if (dragging_ && mouse_) {
+            camera.pan({now.x - mouse_->x, now.y - mouse_->y});
+        }
+        mouse_ = now;
+        break;
+    }
+    case sf::Event::MouseLeft:
+        mouse_.reset();
+        break;
+    case sf::Event::MouseWheelScrolled:
+        if (!captured.mouse && event.mouseWheelScroll.wheel == sf::Mouse::VerticalWheel) {
+            camera.zoom_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)},
+                           std::pow(zoom_of_one_notch, event.mouseWheelScroll.delta));
+        }
+        break;
+    default:
+        break;
+    }
+    return std::nullopt;
+}
+
+void Input::move(Camera& camera, double seconds) const {
+    const auto held = [this](Key::Key key) { return held_.contains(key) ? 1.0 : 0.0; };
+    const double pixels = pan_pixels_per_s * seconds;
+    // An arrow moves the eye, so the picture goes the other way.
+    camera.pan({pixels * (held(Key::Left) - held(Key::Right)), pixels * (held(Key::Up) - held(Key::Down))});
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,32 @@
+// evoview: options → a window, or one screenshot → exit status.
+#include "client/viewer/options.h"
+#include "client/viewer/screenshot.h"
+#include "client/viewer/window.h"
+
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <stdexcept>
+
+int main(int argc, char** argv) {
+    using namespace evod::viewer;
+    const auto parsed = parse_options(argc, argv);
+    if (const int* status = std::get_if<int>(&parsed)) {
+        return *status;
+    }
+    const auto& options = std::get<Options>(parsed);
+    try {
+        if (std::getenv("DISPLAY") == nullptr) {
+            throw std::runtime_error{"no display: DISPLAY is not set; without a screen, use xvfb-run evoview …"};
+        }
+        if (options.screenshot) {
+            take_screenshot(options, *options.screenshot);
+        } else {
+            Window{options}.run();
+        }
+    } catch (const std::exception& error) {
+        std::cerr << "evoview: " << error.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

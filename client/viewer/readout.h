@@ -1,0 +1,29 @@
+// Readout: what the strips at the top and at the bottom of the window say, as text.
+//
+// Threads      none.
+#pragma once
+
+#include "client/viewer/watch.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+std::string with_separators(std::uint64_t number);     // 1234567 → "1,234,567"
+std::string shown_duration(double seconds);            // 75.25 → "1:15.2"
+std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
+const char* shown_state(evod::v1::RunState state);
+
+/// "Generation 12"; empty before the first picture.
+std::string title(const evod::v1::SnapshotFrame& picture);
+
+/// "default · island 2 of 0–7 · 4× (240 ticks/s)"; the state is written beside it.
+std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control);
+
+/// The statistics line in pieces, the more important first, so that a narrow window leaves out the others.
+std::vector<std::string> statistics(const evod::v1::SnapshotFrame& picture,
+                                    const evod::v1::GenerationStatistics* last_generation);
+
+} // namespace evod::viewer

@@ -1,0 +1,145 @@
+#include "client/viewer/run_control.h"
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+void RunControl::begin_run(const std::string& world, const std::string& run_id) {
+    if (world != world_ || run_id != run_id_) {
+        const unsigned unanswered_count = unanswered_count_;
+        *this = RunControl{};
+        unanswered_count_ = unanswered_count;
+        world_ = world;
+        run_id_ = run_id;
+    }
+}
+
+void RunControl::take(const evod::v1::Speed& speed) {
+    speed_ = speed;
+    if (speed.has_real_time_factor()) {
+        factor_ = speed.real_time_factor();
+    }
+}
+
+void RunControl::see(const evod::v1::SnapshotFrame& picture) {
+    begin_run(picture.world(), picture.run_id());
+    tick_ = std::max(tick_, picture.tick());
+    // A picture from before the last answer or event knows less than that; and an answer under way will know more.
+    const bool newer = picture.tick() > told_tick_ || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
+    if (newer && unanswered_count_ == 0) {
+        state_ = picture.state();
+        take(picture.speed());
+    }
+}
+
+void RunControl::see(const evod::v1::WorldInfo& world) {
+    begin_run(world.name(), world.run_id());
+    if (world.tick() < told_tick_) {
+        return; // overtaken on its way
+    }
+    tick_ = std::max(tick_, world.tick());
+    told_tick_ = world.tick();
+    if (unanswered_count_ == 0) {
+        state_ = world.state();
+        outcome_ = world.outcome();
+        take(world.speed());
+        step_target_ = world.run_until_tick();
+    }
+}
+
+std::optional<evod::v1::Request> RunControl::pause_or_resume() {
+    evod::v1::Request request;
+    switch (state_) {
+    case evod::v1::RUN_STATE_RUNNING:
+        request.mutable_pause()->set_world(world_);
+        state_ = evod::v1::RUN_STATE_PAUSED;
+        break;
+    case evod::v1::RUN_STATE_PAUSED:
+        request.mutable_resume()->set_world(world_);
+        state_ = evod::v1::RUN_STATE_RUNNING;
+        resuming_ = true;
+        break;
+    case evod::v1::RUN_STATE_WAITING:
+        request.mutable_run()->set_world(world_);
+        state_ = evod::v1::RUN_STATE_RUNNING;
+        break;
+    default:
+        return std::nullopt;
+    }
+    step_target_ = 0;
+    ++unanswered_count_;
+    return request;
+}
+
+std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
+    if (state_ == evod::v1::RUN_STATE_UNSPECIFIED || state_ == evod::v1::RUN_STATE_TERMINATED) {
+        return std::nullopt;
+    }
+    step_target_ = std::max(step_target_, tick_) + ticks;
+    evod::v1::Request request;
+    request.mutable_run_until_tick()->set_world(world_);
+    request.mutable_run_until_tick()->set_tick(step_target_);
+    ++unanswered_count_;
+    return request;
+}
+
+std::optional<evod::v1::Request> RunControl::ask_for(evod::v1::Speed speed) {
+    if (!known()) {
+        return std::nullopt;
+    }
+    speed_ = speed;
+    evod::v1::Request request;
+    request.mutable_set_speed()->set_world(world_);
+    *request.mutable_set_speed()->mutable_speed() = std::move(speed);
+    ++unanswered_count_;
+    return request;
+}
+
+std::optional<evod::v1::Request> RunControl::ask_for_factor(double factor) {
+    factor_ = std::clamp(factor, factor_min, factor_max);
+    evod::v1::Speed speed;
+    speed.set_real_time_factor(factor_);
+    return ask_for(speed);
+}
+
+std::optional<evod::v1::Request> RunControl::faster() {
+    return speed_.max() ? std::nullopt : ask_for_factor(factor_ * 2);
+}
+
+std::optional<evod::v1::Request> RunControl::slower() {
+    return ask_for_factor(speed_.max() ? factor_ : factor_ / 2);
+}
+
+std::optional<evod::v1::Request> RunControl::real_time() {
+    return ask_for_factor(1);
+}
+
+std::optional<evod::v1::Request> RunControl::max_speed() {
+    if (speed_.max()) {
+        return ask_for_factor(factor_);
+    }
+    evod::v1::Speed speed;
+    speed.set_max(true);
+    return ask_for(speed);
+}
+
+std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* response) {
+    unanswered_count_ -= unanswered_count_ > 0;
+    const bool resumed = resuming_ && unanswered_count_ == 0;
+    resuming_ = resuming_ && !resumed;
+    if (response == nullptr || response->status().code() != evod::v1::CODE_OK || !response->has_world()) {
+        // Not done, or nobody knows: ask how things stand.
+        if (!known()) {
+            return std::nullopt;
+        }
+        state_ = evod::v1::RUN_STATE_UNSPECIFIED;
+        evod::v1::Request request;
+        request.mutable_get_statistics()->set_world(world_);
+        return request;
+    }
+    see(response->world());
+    // A world that was only stepped has nothing to go on with; who says "go on" means "run".
+    return resumed && state_ == evod::v1::RUN_STATE_WAITING ? pause_or_resume() : std::nullopt;
+}
+
+} // namespace evod::viewer

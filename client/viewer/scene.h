@@ -1,0 +1,60 @@
+// Scene: an island as it is seen: walls, food, poison, crates, obstacles, and organisms with their health above them.
+//
+// Two halves. What goes where is computed by pure functions; Scene keeps the shapes on the graphics card and draws
+// them. Items are uploaded with each picture, organisms and crates, which glide from one picture to the next, each
+// time.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/link/world_view.h"
+#include "client/viewer/camera.h"
+#include "client/viewer/shapes.h"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+struct ImDrawList;
+struct ImFont;
+
+namespace evod::viewer {
+
+/// Health as it is written: a whole number, rounded up, for who is alive is never at 0.
+unsigned shown_health(float health);
+
+/// Whether numbers above the organisms can be read: they are large enough, and so few that the numbers do not overlap.
+bool labels_are_readable(const Camera& camera, std::size_t visible_count);
+
+/// The organism that is seen at `screen`; of several the one whose centre is nearest. Up to 3 pixels beside is a hit.
+///
+/// returns  index in picture.organisms
+std::optional<std::size_t> organism_at(Point screen, const wire::Picture& picture,
+                                       const link::WorldView::Positions& organisms, const Camera& camera);
+
+class Scene {
+  public:
+    /// Draws the latest picture of `view`, its organisms and crates at `blend`; nothing but the background without one.
+    ///
+    /// pointed_at  index of the organism to stand out
+    void draw(link::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
+              std::optional<std::size_t> pointed_at);
+
+    /// Adds the health of the organisms that are seen. To be called after draw(), with the same view, blend and camera.
+    void draw_labels(link::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font);
+
+  private:
+    void upload_picture(const std::shared_ptr<const wire::Picture>& picture, const Camera& camera);
+    void set_circles(Layer& layer, const wire::ItemPicture& items, float radius);
+    void set_boxes(Layer& layer, const wire::BoxPicture& boxes, const std::vector<float>& x,
+                   const std::vector<float>& y);
+
+    ShapePainter painter_;
+    Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_;
+    std::shared_ptr<const wire::Picture> uploaded_;
+    std::vector<Shape> shapes_;         // being put together
+    std::vector<std::size_t> labelled_; // organisms that are seen
+};
+
+} // namespace evod::viewer

@@ -1,0 +1,165 @@
+#define GL_GLEXT_PROTOTYPES
+#include "client/viewer/shapes.h"
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace evod::viewer {
+
+namespace {
+
+// Positions are taken relative to the camera's centre before they are enlarged: their difference is exact where their
+// product with the zoom would not be.
+constexpr const char* vertex_source = R"(#version 330 core
+uniform samplerBuffer shapes;        // centre, half size
+uniform vec2 pixel_size;             // of one pixel, in units of the clip space
+uniform vec2 origin;                 // of the viewport's middle, in pixels
+uniform vec2 centre;
+uniform float zoom, half_pixels_min;
+out vec2 place;                      // from the shape's centre, in pixels
+flat out vec2 half_size;
+void main() {
+    vec4 shape = texelFetch(shapes, gl_VertexID / 3);
+    half_size = max(shape.zw * zoom, vec2(half_pixels_min));
+    int corner_index = gl_VertexID % 3; // of one triangle, which holds the rectangle around the shape
+    vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
+    place = corner * (half_size + 1.0);
+    vec2 pixel = origin + (shape.xy - centre) * zoom + place;
+    gl_Position = vec4(pixel.x * pixel_size.x - 1.0, 1.0 - pixel.y * pixel_size.y, 0.0, 1.0);
+}
+)";
+
+// The share of a pixel that a shape covers is taken from the distance of the pixel's middle to the outline.
+constexpr const char* fragment_source = R"(#version 330 core
+in vec2 place;
+flat in vec2 half_size;
+uniform bool round_shape;
+uniform vec4 fill, edge;
+uniform float edge_pixels;
+out vec4 colour;                     // its alpha multiplied in
+void main() {
+    vec2 beyond = abs(place) - half_size;
+    float outside = round_shape ? length(place) - half_size.x : max(beyond.x, beyond.y);
+    float whole = clamp(0.5 - outside, 0.0, 1.0);
+    float inner = clamp(0.5 - outside - edge_pixels, 0.0, 1.0);
+    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(fill.rgb, 1.0) * fill.a * inner;
+}
+)";
+
+unsigned compile(GLenum kind, const char* source) {
+    const unsigned shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    int compiled = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (!compiled) {
+        std::array<char, 1024> log{};
+        glGetShaderInfoLog(shader, log.size(), nullptr, log.data());
+        throw std::runtime_error{std::string{"evoview needs OpenGL 3.3: "} + log.data()};
+    }
+    return shader;
+}
+
+void set_colour(int location, Colour colour) {
+    glUniform4f(location, colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, colour.alpha / 255.f);
+}
+
+} // namespace
+
+Layer::Layer() {
+    glGenBuffers(1, &buffer_);
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+    glGenTextures(1, &texture_);
+    glBindTexture(GL_TEXTURE_BUFFER, texture_);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer_);
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+}
+
+Layer::~Layer() {
+    glDeleteTextures(1, &texture_);
+    glDeleteBuffers(1, &buffer_);
+}
+
+void Layer::set(std::span<const Shape> shapes) {
+    count_ = shapes.size();
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(shapes.size_bytes()), shapes.data(), GL_STREAM_DRAW);
+}
+
+ShapePainter::ShapePainter() {
+    const unsigned vertex = compile(GL_VERTEX_SHADER, vertex_source);
+    const unsigned fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
+    program_ = glCreateProgram();
+    glAttachShader(program_, vertex);
+    glAttachShader(program_, fragment);
+    glLinkProgram(program_);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    glGenVertexArrays(1, &vertex_array_);
+    const auto uniform = [this](const char* name) { return glGetUniformLocation(program_, name); };
+    pixel_size_ = uniform("pixel_size");
+    origin_ = uniform("origin");
+    centre_ = uniform("centre");
+    zoom_ = uniform("zoom");
+    round_ = uniform("round_shape");
+    fill_ = uniform("fill");
+    edge_ = uniform("edge");
+    edge_pixels_ = uniform("edge_pixels");
+    half_pixels_min_ = uniform("half_pixels_min");
+}
+
+ShapePainter::~ShapePainter() {
+    glDeleteVertexArrays(1, &vertex_array_);
+    glDeleteProgram(program_);
+}
+
+void ShapePainter::begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background) {
+    glViewport(0, 0, static_cast<int>(width_pixels), static_cast<int>(height_pixels));
+    glDisable(GL_SCISSOR_TEST);
+    glClearColor(background.red / 255.f, background.green / 255.f, background.blue / 255.f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+
+    const Rectangle& seen = camera.viewport();
+    const auto pixel = [](double value) { return static_cast<int>(std::lround(value)); };
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(pixel(seen.left), pixel(height_pixels - seen.top - seen.height), pixel(seen.width), pixel(seen.height));
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+
+    const Point middle = seen.centre(), centre = camera.centre();
+    glUseProgram(program_);
+    glBindVertexArray(vertex_array_);
+    glUniform2f(pixel_size_, 2.f / static_cast<float>(width_pixels), 2.f / static_cast<float>(height_pixels));
+    glUniform2f(origin_, static_cast<float>(middle.x), static_cast<float>(middle.y));
+    glUniform2f(centre_, static_cast<float>(centre.x), static_cast<float>(centre.y));
+    glUniform1f(zoom_, static_cast<float>(camera.zoom()));
+}
+
+void ShapePainter::draw(const Layer& layer, const Look& look) {
+    if (layer.count_ == 0) {
+        return;
+    }
+    glUniform1i(round_, look.round);
+    set_colour(fill_, look.fill);
+    set_colour(edge_, look.edge);
+    glUniform1f(edge_pixels_, look.edge_pixels);
+    glUniform1f(half_pixels_min_, look.half_pixels_min);
+    glBindTexture(GL_TEXTURE_BUFFER, layer.texture_);
+    glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * layer.count_));
+}
+
+void ShapePainter::end() {
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    glBindVertexArray(0);
+    glUseProgram(0);
+    glDisable(GL_SCISSOR_TEST);
+}
+
+} // namespace evod::viewer

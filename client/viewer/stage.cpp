@@ -1,0 +1,68 @@
+#define GL_GLEXT_PROTOTYPES
+#include "client/viewer/stage.h"
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+namespace evod::viewer {
+
+void Stage::draw(Watch& watch, Camera& camera, const Frame& frame) {
+    camera.set_viewport(viewport_of(frame.width_pixels, frame.height_pixels));
+    link::WorldView& view = watch.view();
+    std::optional<std::size_t> pointed_at;
+    if (const wire::Picture* picture = watch.picture()) {
+        camera.set_island(picture->about.width_px(), picture->about.height_px());
+        if (frame.pointed_at) {
+            pointed_at = organism_at(*frame.pointed_at, *picture, view.organisms_at(frame.blend), camera);
+        }
+    }
+    gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
+    drawn_ = frame.now;
+    scene_.draw(view, frame.blend, camera, frame.width_pixels, frame.height_pixels, pointed_at);
+    scene_.draw_labels(view, frame.blend, camera, *ImGui::GetBackgroundDrawList(), gui_.label());
+    overlay_.build(watch, gui_, frame.now);
+    if (pointed_at) {
+        overlay_.build_organism(*watch.picture(), *pointed_at, *frame.pointed_at, gui_);
+    }
+    gui_.draw();
+}
+
+sf::Image Stage::capture(Watch& watch, Camera& camera, const Frame& frame) {
+    const auto width = static_cast<int>(frame.width_pixels), height = static_cast<int>(frame.height_pixels);
+    unsigned framebuffer = 0, colours = 0;
+    glGenFramebuffers(1, &framebuffer);
+    glGenRenderbuffers(1, &colours);
+    glBindRenderbuffer(GL_RENDERBUFFER, colours);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colours);
+    const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+
+    std::vector<std::uint8_t> pixels(std::size_t{4} * frame.width_pixels * frame.height_pixels);
+    if (complete) {
+        draw(watch, camera, frame);
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glDeleteFramebuffers(1, &framebuffer);
+    glDeleteRenderbuffers(1, &colours);
+    if (!complete) {
+        throw std::runtime_error{"a picture of this size cannot be drawn here"};
+    }
+    for (std::size_t alpha = 3; alpha < pixels.size(); alpha += 4) {
+        pixels[alpha] = 255;
+    }
+    sf::Image image;
+    image.create(frame.width_pixels, frame.height_pixels, pixels.data());
+    image.flipVertically();
+    return image;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,224 @@
+#include "client/viewer/watch.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::viewer {
+
+Watch::Watch(Wanted wanted)
+    : wanted_{std::move(wanted)}
+    , connection_{{.server = wanted_.server, .client_name = "evoview", .client_version = EVOD_VERSION}} {
+    events_ = connection_.subscribe(evod::v1::SubscribeEvents{}); // of all worlds: one that is missing may be made
+    subscribe();
+}
+
+void Watch::subscribe() {
+    evod::v1::SubscribeSnapshots subscription;
+    subscription.set_world(wanted_.world);
+    subscription.set_island(wanted_.island);
+    subscription.set_rate_hz(wanted_.rate_hz);
+    pictures_ = connection_.subscribe(subscription);
+}
+
+void Watch::look_at(std::string world, std::uint32_t island) {
+    if (world != wanted_.world) {
+        control_.forget();
+        last_generation_.clear();
+        unanswered_.clear(); // what they would tell is of the other world
+    }
+    wanted_.world = std::move(world);
+    wanted_.island = island;
+    view_.clear();
+    connection_.unsubscribe(pictures_);
+    subscribe();
+    ask_state();
+}
+
+void Watch::turn_islands(int by) {
+    if (const wire::Picture* shown = picture()) {
+        const auto count = std::max<std::int64_t>(shown->about.island_count(), 1);
+        const std::int64_t island = (std::int64_t{wanted_.island} + by + count) % count;
+        if (island != wanted_.island) {
+            look_at(wanted_.world, static_cast<std::uint32_t>(island));
+        }
+    } else if (wanted_.island != 0) { // one that the world may not have
+        look_at(wanted_.world, 0);
+    }
+}
+
+// ---- requests --------------------------------------------------------------------------------------------------
+
+void Watch::send(std::optional<evod::v1::Request> request) {
+    if (request) {
+        const bool is_command = !request->has_get_statistics() && !request->has_list_worlds();
+        unanswered_.push_back({is_command, connection_.send(*std::move(request))});
+    }
+}
+
+void Watch::next_world() {
+    evod::v1::Request request;
+    request.mutable_list_worlds();
+    send(std::move(request));
+}
+
+void Watch::ask_state() {
+    evod::v1::Request request;
+    request.mutable_get_statistics()->set_world(wanted_.world);
+    send(std::move(request));
+}
+
+bool Watch::is_over() {
+    const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED;
+    if (over) {
+        notices_.push_back("The run has ended; a reset of the world begins it again");
+    }
+    return over;
+}
+
+void Watch::pause_or_resume() {
+    if (!is_over()) {
+        send(control_.pause_or_resume());
+    }
+}
+
+void Watch::step(std::uint64_t ticks) {
+    if (!is_over()) {
+        send(control_.step(ticks));
+    }
+}
+
+// ---- what comes ------------------------------------------------------------------------------------------------
+
+bool Watch::update(link::WorldView::Clock::time_point now) {
+    if (const auto status = connection_.status(); status.connected_count != connected_count_) {
+        connected_count_ = status.connected_count;
+        ask_state();
+    }
+    // Events tell what became of what was answered, and have to be heard after it.
+    take_answers();
+    for (const evod::v1::Event& event : connection_.take_events()) {
+        take_event(event);
+    }
+    auto picture = connection_.take_picture(pictures_, wanted_.island);
+    if (!picture) {
+        return false;
+    }
+    if (control_.known() && picture->about.run_id() != control_.run_id()) {
+        ask_state(); // another run has another generation before
+    }
+    control_.see(picture->about);
+    view_.add(std::move(picture), now);
+    return true;
+}
+
+void Watch::take_answers() {
+    for (std::size_t i = 0; i < unanswered_.size();) {
+        if (unanswered_[i].response.wait_for(std::chrono::seconds{0}) != std::future_status::ready) {
+            ++i;
+            continue;
+        }
+        Unanswered answered = std::move(unanswered_[i]);
+        unanswered_.erase(unanswered_.begin() + static_cast<std::ptrdiff_t>(i));
+        const auto response = answered.response.get();
+        if (answered.is_command) {
+            take_command_answer(response);
+        } else if (response && response->has_statistics()) {
+            take_statistics(response->statistics());
+        } else if (response && response->has_worlds()) {
+            take_worlds(response->worlds());
+        } // a refused query: what keeps the pictures away is told by refusal()
+    }
+}
+
+void Watch::take_command_answer(const link::Result<evod::v1::Response>& response) {
+    if (!response) {
+        notices_.push_back(response.error().what);
+    } else if (!link::accepted(*response)) {
+        notices_.push_back(link::to_text(response->status()));
+    }
+    send(control_.answered(response ? &*response : nullptr));
+}
+
+void Watch::take_statistics(const evod::v1::Statistics& statistics) {
+    control_.see(statistics.world());
+    last_generation_.assign(statistics.last().begin(), statistics.last().end());
+}
+
+void Watch::take_worlds(const evod::v1::WorldList& worlds) {
+    const auto& list = worlds.worlds();
+    if (list.empty()) {
+        notices_.push_back("There is no world on this server yet");
+        return;
+    }
+    const std::string& shown = control_.known() ? control_.world() : wanted_.world;
+    const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
+    const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
+    if (next == here) {
+        notices_.push_back("There is only this world");
+    } else {
+        look_at(next->name(), 0);
+    }
+}
+
+void Watch::take_event(const evod::v1::Event& event) {
+    using Kind = evod::v1::Event::EventCase;
+    if (event.event_case() == Kind::kServerGoingAway) {
+        notices_.push_back("The server is going away");
+    } else if (event.event_case() == Kind::kEventsDropped) {
+        ask_state();
+    } else if (event.event_case() == Kind::kWorldCreated && refusal()) {
+        look_at(wanted_.world, wanted_.island); // perhaps the one that was missing
+    }
+    if (!control_.known() || event.world() != control_.world()) {
+        return;
+    }
+    switch (event.event_case()) {
+    case Kind::kGenerationFinished:
+        last_generation_.assign(event.generation_finished().statistics().begin(),
+                                event.generation_finished().statistics().end());
+        break;
+    case Kind::kRunControlChanged:
+        control_.see(event.run_control_changed().world());
+        break;
+    case Kind::kWorldReset:
+        control_.see(event.world_reset().world());
+        last_generation_.clear();
+        notices_.push_back("The world was reset by " + event.world_reset().by());
+        break;
+    case Kind::kWorldDeleted:
+        notices_.push_back("The world " + event.world() + " was deleted by " + event.world_deleted().by());
+        control_.forget();
+        view_.clear();
+        break;
+    case Kind::kParametersChanged: {
+        std::string names;
+        for (const auto& parameter : event.parameters_changed().changed()) {
+            names += (names.empty() ? "" : ", ") + parameter.name();
+        }
+        notices_.push_back(event.parameters_changed().by() + " changed " + names);
+        break;
+    }
+    case Kind::kRunTerminated:
+        ask_state(); // for the outcome
+        break;
+    default:
+        break;
+    }
+}
+
+// ---- what is known ---------------------------------------------------------------------------------------------
+
+const evod::v1::GenerationStatistics* Watch::last_generation() const {
+    const auto island = std::ranges::find(last_generation_, wanted_.island, &evod::v1::GenerationStatistics::island);
+    return island == last_generation_.end() ? nullptr : &*island;
+}
+
+std::optional<std::string> Watch::refusal() const {
+    const auto answer = connection_.subscription_answer(pictures_);
+    if (!answer || link::accepted(*answer)) {
+        return std::nullopt;
+    }
+    return link::to_text(answer->status());
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,95 @@
+// Watch: the world and the island that are looked at, what is known of them, and the commands given to the world.
+//
+// All of it goes over one link::Connection, and nothing here waits: requests are sent, and update() takes in whatever
+// has come since.
+//
+// Owner        the window, or the taking of one screenshot.
+// Threads      used by the thread that draws; the connection has its own.
+#pragma once
+
+#include "client/link/connection.h"
+#include "client/link/world_view.h"
+#include "client/viewer/run_control.h"
+
+#include <chrono>
+#include <cstdint>
+#include <future>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evod::viewer {
+
+class Watch {
+  public:
+    struct Wanted {
+        link::Endpoint server;
+        std::string world; // empty: the server's choice
+        std::uint32_t island = 0;
+        double rate_hz = 30; // of pictures
+    };
+
+    explicit Watch(Wanted wanted);
+
+    /// Takes in pictures, events and answers. True if there is a new picture.
+    bool update(link::WorldView::Clock::time_point now);
+
+    // Commands.
+    void pause_or_resume();
+    void step(std::uint64_t ticks);
+    void faster() { send(control_.faster()); }
+    void slower() { send(control_.slower()); }
+    void real_time() { send(control_.real_time()); }
+    void max_speed() { send(control_.max_speed()); }
+
+    // What is looked at.
+    void turn_islands(int by);
+    void next_world();
+
+    // What is known.
+    link::WorldView& view() { return view_; }
+    const wire::Picture* picture() const { return view_.latest().get(); }
+    const RunControl& control() const { return control_; }
+    /// Of the generation before, on this island; null in the first.
+    const evod::v1::GenerationStatistics* last_generation() const;
+    const std::string& world() const { return wanted_.world; } // empty: the server's choice
+    std::uint32_t island() const { return wanted_.island; }
+    const link::Endpoint& server() const { return wanted_.server; }
+    /// Whether the server has answered everything, the questions of the beginning among it.
+    bool all_answered() const { return connected_count_ > 0 && unanswered_.empty(); }
+    link::ConnectionStatus connection_status() const { return connection_.status(); }
+    /// Why the server shows no pictures: what it said to the subscription. Nullopt if it does, or has not answered.
+    std::optional<std::string> refusal() const;
+    /// Sentences for a person, each told once: refused commands, a server that goes away, …
+    std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
+
+  private:
+    struct Unanswered {
+        bool is_command;
+        std::future<link::Result<evod::v1::Response>> response;
+    };
+
+    void subscribe();
+    void look_at(std::string world, std::uint32_t island);
+    void send(std::optional<evod::v1::Request> request);
+    void ask_state();
+    bool is_over();
+    void take_answers();
+    void take_command_answer(const link::Result<evod::v1::Response>& response);
+    void take_statistics(const evod::v1::Statistics& statistics);
+    void take_worlds(const evod::v1::WorldList& worlds);
+    void take_event(const evod::v1::Event& event);
+
+    Wanted wanted_;
+    link::Connection connection_;
+    link::SubscriptionHandle pictures_, events_;
+    link::WorldView view_;
+    RunControl control_;
+    std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
+    std::vector<Unanswered> unanswered_;
+    std::vector<std::string> notices_;
+    std::uint64_t connected_count_ = 0;
+};
+
+} // namespace evod::viewer
