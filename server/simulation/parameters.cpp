@@ -111,19 +111,25 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { // Wagner & 
     return row.back();
 }
 
-/// Share of an island that what must not overlap would cover, were every organism as large as it may be.
+/// The greatest share of the room for something's centre that is forbidden to it, at most, by what is there when it is
+/// placed at random, were every organism as large as it may be. Things of a kind count with their own area.
 double covered_share(const Parameters& p, const IslandPlan& plan) {
-    const double radius = p.body_size_max * p.radius_per_unit_px;
-    // Where the centre of the largest thing can be at all.
-    const double margin = std::max({radius, p.crate_count > 0 ? p.crate_size_px / 2 : 0.0,
-                                    p.obstacle_count > 0 ? p.obstacle_size_px / 2 : 0.0, p.item_radius_px});
-    const double room = (plan.width_px - 2 * margin) * (plan.height_px - 2 * margin);
-    if (plan.width_px <= 2 * margin || plan.height_px <= 2 * margin)
-        return 1;
     const auto square = [](double x) { return x * x; };
-    return (p.population_size * base::pi * square(radius) + p.crate_count * square(p.crate_size_px) +
-            p.obstacle_count * square(p.obstacle_size_px + 2 * std::max(radius, p.item_radius_px))) /
-           room;
+    const double radius = p.body_size_max * p.radius_per_unit_px;
+    const double crate = p.crate_size_px, obstacle = p.obstacle_size_px;
+    const auto share_of_room = [&](double covered, double half_size) {
+        const double width = plan.width_px - 2 * half_size, height = plan.height_px - 2 * half_size;
+        return width <= 0 || height <= 0 ? 1 : covered / (width * height);
+    };
+    const auto around_obstacles = [&](double half_size) { return p.obstacle_count * square(obstacle + 2 * half_size); };
+    double share = share_of_room(around_obstacles(p.item_radius_px), p.item_radius_px);
+    if (p.obstacle_count > 0)
+        share = std::max(share, share_of_room(0, obstacle / 2));
+    if (p.crate_count > 0)
+        share = std::max(share, share_of_room(p.crate_count * square(crate) + around_obstacles(crate / 2), crate / 2));
+    return std::max(share, share_of_room(p.population_size * base::pi * square(radius) +
+                                             p.crate_count * square(crate + 2 * radius) + around_obstacles(radius),
+                                         radius));
 }
 
 } // namespace
