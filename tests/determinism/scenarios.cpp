@@ -24,7 +24,7 @@ const std::vector<Scenario>& all() {
          base::Seed{44}, 700, {}},
 
         {"dense_backward_euler", // organisms touch all the time, at another tick length
-         R"({"integrator": "backward_euler", "population_size": 160, "island_width_px": 940, "island_height_px": 640,
+         R"({"integrator": "backward_euler", "population_size": 160, "island_width_px": 960, "island_height_px": 660,
              "damping": 0.98, "restitution": 1, "tick_s": 0.025, "food_count": 60, "poison_count": 60,
              "crate_count": 5, "generation_s": 6, "selection": "truncation", "max_speed_px_s": 60})",
          base::Seed{45}, 500, {}},
@@ -48,7 +48,7 @@ const std::vector<Scenario>& all() {
          base::Seed{48},
          900,
          {{40, R"({"population_size": 90, "food_health": 40, "flee_rule": "always"})"},
-          {100, R"({"obstacle_count": 6, "crate_count": 4, "steering_lookahead_s": 0.1, "selection": "truncation"})"},
+          {100, R"({"obstacle_count": 5, "crate_count": 4, "steering_lookahead_s": 0.1, "selection": "truncation"})"},
           {190, R"({"integrator": "explicit_euler", "tick_s": 0.02, "restitution": 0.5, "creep": "gaussian"})"},
           {260, R"({"population_size": 15, "population_model": "generational", "crossover": "none"})"},
           {355, R"({"respawn_s": 0.5, "poison_harm": 90, "bit_flip_chance": 0.02, "body_size_max": 90})"},
