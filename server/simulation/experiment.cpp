@@ -3,6 +3,7 @@
 #include <boost/json.hpp>
 
 #include <algorithm>
+#include <set>
 
 namespace evod::simulation {
 namespace {
@@ -14,14 +15,40 @@ std::size_t line_of(std::string_view text, std::size_t offset) {
     return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
 }
 
-/// The line on which a field stands; its name is looked for in quotes, as it can only be written there.
-std::size_t line_of_field(std::string_view text, std::string_view field) {
-    const std::size_t found = text.find("\"" + std::string{field} + "\"");
-    return line_of(text, found == std::string_view::npos ? 0 : found);
+struct Field {
+    std::string_view name;
+    std::size_t line;
+};
+
+/// The fields of the object that `text` is, in the order in which they stand; `text` is JSON.
+std::vector<Field> fields_of(std::string_view text) {
+    std::vector<Field> fields;
+    std::size_t line = 1; // a JSON string holds no line breaks
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        line += text[i] == '\n';
+        depth += text[i] == '{' || text[i] == '[';
+        depth -= text[i] == '}' || text[i] == ']';
+        if (text[i] != '"')
+            continue;
+        const std::size_t begin = ++i;
+        while (text[i] != '"')
+            i += text[i] == '\\' ? 2 : 1;
+        const std::size_t after = text.find_first_not_of(" \t\r\n", i + 1);
+        if (depth == 1 && after != std::string_view::npos && text[after] == ':')
+            fields.push_back({text.substr(begin, i - begin), line});
+    }
+    return fields;
 }
 
-std::string with_line(std::string_view text, std::string_view field) {
-    return std::string{field} + " (line " + std::to_string(line_of_field(text, field)) + ")";
+std::string with_line(std::string_view field, std::size_t line) {
+    return std::string{field} + " (line " + std::to_string(line) + ")";
+}
+
+/// With the line of the field's first place.
+std::string with_line(const std::vector<Field>& fields, std::string_view field) {
+    const auto found = std::ranges::find(fields, field, &Field::name);
+    return with_line(field, found == fields.end() ? 1 : found->line);
 }
 
 base::Refusal refusal(std::string message) {
@@ -66,24 +93,29 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     std::vector<Assignment> assignments;
     std::vector<base::Violation> violations;
     bool reference_given = false;
+    const std::vector<Field> fields = fields_of(text);
+    std::set<std::string_view> seen;
+    for (const Field& field : fields)
+        if (!seen.insert(field.name).second)
+            violations.push_back({with_line(field.name, field.line), "given once", "given twice"});
     for (const auto& [key, value] : document.get_object()) {
         const std::string name{key};
         if (name == "seed") {
             if (value.is_uint64() || (value.is_int64() && value.get_int64() >= 0))
                 experiment.seed = base::Seed{value.to_number<std::uint64_t>()};
             else
-                violations.push_back({with_line(text, name), "a whole number, 0 to 18446744073709551615",
+                violations.push_back({with_line(fields, name), "a whole number, 0 to 18446744073709551615",
                                       json::serialize(value)});
         } else if (name == "description") {
             if (value.is_string())
                 experiment.description = std::string{value.get_string()};
             else
-                violations.push_back({with_line(text, name), "a text", json::serialize(value)});
+                violations.push_back({with_line(fields, name), "a text", json::serialize(value)});
         } else if (auto parameter = to_parameter_value(value)) {
             reference_given |= name == "reference_population";
             assignments.push_back({name, std::move(*parameter)});
         } else {
-            violations.push_back({with_line(text, name), "a number, true, false or a text", json::serialize(value)});
+            violations.push_back({with_line(fields, name), "a number, true, false or a text", json::serialize(value)});
         }
     }
     if (!reference_given)
@@ -98,7 +130,7 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
         const base::Refusal refused = parameters.error();
         for (const base::Violation& violation : refused.violations)
             if (violation.field != "reference_population" || reference_given)
-                violations.push_back({with_line(text, violation.field), violation.allowed, violation.got});
+                violations.push_back({with_line(fields, violation.field), violation.allowed, violation.got});
     }
     if (!violations.empty())
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -112,7 +144,9 @@ std::string to_experiment_text(const Parameters& parameters) {
     std::string text = "{";
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
-        if (value == description.default_value())
+        // What a reader takes where nothing is said.
+        const bool follows = description.name == "reference_population";
+        if (follows ? parameters.reference_population == parameters.population_size : value == description.default_value())
             continue;
         text += text.size() > 1 ? ",\n  " : "\n  ";
         text += "\"" + std::string{description.name} + "\": ";
