@@ -1,6 +1,7 @@
 #include "server/simulation/laboratory.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evod::simulation {
 namespace {
@@ -231,6 +232,12 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
         assign(world.parameters().requested, command.assignments, "set_parameters.");
     if (!requested)
         return requested.error();
+    // What waits for a reset may wait for ever, so the rest must go together without it.
+    const Parameters next = taking_effect(world.parameters().active, *requested, base::Effect::NextGeneration);
+    if (auto violations = validate(next, "set_parameters."); !violations.empty())
+        return Refusal{.code = RefusalCode::InvalidArgument,
+                       .message = "some parameters cannot have these values before the world is reset",
+                       .violations = std::move(violations)};
     Applied applied = applied_now(entry);
     applied.parameters = after_request(world.parameters(), *requested);
     if (!command.dry_run)
