@@ -225,6 +225,13 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
     base::Refusal refusal{.code = base::RefusalCode::InvalidArgument,
                           .message = "some parameters cannot have these values",
                           .violations = {}};
+    if (const std::size_t most = parameter_registry().size(); assignments.size() > most) {
+        // Not looked at one by one: it may be a great many.
+        const std::string field = field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
+        refusal.violations.push_back(
+            {field, "at most " + std::to_string(most) + ", each parameter once", std::to_string(assignments.size())});
+        return refusal;
+    }
     std::vector<std::string_view> seen;
     for (const Assignment& assignment : assignments) {
         if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end())
