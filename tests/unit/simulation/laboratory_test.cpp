@@ -1,0 +1,334 @@
+#include "server/simulation/laboratory.h"
+
+#include "tests/support/inline_executor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <string>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+using base::RefusalCode;
+using testing::HasSubstr;
+
+class OneWorld : public testing::Test {
+  protected:
+    OneWorld() {
+        parameters.population_size = 10;
+        parameters.generation_s = 0.1; // 6 ticks
+        EXPECT_TRUE(laboratory.apply(CreateWorld{"w", parameters, base::Seed{1}, RunId{1, 2}}).has_value());
+    }
+    Entry& entry() { return *laboratory.entries().front(); }
+    /// Ticks for as long as the world wants them; at most `limit`.
+    std::uint64_t run_on(std::uint64_t limit = 1000) {
+        std::uint64_t ticks = 0;
+        for (; ticks < limit && entry().wants_tick(); ++ticks)
+            laboratory.advance(entry(), executor);
+        return ticks;
+    }
+    RefusalCode code_of(const Command& command) {
+        const auto result = laboratory.apply(command);
+        EXPECT_FALSE(result.has_value());
+        return result ? RefusalCode::Unimplemented : result.error().code;
+    }
+    SetParameters set(std::vector<Assignment> assignments) {
+        return {.world = "w", .assignments = std::move(assignments), .dry_run = false, .expected_revision = {}};
+    }
+    template <class Kind>
+    std::size_t count_events() {
+        std::size_t count = 0;
+        for (const Event& event : laboratory.take_events())
+            count += std::holds_alternative<Kind>(event.kind);
+        return count;
+    }
+
+    Parameters parameters;
+    Laboratory laboratory;
+    support::InlineExecutor executor;
+};
+
+TEST_F(OneWorld, WaitsAfterItsCreationAtItsFirstMoment) {
+    EXPECT_EQ(entry().state(), RunState::Waiting);
+    EXPECT_FALSE(entry().wants_tick());
+    EXPECT_EQ(entry().world.moment().tick, 0u);
+    EXPECT_EQ(entry().world.moment().generation, 1u);
+    EXPECT_EQ(entry().world.alive_count(), 10u);
+    EXPECT_EQ(entry().run_id, (RunId{1, 2}));
+}
+
+TEST_F(OneWorld, RunsTheGenerationsItIsTold) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 3}).has_value());
+    EXPECT_EQ(entry().state(), RunState::Running);
+    EXPECT_EQ(run_on(), 18u);
+    EXPECT_EQ(entry().state(), RunState::Waiting);
+    EXPECT_TRUE(entry().world.generation_over());
+    EXPECT_EQ(count_events<GoalReached>(), 1u);
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}).has_value());
+    EXPECT_EQ(run_on(4), 4u);
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 1}).has_value()) << "again, amid a generation: that one counts";
+    EXPECT_EQ(run_on(), 2u);
+    EXPECT_EQ(entry().world.moment().generation, 4u);
+}
+
+TEST_F(OneWorld, RunsEndlesslyIfToldNoNumber) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    EXPECT_EQ(run_on(), 1000u);
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", ~std::uint64_t{0}}).has_value()) << "more than can be counted";
+    EXPECT_EQ(run_on(100), 100u);
+}
+
+TEST_F(OneWorld, PausesAndResumesWhereItWas) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
+    EXPECT_EQ(run_on(5), 5u);
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
+    EXPECT_EQ(entry().state(), RunState::Paused);
+    EXPECT_EQ(run_on(), 0u);
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value()) << "pausing twice is pausing";
+    ASSERT_TRUE(laboratory.apply(Resume{"w"}).has_value());
+    EXPECT_EQ(run_on(), 7u);
+}
+
+TEST_F(OneWorld, HasNothingToResumeWithoutAGoal) {
+    EXPECT_EQ(code_of(Resume{"w"}), RefusalCode::FailedPrecondition);
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
+    EXPECT_EQ(entry().state(), RunState::Paused);
+    EXPECT_EQ(code_of(Resume{"w"}), RefusalCode::FailedPrecondition);
+    EXPECT_EQ(entry().state(), RunState::Paused) << "the refusal has changed nothing";
+}
+
+TEST_F(OneWorld, StepsUntilATickThenIsPaused) {
+    const auto stepping = laboratory.apply(RunUntilTick{"w", 4});
+    ASSERT_TRUE(stepping.has_value());
+    EXPECT_EQ(stepping->tick, 0u);
+    EXPECT_EQ(entry().state(), RunState::Running);
+    EXPECT_EQ(run_on(), 4u);
+    EXPECT_EQ(entry().state(), RunState::Paused);
+    EXPECT_EQ(count_events<GoalReached>(), 1u);
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 4}).has_value()) << "a tick that is past";
+    EXPECT_EQ(run_on(), 0u);
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 9}).has_value());
+    EXPECT_EQ(run_on(), 5u);
+    EXPECT_EQ(entry().world.moment().generation, 2u);
+}
+
+TEST_F(OneWorld, KeepsItsGoalWhileItIsStepped) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
+    EXPECT_EQ(run_on(2), 2u);
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 3}).has_value());
+    EXPECT_EQ(run_on(), 1u);
+    EXPECT_EQ(entry().state(), RunState::Paused);
+    ASSERT_TRUE(laboratory.apply(Resume{"w"}).has_value());
+    EXPECT_EQ(run_on(), 9u);
+}
+
+TEST_F(OneWorld, ForgetsAStepWhenPausedOrResumed) {
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 50}).has_value());
+    EXPECT_EQ(run_on(3), 3u);
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
+    EXPECT_EQ(run_on(), 0u);
+}
+
+TEST_F(OneWorld, IsTerminatedByACriterionUntilItIsChangedOrReset) {
+    ASSERT_TRUE(laboratory.apply(set({{"generation_limit", std::uint32_t{2}}})).has_value());
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    EXPECT_EQ(run_on(), 12u);
+    EXPECT_EQ(entry().state(), RunState::Terminated);
+    EXPECT_EQ(count_events<RunTerminated>(), 1u);
+    const auto refused = laboratory.apply(simulation::Run{"w", 1});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, RefusalCode::FailedPrecondition);
+    EXPECT_THAT(refused.error().message, HasSubstr("generation_limit"));
+    EXPECT_EQ(code_of(Resume{"w"}), RefusalCode::FailedPrecondition);
+    EXPECT_EQ(code_of(RunUntilTick{"w", 13}), RefusalCode::FailedPrecondition);
+    EXPECT_TRUE(laboratory.apply(Pause{"w"}).has_value());
+    EXPECT_EQ(run_on(), 0u);
+
+    ASSERT_TRUE(laboratory.apply(set({{"generation_limit", std::uint32_t{3}}})).has_value());
+    EXPECT_NE(entry().state(), RunState::Terminated);
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    EXPECT_EQ(run_on(), 6u);
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, RunId{3, 4}}).has_value());
+    EXPECT_EQ(entry().state(), RunState::Waiting);
+    EXPECT_EQ(entry().run_id, (RunId{3, 4}));
+    EXPECT_EQ(entry().world.moment().tick, 0u);
+}
+
+TEST_F(OneWorld, ResetKeepsSpeedSeedAndParametersAskedForUnlessToldOtherwise) {
+    ASSERT_TRUE(laboratory.apply(SetSpeed{"w", 8.0}).has_value());
+    ASSERT_TRUE(laboratory.apply(set({{"population_size", std::uint32_t{12}}, {"island_count", std::uint32_t{2}}})).has_value());
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    run_on(20);
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
+    EXPECT_EQ(entry().control.speed, 8.0);
+    EXPECT_FALSE(entry().control.endless);
+    EXPECT_EQ(entry().world.seed(), base::Seed{1});
+    EXPECT_EQ(entry().world.alive_count(), 24u);
+    EXPECT_TRUE(entry().world.history().empty());
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"w", base::Seed{77}, {}}).has_value());
+    EXPECT_EQ(entry().world.seed(), base::Seed{77});
+}
+
+TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
+    const Parameters before = entry().world.parameters().requested;
+    EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);
+    SetParameters stale = set({{"food_health", 30.0}});
+    stale.expected_revision = 5;
+    EXPECT_EQ(code_of(stale), RefusalCode::FailedPrecondition);
+    EXPECT_TRUE(entry().world.parameters().requested == before);
+    EXPECT_EQ(entry().world.parameters().revision, 1u);
+}
+
+TEST_F(OneWorld, AnswersADryRunWithWhatWouldBeAndChangesNothing) {
+    SetParameters dry = set({{"food_health", 30.0}, {"population_size", std::uint32_t{20}}});
+    dry.dry_run = true;
+    dry.expected_revision = 1;
+    const auto answer = laboratory.apply(dry);
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->parameters->requested.population_size, 20u);
+    EXPECT_EQ(answer->parameters->active.population_size, 10u);
+    EXPECT_EQ(answer->parameters->active.food_health, 30);
+    EXPECT_EQ(entry().world.parameters().requested.food_health, 25);
+    EXPECT_EQ(entry().world.parameters().revision, 1u);
+}
+
+TEST_F(OneWorld, RefusesWhatDoesNotGoTogetherUntilTheReset) {
+    // The fitness changes at the reset, the population with the next generation: until then it has bodies without room.
+    EXPECT_EQ(code_of(set({{"fitness", std::string{"gene_sum"}}, {"population_size", std::uint32_t{5000}}})),
+              RefusalCode::InvalidArgument);
+    EXPECT_TRUE(laboratory.apply(set({{"fitness", std::string{"gene_sum"}}})).has_value());
+    EXPECT_EQ(code_of(set({{"population_size", std::uint32_t{5000}}})), RefusalCode::InvalidArgument);
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
+    EXPECT_TRUE(laboratory.apply(set({{"population_size", std::uint32_t{5000}}})).has_value());
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 3}).has_value());
+    EXPECT_EQ(run_on(), 3u) << "a generation is a tick";
+}
+
+TEST_F(OneWorld, TellsOfEachGeneration) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
+    run_on();
+    std::vector<std::uint64_t> ticks;
+    for (const Event& event : laboratory.take_events()) {
+        EXPECT_EQ(event.world, "w");
+        EXPECT_EQ(event.run_id, (RunId{1, 2}));
+        if (const auto* finished = std::get_if<GenerationFinished>(&event.kind)) {
+            ticks.push_back(event.tick);
+            EXPECT_EQ(finished->statistics.size(), 1u);
+        }
+    }
+    EXPECT_THAT(ticks, testing::ElementsAre(6, 12));
+    EXPECT_TRUE(laboratory.take_events().empty());
+}
+
+TEST(Laboratory, CreatesUpToItsLimitAndDeletes) {
+    Laboratory laboratory;
+    Parameters small;
+    small.population_size = 1;
+    const auto create = [&](const std::string& name) {
+        return laboratory.apply(CreateWorld{name, small, base::Seed{1}, {}});
+    };
+    for (std::size_t i = 0; i < worlds_max; ++i)
+        ASSERT_TRUE(create("w" + std::to_string(i)).has_value());
+    EXPECT_EQ(create("w0").error().code, RefusalCode::AlreadyExists);
+    EXPECT_EQ(create("one_more").error().code, RefusalCode::ResourceExhausted);
+    EXPECT_EQ(laboratory.entries().size(), worlds_max);
+    ASSERT_TRUE(laboratory.apply(DeleteWorld{"w3"}).has_value());
+    EXPECT_EQ(laboratory.apply(DeleteWorld{"w3"}).error().code, RefusalCode::NotFound);
+    EXPECT_EQ(laboratory.entries().size(), worlds_max - 1);
+    EXPECT_TRUE(create("one_more").has_value());
+}
+
+TEST(Laboratory, FindsTheOnlyWorldOrDefaultForAnEmptyName) {
+    Laboratory laboratory;
+    const auto create = [&](const char* name) {
+        ASSERT_TRUE(laboratory.apply(CreateWorld{name, {}, base::Seed{1}, {}}).has_value());
+    };
+    EXPECT_THAT(laboratory.find("").error().message, HasSubstr("no world"));
+    create("a");
+    EXPECT_EQ((*laboratory.find(""))->name, "a");
+    create("b");
+    EXPECT_THAT(laboratory.find("").error().message, HasSubstr("a, b"));
+    EXPECT_THAT(to_text(laboratory.find("c").error()), HasSubstr("a, b"));
+    create("default");
+    EXPECT_EQ((*laboratory.find(""))->name, "default");
+    EXPECT_EQ((*laboratory.find("b"))->name, "b");
+}
+
+TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
+    Laboratory laboratory;
+    ASSERT_TRUE(laboratory.apply(CreateWorld{"a", {}, base::Seed{1}, {}}).has_value());
+    ASSERT_TRUE(laboratory.apply(CreateWorld{"b", {}, base::Seed{1}, {}}).has_value());
+    for (const Command& command :
+         {Command{DeleteWorld{"x"}}, Command{ResetWorld{"x", {}, {}}}, Command{simulation::Run{"x", 1}}, Command{RunUntilTick{"x", 1}},
+          Command{Pause{"x"}}, Command{Resume{"x"}}, Command{SetSpeed{"x", 1.0}},
+          Command{SetParameters{"x", {}, false, {}}}}) {
+        const auto refused = laboratory.apply(command);
+        ASSERT_FALSE(refused.has_value());
+        EXPECT_EQ(refused.error().code, RefusalCode::NotFound);
+    }
+}
+
+TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
+    // Random values of random parameters; what is accepted must not stop a world, however the effects fall together.
+    support::InlineExecutor executor;
+    std::uint64_t accepted = 0, refused = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        base::RandomStream random{base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};
+        Laboratory laboratory;
+        Parameters p;
+        p.population_size = 12;
+        p.generation_s = 0.2;
+        p.island_count = 1 + random.below(2);
+        ASSERT_TRUE(laboratory.apply(CreateWorld{"w", p, base::Seed{seed}, {}}).has_value());
+        ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+        Entry& entry = *laboratory.entries().front();
+        for (int tick = 0; tick < 200; ++tick) {
+            std::vector<Assignment> assignments;
+            for (std::uint32_t i = 0; i < random.below(4); ++i) {
+                const auto& description =
+                    parameter_registry()[random.below(static_cast<std::uint32_t>(parameter_registry().size()))];
+                if (description.name == "island_count" || description.name == "generation_s")
+                    continue; // costly only
+                ParameterValue value;
+                if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
+                    const double now = real->get(entry.world.parameters().requested);
+                    const double any = random.uniform(real->range.min, real->range.max);
+                    value = random.chance(0.1) ? any
+                                               : std::clamp(now * random.uniform(0.5, 2), real->range.min, real->range.max);
+                } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
+                    value = std::clamp(random.below(40), count->range.min, count->range.max);
+                } else if (std::holds_alternative<FlagParameter>(description.kind)) {
+                    value.emplace<bool>(random.chance(0.5));
+                } else {
+                    const auto names = std::get<ChoiceParameter>(description.kind).names;
+                    value = std::string{names[random.below(static_cast<std::uint32_t>(names.size()))]};
+                }
+                assignments.push_back({std::string{description.name}, std::move(value)});
+            }
+            ++(laboratory.apply(SetParameters{"w", assignments, false, {}}).has_value() ? accepted : refused);
+            if (random.chance(0.01)) {
+                ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
+                ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+            }
+            if (entry.wants_tick())
+                laboratory.advance(entry, executor);
+            for (const Island& island : entry.world.islands())
+                for (std::size_t i = 0; i < island.bodies().size(); ++i) {
+                    ASSERT_TRUE(std::isfinite(island.bodies().velocity_x[i])) << "seed " << seed << ", tick " << tick;
+                    ASSERT_GE(island.bodies().x[i], 0);
+                    ASSERT_LE(island.bodies().x[i], island.area().width);
+                }
+            laboratory.take_events();
+        }
+    }
+    EXPECT_GT(accepted, 3000u);
+    EXPECT_GT(refused, 100u);
+}
+
+} // namespace
+} // namespace evod::simulation

@@ -1,0 +1,363 @@
+#include "server/simulation/parameters.h"
+
+#include "server/simulation/laboratory.h"
+#include "tests/support/inline_executor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::vector<Assignment> one(std::string_view name, ParameterValue value) {
+    return {{std::string{name}, std::move(value)}};
+}
+
+bool accepted(std::string_view name, ParameterValue value) {
+    return assign({}, one(name, std::move(value))).has_value();
+}
+
+/// Where a set is refused, the violations as "field: got X, allowed Y".
+std::vector<std::string> violations(const base::Result<Parameters>& result) {
+    std::vector<std::string> texts;
+    if (!result)
+        for (const base::Violation& violation : result.error().violations)
+            texts.push_back(to_text(violation));
+    return texts;
+}
+
+/// Values other than the default that a parameter can have as far as its own range goes.
+std::vector<ParameterValue> other_values(const ParameterDescription& description) {
+    std::vector<ParameterValue> values;
+    if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
+        const double now = std::get<double>(description.default_value());
+        for (const double value : {now * 0.9, now * 1.05, real->range.min, real->range.max})
+            if (value != now && value >= real->range.min && value <= real->range.max)
+                values.emplace_back(value);
+    } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
+        const std::uint32_t now = std::get<std::uint32_t>(description.default_value());
+        for (const std::uint32_t value : {now + 1, now - 1})
+            if (value >= count->range.min && value <= count->range.max)
+                values.emplace_back(value);
+    } else if (std::holds_alternative<FlagParameter>(description.kind)) {
+        values.emplace_back(!std::get<bool>(description.default_value()));
+    } else {
+        for (const std::string_view name : std::get<ChoiceParameter>(description.kind).names)
+            if (name != std::get<std::string>(description.default_value()))
+                values.emplace_back(std::string{name});
+    }
+    return values;
+}
+
+/// One that `parameters` can have.
+Assignment other_value(const ParameterDescription& description, const Parameters& parameters) {
+    for (const ParameterValue& value : other_values(description)) {
+        const auto assignments = one(description.name, value);
+        if (assign(parameters, assignments))
+            return assignments.front();
+    }
+    ADD_FAILURE() << description.name << " has no value but its default";
+    return {};
+}
+
+TEST(ParameterRegistry, HasEachNameOnce) {
+    std::set<std::string_view> names;
+    for (const ParameterDescription& description : parameter_registry()) {
+        EXPECT_TRUE(names.insert(description.name).second) << description.name;
+        EXPECT_EQ(find_parameter(description.name), &description);
+        EXPECT_FALSE(description.help.empty());
+        EXPECT_EQ(description.help.back(), '.') << description.name;
+    }
+    EXPECT_GT(names.size(), 70u);
+    EXPECT_EQ(find_parameter("no_such"), nullptr);
+    EXPECT_EQ(find_parameter(""), nullptr);
+}
+
+TEST(ParameterRegistry, AcceptsEveryDefaultAndTheDefaultsTogether) {
+    std::vector<Assignment> all;
+    for (const ParameterDescription& description : parameter_registry()) {
+        EXPECT_TRUE(accepted(description.name, description.default_value())) << description.name;
+        all.push_back({std::string{description.name}, description.default_value()});
+    }
+    const auto result = assign({}, all);
+    ASSERT_TRUE(result.has_value());
+    EXPECT_TRUE(*result == Parameters{});
+    EXPECT_THAT(validate(Parameters{}), IsEmpty());
+}
+
+TEST(ParameterRegistry, GivesBackWhatWasSetAndChangesNothingElse) {
+    for (const ParameterDescription& description : parameter_registry()) {
+        const Assignment assignment = other_value(description, {});
+        const auto changed = assign({}, std::vector{assignment});
+        ASSERT_TRUE(changed.has_value()) << description.name;
+        for (const ParameterDescription& each : parameter_registry())
+            EXPECT_EQ(each.get(*changed), &each == &description ? assignment.value : each.default_value())
+                << each.name << " after setting " << description.name;
+        EXPECT_FALSE(*changed == Parameters{});
+        Parameters copy;
+        description.copy(*changed, copy);
+        EXPECT_TRUE(copy == *changed);
+    }
+}
+
+TEST(ParameterRegistry, ReadsEachValueBackFromItsText) {
+    for (const ParameterDescription& description : parameter_registry())
+        for (const ParameterValue& value : other_values(description)) {
+            const auto read = parse_value(description, to_text(value));
+            ASSERT_TRUE(read.has_value()) << description.name << " " << to_text(value);
+            EXPECT_EQ(*read, value) << description.name;
+        }
+}
+
+TEST(ParameterRegistry, RefusesTextThatIsNoValue) {
+    for (const char* text : {"", " 1", "1 ", "0.5x", "--1", "one"}) {
+        EXPECT_FALSE(parse_value(*find_parameter("tick_s"), text).has_value()) << text;
+        EXPECT_FALSE(parse_value(*find_parameter("food_count"), text).has_value()) << text;
+        EXPECT_FALSE(parse_value(*find_parameter("respawn"), text).has_value()) << text;
+        EXPECT_FALSE(parse_value(*find_parameter("selection"), text).has_value()) << text;
+    }
+    EXPECT_FALSE(parse_value(*find_parameter("food_count"), "-1").has_value());
+    EXPECT_FALSE(parse_value(*find_parameter("food_count"), "1.5").has_value());
+    EXPECT_FALSE(parse_value(*find_parameter("food_count"), "4294967296").has_value());
+    EXPECT_FALSE(parse_value(*find_parameter("respawn"), "True").has_value());
+}
+
+TEST(Assign, AcceptsBothEndsOfEveryRangeAndNothingBeyond) {
+    for (const ParameterDescription& description : parameter_registry()) {
+        const std::string name{description.name};
+        const auto refused_by_itself = [&](ParameterValue value) {
+            const auto result = assign({}, one(name, value));
+            return !result && result.error().violations.size() == 1 && result.error().violations[0].field == name &&
+                   result.error().violations[0].allowed == description.allowed() &&
+                   result.error().violations[0].got == to_text(value);
+        };
+        // Other rules may refuse an end, but not by its own range.
+        if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            EXPECT_FALSE(refused_by_itself(real->range.min)) << name;
+            EXPECT_FALSE(refused_by_itself(real->range.max)) << name;
+            EXPECT_TRUE(refused_by_itself(std::nextafter(real->range.min, -infinity))) << name;
+            EXPECT_TRUE(refused_by_itself(std::nextafter(real->range.max, infinity))) << name;
+            EXPECT_TRUE(refused_by_itself(std::numeric_limits<double>::quiet_NaN())) << name;
+            EXPECT_TRUE(refused_by_itself(infinity)) << name;
+            EXPECT_TRUE(refused_by_itself(-infinity)) << name;
+            EXPECT_TRUE(refused_by_itself(true)) << name;
+            EXPECT_TRUE(refused_by_itself(std::string{"1"})) << name;
+        } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
+            EXPECT_FALSE(refused_by_itself(count->range.min)) << name;
+            EXPECT_FALSE(refused_by_itself(count->range.max)) << name;
+            EXPECT_TRUE(count->range.min == 0 || refused_by_itself(count->range.min - 1)) << name;
+            EXPECT_TRUE(count->range.max == base::count_max || refused_by_itself(count->range.max + 1)) << name;
+            EXPECT_TRUE(refused_by_itself(1.0)) << name;
+            EXPECT_TRUE(refused_by_itself(false)) << name;
+        } else if (std::holds_alternative<FlagParameter>(description.kind)) {
+            EXPECT_TRUE(refused_by_itself(std::uint32_t{1})) << name;
+            EXPECT_TRUE(refused_by_itself(std::string{"true"})) << name;
+        } else {
+            EXPECT_TRUE(refused_by_itself(std::string{"no such choice"})) << name;
+            EXPECT_TRUE(refused_by_itself(std::string{})) << name;
+            EXPECT_TRUE(refused_by_itself(std::uint32_t{0})) << name;
+        }
+    }
+}
+
+TEST(Assign, TakesACountForAReal) {
+    const auto result = assign({}, one("respawn_s", std::uint32_t{3}));
+    ASSERT_TRUE(result.has_value());
+    EXPECT_EQ(result->respawn_s, 3);
+}
+
+TEST(Assign, NamesEveryViolationWithItsPrefixAndChangesNothing) {
+    const auto result = assign({},
+                               std::vector<Assignment>{{"mutation_chance", 1.5},
+                                                       {"food_count", std::uint32_t{30}},
+                                                       {"mutation_chence", 0.5},
+                                                       {"food_count", std::uint32_t{31}},
+                                                       {"selection", std::string{"lottery"}}},
+                               "set_parameters.");
+    EXPECT_THAT(violations(result),
+                ElementsAre("set_parameters.mutation_chance: got 1.5, allowed 0 to 1",
+                            AllOf(HasSubstr("set_parameters.mutation_chence: got an unknown name"),
+                                  HasSubstr("did you mean mutation_chance")),
+                            "set_parameters.food_count: got given twice, allowed given once",
+                            "set_parameters.selection: got lottery, allowed roulette, stochastic_universal, tournament, "
+                            "random, truncation"));
+}
+
+TEST(Assign, LooksAtNoMoreThanEachParameterOnce) {
+    const std::vector<Assignment> many(200'000, {"foood", 1.0});
+    EXPECT_THAT(violations(assign({}, many, "set_parameters.parameters.")),
+                ElementsAre(AllOf(HasSubstr("set_parameters.parameters: got 200000"), HasSubstr("each parameter once"))));
+}
+
+TEST(SimilarNames, AreTheOnesMeantBestFirst) {
+    EXPECT_EQ(similar_parameter_names("mutation_chence").front(), "mutation_chance");
+    EXPECT_THAT(similar_parameter_names("poison_cout"), Contains("poison_count"));
+    EXPECT_THAT(similar_parameter_names("tournament"), SizeIs(3)); // at most three, all with that part
+    EXPECT_THAT(similar_parameter_names("xxxxxxxxxxxxxxxxxxxxxxxx"), IsEmpty());
+    EXPECT_THAT(similar_parameter_names(std::string(100'000, 'x')), IsEmpty());
+    EXPECT_THAT(similar_parameter_names(""), IsEmpty());
+}
+
+TEST(CrossFieldRules, PutBoundsTheRightWayRound) {
+    for (const std::string stem :
+         {"initial_gene", "normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"}) {
+        const auto both = [&](double min, double max) {
+            return assign({}, std::vector<Assignment>{{stem + "_min", min}, {stem + "_max", max}});
+        };
+        EXPECT_TRUE(both(100, 100).has_value()) << stem;
+        EXPECT_THAT(violations(both(100, 99)),
+                    ElementsAre(stem + "_max: got 99, allowed at least " + stem + "_min (100)"));
+    }
+}
+
+TEST(CrossFieldRules, KeepTournamentsPossible) {
+    const auto set = [](std::uint32_t size, std::uint32_t winners, bool replacement, std::uint32_t population) {
+        return assign({}, std::vector<Assignment>{{"selection", std::string{"tournament"}},
+                                                  {"tournament_size", size},
+                                                  {"tournament_winners", winners},
+                                                  {"tournament_replacement", replacement},
+                                                  {"population_size", population}})
+            .has_value();
+    };
+    EXPECT_TRUE(set(5, 5, false, 5));
+    EXPECT_FALSE(set(5, 6, false, 20));
+    EXPECT_FALSE(set(21, 1, false, 20));
+    EXPECT_TRUE(set(21, 1, true, 20));
+}
+
+TEST(CrossFieldRules, LimitTicksAndWays) {
+    const auto set = [](std::vector<Assignment> assignments) { return assign({}, assignments).has_value(); };
+    EXPECT_FALSE(set({{"generation_s", 0.5}, {"tick_s", 0.6}}));
+    EXPECT_TRUE(set({{"generation_s", 0.5}, {"tick_s", 0.5}}));
+    EXPECT_FALSE(set({{"max_speed_px_s", 50'001.0}, {"tick_s", 0.1}}));
+    EXPECT_TRUE(set({{"max_speed_px_s", 50'000.0}, {"tick_s", 0.1}}));
+}
+
+TEST(CrossFieldRules, KeepRoomForOrganisms) {
+    EXPECT_FALSE(accepted("population_size", std::uint32_t{400}));
+    EXPECT_TRUE(accepted("population_size", std::uint32_t{200}));
+    EXPECT_FALSE(accepted("island_width_px", 100.0)) << "50 organisms of 20 px radius have no room on 100 × 720 px";
+}
+
+TEST(CrossFieldRules, KeepRoomForACrateAmongManySmallObstacles) {
+    // The obstacles are few square pixels, but a crate of 100 px has hardly a place without one.
+    const auto result = assign({}, std::vector<Assignment>{{"population_size", std::uint32_t{1}},
+                                                           {"island_width_px", 400.0},
+                                                           {"island_height_px", 400.0},
+                                                           {"body_size_min", 1.0},
+                                                           {"body_size_max", 1.0},
+                                                           {"item_radius_px", 0.5},
+                                                           {"obstacle_count", std::uint32_t{500}},
+                                                           {"obstacle_size_px", 5.0},
+                                                           {"crate_count", std::uint32_t{1}},
+                                                           {"crate_size_px", 100.0}});
+    EXPECT_FALSE(result.has_value());
+}
+
+TEST(CrossFieldRules, KeepRoomForAnOrganismAmongManySmallCrates) {
+    const auto result = assign({}, std::vector<Assignment>{{"population_size", std::uint32_t{2}},
+                                                           {"island_width_px", 500.0},
+                                                           {"island_height_px", 500.0},
+                                                           {"body_size_min", 500.0},
+                                                           {"body_size_max", 500.0},
+                                                           {"crate_count", std::uint32_t{1000}},
+                                                           {"crate_size_px", 5.0}});
+    EXPECT_FALSE(result.has_value());
+}
+
+RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForEverythingInIt, ()) {
+    const auto count = [](std::uint32_t max) { return *rc::gen::resize(100, rc::gen::inRange(0u, max)); };
+    const auto real = [&](double min, double max) { return min + (max - min) * count(1001) / 1000.0; };
+    const double size = real(1, 200);
+    const auto parameters = assign({}, std::vector<Assignment>{{"population_size", 1 + count(80)},
+                                                               {"island_width_px", real(150, 1200)},
+                                                               {"island_height_px", real(150, 1200)},
+                                                               {"body_size_min", 1.0},
+                                                               {"body_size_max", size},
+                                                               {"initial_gene_min", size * 0.9},
+                                                               {"initial_gene_max", size},
+                                                               {"item_radius_px", real(0.5, 20)},
+                                                               {"obstacle_count", count(40)},
+                                                               {"obstacle_size_px", real(5, 60)},
+                                                               {"crate_count", count(40)},
+                                                               {"crate_size_px", real(5, 60)}});
+    RC_CLASSIFY(parameters.has_value());
+    if (parameters)
+        World{*parameters, base::Seed{count(1000)}}; // aborts if it runs out of room
+}
+
+TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
+    Parameters p;
+    p.population_size = 200;
+    EXPECT_EQ(island_plan(p).width_px, 1280);
+    p.scale_with_population = true;
+    const IslandPlan plan = island_plan(p); // four times the reference
+    EXPECT_EQ(plan.width_px, 2560);
+    EXPECT_EQ(plan.height_px, 1440);
+    EXPECT_EQ(plan.food_count, 100u);
+    EXPECT_EQ(plan.poison_count, 160u);
+    p.population_size = 12; // 0.24
+    EXPECT_EQ(island_plan(p).food_count, 6u);
+    EXPECT_EQ(island_plan(p).poison_count, 10u); // 9.6
+    p.population_size = 4'000'000; // 283 times as wide
+    p.island_width_px = 2000;
+    EXPECT_THAT(validate(p), testing::Not(IsEmpty())) << "wider than an island can be";
+}
+
+// When a parameter takes effect.
+
+World small_world() {
+    Parameters p;
+    p.generation_s = 0.1;
+    return {p, base::Seed{1}};
+}
+
+TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
+    support::InlineExecutor executor;
+    for (const ParameterDescription& description : parameter_registry()) {
+        World world = small_world();
+        world.advance_tick(executor);
+        const Assignment assignment = other_value(description, world.parameters().requested);
+        const auto holds = [&] { return description.get(world.parameters().active) == assignment.value; };
+        world.request_parameters(*assign(world.parameters().requested, std::vector{assignment}));
+        EXPECT_EQ(description.get(world.parameters().requested), assignment.value);
+        EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
+        if (world.outcome() != evolution::Outcome::Running)
+            continue;
+        while (!world.generation_over())
+            world.advance_tick(executor);
+        EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
+        if (world.outcome() == evolution::Outcome::Running) {
+            world.advance_tick(executor); // the first tick of the next generation
+            EXPECT_EQ(holds(), description.effect != base::Effect::Reset) << description.name;
+        }
+        world.reset(base::Seed{1});
+        EXPECT_TRUE(holds()) << description.name;
+        EXPECT_TRUE(world.parameters().active == world.parameters().requested);
+    }
+}
+
+TEST(ParameterSet, CountsItsRevisions) {
+    World world = small_world();
+    EXPECT_EQ(world.parameters().revision, 1u);
+    world.request_parameters(*assign({}, one("food_health", 30.0)));
+    world.request_parameters(*assign({}, one("food_health", 31.0)));
+    EXPECT_EQ(world.parameters().revision, 3u);
+}
+
+} // namespace
+} // namespace evod::simulation
