@@ -48,6 +48,12 @@ std::optional<simulation::Speed> parse_speed(const std::string& text) {
     return simulation::Speed{factor};
 }
 
+/// CLI11 takes "-1" for the greatest number of 64 bits.
+std::string whole_number(const std::string& text) {
+    const bool good = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+    return good ? std::string{} : "must be a whole number, 0 to 18446744073709551615, not " + text;
+}
+
 int serve(const ServeOptions& options) {
     simulation::CreateWorld create{
         .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
@@ -99,7 +105,8 @@ int main(int argument_count, char** arguments) {
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     app.add_option("--experiment", options.experiment_file, "JSON file with the parameters of the first world");
-    app.add_option("--seed", options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance");
+    app.add_option("--seed", options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance")
+        ->check(whole_number);
     app.add_option("--speed", options.speed, "Simulated seconds per second, 0.001 to 10000, or max")
         ->check([](const std::string& text) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
@@ -112,7 +119,8 @@ int main(int argument_count, char** arguments) {
     run_options.drawn_seed = network::draw_seed();
     CLI::App& run = *app.add_subcommand("run", "Run an experiment without a network");
     run.add_option("experiment", run_options.experiment, "JSON file; without one, the default world");
-    run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance");
+    run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance")
+        ->check(whole_number);
     run.add_option("--generations", run_options.generations, "How many; takes the place of generation_limit, 0 is no limit");
     run.add_option("--threads", run_options.threads, "Threads that simulate")
         ->check(CLI::Range(1, 1024))

@@ -81,9 +81,14 @@ bool interrupted();
 /// Whether people are looking at stdout.
 bool on_terminal();
 
-/// For numbers on the command line: what is wrong with "0", else nothing.
+/// Checks for CLI11, which takes "-1" for the greatest number of 64 bits: an empty text, or what is wrong.
+inline std::string whole_number(const std::string& word) {
+    const bool good = !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+    return good ? std::string{} : "must be a whole number, not " + word;
+}
 inline std::string at_least_one(const std::string& word) {
-    return word == "0" ? "must be at least 1" : "";
+    const std::string wrong = whole_number(word);
+    return wrong.empty() && word.find_first_not_of('0') == std::string::npos ? "must be at least 1" : wrong;
 }
 
 /// Each adds its subcommands to `app`; `selected` becomes the one that was given.

@@ -311,16 +311,16 @@ void add_look_commands(CLI::App& app, const Common& common, Selected& selected) 
     auto* past = app.add_subcommand("history", "The statistics of ended generations")->group(group);
     auto options = std::make_shared<HistoryOptions>();
     past->add_flag("--csv", options->csv, "Comma-separated, with every column and the genes");
-    past->add_option("--from", options->from, "First generation; without it the oldest that is kept");
-    past->add_option("--to", options->to, "Last generation; without it the last that has ended");
-    past->add_option("--island", options->island, "One island only, from 0");
+    past->add_option("--from", options->from, "First generation; without it the oldest that is kept")->check(whole_number);
+    past->add_option("--to", options->to, "Last generation; without it the last that has ended")->check(whole_number);
+    past->add_option("--island", options->island, "One island only, from 0")->check(whole_number);
     past->footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
     past->callback([&, options] { selected = [&, options] { history(common, *options); }; });
 
     auto* one = app.add_subcommand("organism", "One organism, its genes, life and parents")->group(group);
     auto id = std::make_shared<std::uint32_t>(0), island = std::make_shared<std::uint32_t>(0);
-    one->add_option("ID", *id, "Birth order within the generation, from 0")->required();
-    one->add_option("--island", *island, "Island, from 0");
+    one->add_option("ID", *id, "Birth order within the generation, from 0")->required()->check(whole_number);
+    one->add_option("--island", *island, "Island, from 0")->check(whole_number);
     one->callback([&, id, island] { selected = [&, id, island] { organism(common, *id, *island); }; });
 
     app.add_subcommand("describe", "The server: version, features, limits")->group(group)->callback([&] {

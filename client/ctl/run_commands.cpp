@@ -273,7 +273,7 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
     auto options = std::make_shared<CreateOptions>();
     create_command->add_option("NAME", options->name, "1 to 64 of a-z A-Z 0-9 _ -")->required();
     create_command->add_option("--seed", options->seed,
-                               "Without it, and without one in the file, the server draws one");
+                               "Without it, and without one in the file, the server draws one")->check(whole_number);
     create_command->add_option("--set", options->words, "Parameters as NAME=VALUE; the others have their defaults");
     create_command->add_option("--experiment", options->experiment,
                                "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
@@ -289,7 +289,7 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
     auto* reset_command =
         app.add_subcommand("reset", "Begin again at generation 1, with the parameters last set")->group(group);
     auto seed = std::make_shared<std::optional<std::uint64_t>>();
-    reset_command->add_option("--seed", *seed, "Without it the same seed again");
+    reset_command->add_option("--seed", *seed, "Without it the same seed again")->check(whole_number);
     reset_command->callback([&, seed] { selected = [&, seed] { reset(common, *seed); }; });
 }
 
@@ -334,7 +334,7 @@ void add_run_commands(CLI::App& app, const Common& common, Selected& selected) {
         app.add_subcommand("until", "Run until TICK ticks of the run are over, then pause")->group(group);
     auto tick = std::make_shared<std::uint64_t>(0);
     auto until_wait = std::make_shared<bool>(false);
-    until_command->add_option("TICK", *tick, "Ticks since the run began")->required();
+    until_command->add_option("TICK", *tick, "Ticks since the run began")->required()->check(whole_number);
     until_command->add_flag("--wait", *until_wait, "Return when it is reached");
     until_command->callback([&, tick, until_wait] {
         selected = [&, tick, until_wait] {

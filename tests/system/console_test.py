@@ -93,6 +93,10 @@ class Run(Folder):
                     "--set", "generation_s=1.5")
         self.assertEqual(state(done.stdout), state(same.stdout))
 
+    def test_wrong_usage_is_said(self):
+        for arguments in (("--seed", "-1"), ("--generations", "many"), ("--threads", "0"), ("--speed", "2")):
+            evod("run", *arguments, status=2)
+
     def test_what_cannot_be_is_named(self):
         for arguments, words in {
             ("--set", "mutation_chance=1.5"): ["--set mutation_chance: got 1.5, allowed 0 to 1"],

@@ -1,0 +1,149 @@
+"""evoctl as a user meets it: every command against a real server, right and wrong. EVOD and EVOCTL name the programs."""
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
+
+
+class WithServer(unittest.TestCase):
+    """Each test has a server of its own, on a port that the system chose."""
+
+    options = ["--seed", "1", "--speed", "max"]
+
+    def setUp(self):
+        self.server = subprocess.Popen([EVOD, "--port", "0", *self.options], stdout=subprocess.PIPE,
+                                       stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(self.end_server)
+        for line in self.server.stdout:
+            if found := re.search(r"listening on 127\.0\.0\.1:(\d+)", line):
+                self.address = "127.0.0.1:" + found.group(1)
+                return
+        self.fail("the server did not start")
+
+    def end_server(self):
+        self.server.terminate()
+        self.server.stdout.read()
+        self.server.stdout.close()
+        self.assertEqual(self.server.wait(timeout=30), 0)
+
+    def evoctl(self, *words, status=0):
+        done = subprocess.run([EVOCTL, "--server", self.address, *words], capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}\n{done.stderr}")
+        return done.stdout if status == 0 else done.stderr
+
+    def answer(self, *words):
+        return json.loads(self.evoctl("--json", *words))
+
+
+class Commands(WithServer):
+    def test_generations_are_run_and_told(self):
+        self.evoctl("run", "3", "--wait")
+        rows = list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv"))))
+        self.assertEqual([row["generation"] for row in rows], ["1", "2", "3"])
+        self.assertEqual(len(list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv", "--from", "2", "--to", "2"))))), 1)
+        self.assertRegex(self.evoctl("stats"), r"waiting")
+        self.assertIn("food_radius", self.evoctl("organism", "3"))
+        self.assertIn("organism", self.evoctl("organism", "5000", status=1))
+
+    def test_steps_are_exact_and_a_reset_repeats_them(self):
+        self.evoctl("step", "60")
+        first = self.answer("pause")["world"]
+        self.assertEqual((first["tick"], first["state"]), ("60", "RUN_STATE_PAUSED"))
+        self.evoctl("reset")
+        self.evoctl("until", "60")
+        self.evoctl("step", "1")
+        self.evoctl("reset", "--seed", "1")
+        self.evoctl("step", "60")
+        again = self.answer("pause")["world"]
+        self.assertEqual((again["tick"], again["state_hash"]), (first["tick"], first["state_hash"]))
+        self.assertNotEqual(again["run_id"], first["run_id"])
+        self.evoctl("reset", "--seed", "2")
+        self.evoctl("step", "60")
+        self.assertNotEqual(self.answer("pause")["world"]["state_hash"], first["state_hash"])
+
+    def test_run_pause_resume_and_speed(self):
+        self.evoctl("speed", "2")
+        self.evoctl("run")
+        self.assertEqual(self.answer("pause")["world"]["state"], "RUN_STATE_PAUSED")
+        self.assertEqual(self.answer("resume")["world"]["state"], "RUN_STATE_RUNNING")
+        self.assertEqual(self.answer("speed", "max")["world"]["speed"], {"max": True})
+        self.evoctl("pause")
+        self.evoctl("reset")
+        self.assertIn("FAILED_PRECONDITION", self.evoctl("resume", status=1))
+        self.evoctl("speed", "0", status=1)
+        self.evoctl("speed", "fast", status=2)
+
+    def test_parameters_are_set_all_or_none(self):
+        self.evoctl("set", "selection=tournament", "mutation_chance=0.05", "mutate_survivors=true", "tournament_size=4")
+        told = self.evoctl("get", "selection", "mutation_chance", "mutate_survivors", "tournament_size")
+        self.assertEqual(told.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
+                                        "tournament_size=4"])
+        wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=1)
+        self.assertIn("mutation_chance: got 2, allowed 0 to 1", wrong)
+        self.assertIn("restitution: got -1, allowed 0 to 1", wrong)
+        self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
+        self.evoctl("set", "--dry-run", "survivors=0.25")
+        self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
+        self.evoctl("set", "--if-revision", "1", "survivors=0.25", status=1)
+        self.evoctl("set", "--if-revision", "2", "survivors=0.25")
+        self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.25")
+        self.assertIn("did you mean", self.evoctl("set", "mutation_chanse=0.1", status=2))
+        registry = {line.split()[0] for line in self.evoctl("params").splitlines() if line}
+        self.assertLessEqual({"population_size", "mutation_chance", "flee_rule", "migration"}, registry)
+        self.assertIn("tournament", self.evoctl("params", "selection"))
+
+    def test_worlds_are_made_named_and_deleted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "small.json"
+            path.write_text('{"population_size": 7, "seed": 5, "description": "A few."}')
+            self.evoctl("create", "small", "--experiment", str(path), "--set", "food_count=9")
+        self.evoctl("create", "other", "--seed", "6", "--set", "population_size=8")
+        self.assertEqual(self.evoctl("worlds").split(), ["default", "small", "other"])
+        self.assertEqual(self.evoctl("--world", "small", "get", "population_size", "food_count").split(),
+                         ["population_size=7", "food_count=9"])
+        self.assertIn("ALREADY_EXISTS", self.evoctl("create", "other", status=1))
+        self.evoctl("create", "no/slash", status=1)
+        self.evoctl("--world", "other", "run", "1", "--wait")
+        self.assertIn("GENERATION", self.evoctl("--world", "other", "history"))
+        self.evoctl("delete", "other")
+        self.assertIn("NOT_FOUND", self.evoctl("--world", "other", "pause", status=1))
+        self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
+
+    def test_watch_and_events_follow(self):
+        self.evoctl("run")
+        self.assertEqual(len(self.evoctl("watch", "--generations", "3").strip().splitlines()), 3)
+        events = [json.loads(line) for line in self.evoctl("--json", "events", "--count", "3").splitlines()]
+        self.assertEqual(len(events), 3)
+
+    def test_it_describes_and_completes(self):
+        self.assertIn("0.1.0", self.evoctl("describe"))
+        self.assertIn("_evoctl", self.evoctl("complete", "bash"))
+        script = f'source <("{EVOCTL}" complete bash); COMP_WORDS=(evoctl --server {self.address} set mutation_ch);' \
+                 'COMP_CWORD=4; COMP_LINE="${COMP_WORDS[*]}"; COMP_POINT=${#COMP_LINE}; _evoctl; echo "${COMPREPLY[@]}"'
+        path = os.path.dirname(EVOCTL) + ":" + os.environ["PATH"]
+        done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=30,
+                              env={**os.environ, "PATH": path})
+        self.assertIn("mutation_chance", done.stdout, done.stderr)
+
+
+class WithoutServer(unittest.TestCase):
+    def test_it_says_that_no_server_runs_and_how_to_start_one(self):
+        done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", "status"], capture_output=True, text=True, timeout=30)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("127.0.0.1:1", done.stderr)
+        self.assertIn("evod", done.stderr)
+
+    def test_wrong_usage_is_said_before_any_connection(self):
+        for words in (["dance"], ["run", "-1"], ["step", "many"], ["create"], []):
+            done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
+            self.assertEqual(done.returncode, 2, words)
+
+
+unittest.main()
