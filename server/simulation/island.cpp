@@ -27,7 +27,8 @@ physics::StepParameters step_parameters(const Parameters& p) {
 }
 
 ItemRules item_rules(const Parameters& p) {
-    const double ticks = std::ceil(p.respawn_s / p.tick_s);
+    // A little less, so that 23 sixtieths are 23 ticks of a sixtieth however they are rounded.
+    const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
             .respawn_purpose = base::Purpose::FoodRespawn,
             .kind = FoodKind,
