@@ -1,0 +1,257 @@
+#include "server/simulation/island.h"
+
+#include "server/simulation/fitness.h"
+#include "tests/support/inline_executor.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+evolution::Chromosome genes_of(float normal_speed, float impulse, float body_size, float base_health, float food_radius,
+                               float poison_radius) {
+    evolution::Chromosome genes;
+    genes << normal_speed, impulse, body_size, base_health, food_radius, poison_radius;
+    return genes;
+}
+
+/// An island of 200 × 200 px with what a test asks for and nothing else.
+class SmallIsland : public testing::Test {
+  protected:
+    SmallIsland() {
+        parameters.island_width_px = parameters.island_height_px = 200;
+        parameters.food_count = parameters.poison_count = 0;
+    }
+    void begin(const std::vector<evolution::Chromosome>& chromosomes) {
+        evolution::NextGeneration born;
+        born.genes = evolution::GeneMatrix(evolution::gene_count, static_cast<Eigen::Index>(chromosomes.size()));
+        for (std::size_t i = 0; i < chromosomes.size(); ++i)
+            born.genes.col(static_cast<Eigen::Index>(i)) = chromosomes[i];
+        island.begin_generation(parameters, 1, std::move(born));
+    }
+    void tick() { island.advance_tick(parameters, ++now, executor); }
+    float health(std::uint32_t id) { return island.living().health[island.body_of(id).value()]; }
+    std::vector<double> fitness() { return island.fitness(parameters, now, executor); }
+
+    Parameters parameters;
+    Island island{base::Seed{1}, 0};
+    std::uint32_t now = 0;
+    support::InlineExecutor executor;
+};
+
+TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
+    begin({genes_of(0, 0, 50, 20, 0, 0), genes_of(0, 0, 50, 30, 0, 0)});
+    tick();
+    EXPECT_FLOAT_EQ(health(0), 19.9f);
+    while (island.living().size() == 2)
+        tick();
+    EXPECT_NEAR(now, 200, 1) << "6 health/s: 20 last 200 ticks, to the rounding of floats";
+    const std::uint32_t died = now;
+    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
+    EXPECT_EQ(island.fate().lived_ticks[0], died);
+    EXPECT_EQ(island.counts().starved_count, 1u);
+    EXPECT_FALSE(island.body_of(0).has_value());
+    EXPECT_EQ(island.body_of(1), 0u);
+    while (now < 250)
+        tick();
+    EXPECT_NEAR(fitness()[0], died / 60.0, 1e-9) << "the health of the dead is 0, their seconds count";
+    EXPECT_NEAR(fitness()[1], 250 / 60.0 + 5, 1e-2);
+}
+
+TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickInWhichItKills) {
+    parameters.poison_count = 2000; // everywhere
+    parameters.respawn = false;
+    parameters.poison_harm = 1e4;
+    begin({genes_of(0, 0, 100, 100, 0, 0)});
+    tick();
+    EXPECT_EQ(island.living().size(), 0u);
+    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Poisoned);
+    EXPECT_EQ(island.fate().lived_ticks[0], 1u);
+    EXPECT_GT(island.fate().poison_eaten[0], 0u);
+    EXPECT_EQ(island.counts().poisoned_count, 1u);
+    EXPECT_EQ(island.counts().poison_eaten, island.fate().poison_eaten[0]);
+}
+
+TEST_F(SmallIsland, StarvesWhenHungerTakesTheLastHealthLongAfterPoison) {
+    parameters.poison_count = 300;
+    parameters.respawn = false;
+    parameters.poison_harm = 0.01;
+    begin({genes_of(0, 0, 100, 5, 0, 0)});
+    while (island.living().size() > 0)
+        tick();
+    EXPECT_GT(island.fate().poison_eaten[0], 0u);
+    EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
+}
+
+TEST_F(SmallIsland, LivesIfFoodInTheTickInWhichHealthRunsOutBringsTheSumAboveNothing) {
+    parameters.food_count = 3000;
+    parameters.health_cap_per_size = 0;
+    begin({genes_of(0, 0, 100, 0.05f, 0, 0)}); // less than a tick costs
+    tick();
+    ASSERT_EQ(island.living().size(), 1u);
+    const std::uint32_t meals = island.fate().food_eaten[0];
+    EXPECT_GT(meals, 1u);
+    EXPECT_NEAR(health(0), 0.05f - 0.1f + 25 * static_cast<float>(meals), 1e-3);
+}
+
+TEST_F(SmallIsland, DiesIfTheSumOfATickIsNotAboveNothing) {
+    parameters.food_count = parameters.poison_count = 3000;
+    parameters.food_health = 0.05; // and as much poison: the sum stays below
+    parameters.poison_harm = 10;
+    begin({genes_of(0, 0, 100, 20, 0, 0)});
+    tick();
+    EXPECT_EQ(island.living().size(), 0u);
+    EXPECT_GT(island.fate().food_eaten[0], 0u);
+}
+
+TEST_F(SmallIsland, CutsHealthToTheCapAtAMealAndOnlyThen) {
+    parameters.health_cap_per_size = 3;
+    begin({genes_of(0, 0, 40, 190, 0, 0)});
+    tick();
+    EXPECT_FLOAT_EQ(health(0), 189.9f) << "not at birth";
+    parameters.food_count = 3000;
+    now = 0;
+    begin({genes_of(0, 0, 40, 190, 0, 0)});
+    tick();
+    EXPECT_FLOAT_EQ(health(0), 120);
+}
+
+TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
+    Parameters p;
+    p.normal_speed_cost = 0.1;
+    p.impulse_cost = 0.2;
+    p.base_health_cost = 0.5;
+    p.food_radius_cost = 0.1;
+    p.poison_radius_cost = 0.3;
+    const auto loss = [&](const evolution::Chromosome& genes) {
+        Living living;
+        living.add(genes, p);
+        return living.loss_per_tick.front();
+    };
+    EXPECT_FLOAT_EQ(loss(genes_of(100, 100, 100, 100, 100, 100)), 0.1f);
+    const double factor = 1 + 0.1 * (1.2 - 1) + 0.2 * (1.3 * 1.3 - 1) + 0.5 * (0.9 - 1) + 0.1 * (1.4 * 1.4 - 1) +
+                          0.3 * (0.7 * 0.7 - 1);
+    EXPECT_FLOAT_EQ(loss(genes_of(120, 130, 50, 90, 140, 70)), static_cast<float>(0.1 * factor));
+    p.base_health_cost = 10;
+    EXPECT_EQ(loss(genes_of(20, 20, 100, 20, 20, 20)), 0) << "never a gain";
+}
+
+TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
+    parameters.food_count = 1000;
+    for (std::uint32_t ticks = 0; ticks <= 600; ++ticks) {
+        parameters.respawn_s = ticks / 60.0;
+        now = 0;
+        begin({genes_of(0, 0, 150, 100, 0, 0)});
+        tick();
+        ASSERT_GT(island.counts().food_eaten, 0u);
+        for (std::uint32_t item = 0; item < island.food().size(); ++item)
+            ASSERT_TRUE(island.food().present(item) || island.food().due_tick()[item] == 1 + std::max(ticks, 1u))
+                << "respawn_s " << parameters.respawn_s;
+    }
+    parameters.respawn = false;
+    now = 0;
+    begin({genes_of(0, 0, 150, 100, 0, 0)});
+    tick();
+    const std::uint32_t left = island.food().present_count();
+    EXPECT_LT(left, 1000u);
+    while (now < 50)
+        tick();
+    EXPECT_LE(island.food().present_count(), left);
+}
+
+TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
+    parameters.island_width_px = parameters.island_height_px = 600;
+    parameters.food_count = parameters.poison_count = 40;
+    parameters.crate_count = 3;
+    parameters.obstacle_count = 2;
+    parameters.respawn_s = 0.3;
+    std::vector<evolution::Chromosome> chromosomes;
+    for (int i = 0; i < 30; ++i)
+        chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
+    begin(chromosomes);
+    const auto recomputed = [&] {
+        base::StateHash sum;
+        for (std::uint32_t id = 0; id < 30; ++id) {
+            const auto g = evolution::column(island.born().genes, id);
+            sum += base::EntityHash{5, id}.add(g[0], g[1]).add(g[2], g[3]).add(g[4], g[5]).finish();
+        }
+        for (std::size_t i = island.bodies().size(); i-- > 0;) // in any order
+            sum += base::EntityHash{1, island.bodies().id[i]}
+                       .add(island.bodies().x[i], island.bodies().y[i])
+                       .add(island.bodies().velocity_x[i], island.bodies().velocity_y[i])
+                       .add(std::uint64_t{std::bit_cast<std::uint32_t>(island.living().health[i])})
+                       .finish();
+        for (std::uint32_t i = 0; i < island.crate_count(); ++i)
+            sum += base::EntityHash{4, i}
+                       .add(island.boxes().x[i], island.boxes().y[i])
+                       .add(island.boxes().velocity_x[i], island.boxes().velocity_y[i])
+                       .finish();
+        const auto add_items = [&](const Items& items, std::uint32_t kind) {
+            for (std::uint32_t item = 0; item < items.size(); ++item) {
+                base::EntityHash hash{kind, item};
+                if (items.present(item))
+                    hash.add(items.x()[item], items.y()[item]);
+                else
+                    hash.add(std::uint64_t{items.due_tick()[item]});
+                sum += hash.finish();
+            }
+        };
+        add_items(island.food(), 2);
+        add_items(island.poison(), 3);
+        return sum;
+    };
+    while (island.living().size() > 0) { // deaths included
+        tick();
+        ASSERT_EQ(island.hash(), recomputed()) << "tick " << now;
+    }
+    EXPECT_GT(now, 150u);
+}
+
+TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
+    std::vector<evolution::Chromosome> chromosomes;
+    for (int i = 0; i < 8; ++i)
+        chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
+    begin(chromosomes);
+    tick();
+    EXPECT_EQ(island.bodies().id, (std::vector<std::uint32_t>{1, 2, 4, 5, 7}));
+    EXPECT_EQ(island.body_of(4), 2u);
+    for (const std::uint32_t dead : {0u, 3u, 6u, 8u, 1000u})
+        EXPECT_FALSE(island.body_of(dead).has_value());
+}
+
+TEST_F(SmallIsland, StartsAtRestWithTheSizesOfItsGenes) {
+    begin({genes_of(0, 0, 80, 50, 0, 0), genes_of(0, 0, 160, 50, 0, 0)});
+    EXPECT_EQ(island.bodies().radius, (std::vector<float>{8, 16}));
+    EXPECT_FLOAT_EQ(island.bodies().inverse_mass[0], 1 / 0.8f);
+    EXPECT_FLOAT_EQ(island.bodies().inverse_mass[1], 1 / 1.6f);
+    EXPECT_EQ(island.bodies().velocity_x, (std::vector<float>{0, 0}));
+}
+
+TEST(GeneSum, IsTheSumOfTheGenes) { EXPECT_EQ(gene_sum(genes_of(1, 2, 3, 4, 5, 6.5f)), 21.5); }
+
+TEST(Rastrigin, IsGreatestWhereEveryGeneIs150AndFollowsItsFormula) {
+    EXPECT_NEAR(rastrigin(genes_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);
+    const evolution::Chromosome genes = genes_of(100, 103, 151, 20, 249.5f, 175);
+    double sum = 60;
+    for (unsigned i = 0; i < 6; ++i) {
+        const double x = (static_cast<double>(genes(i)) - 150) / 25;
+        sum += x * x - 10 * std::cos(2 * std::numbers::pi * x);
+    }
+    EXPECT_NEAR(rastrigin(genes), -sum, 1e-9);
+    EXPECT_LT(rastrigin(genes), 0);
+}
+
+TEST_F(SmallIsland, OfAFunctionOfTheChromosomeHasNoBodies) {
+    parameters.fitness = FitnessFunction::GeneSum;
+    begin({genes_of(1, 2, 3, 4, 5, 6), genes_of(10, 20, 30, 40, 50, 60)});
+    EXPECT_EQ(island.bodies().size(), 0u);
+    EXPECT_EQ(fitness(), (std::vector<double>{21, 210}));
+}
+
+} // namespace
+} // namespace evod::simulation

@@ -1,0 +1,339 @@
+#include "server/simulation/world.h"
+
+#include "tests/support/inline_executor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+using testing::ElementsAre;
+
+class WorldTest : public testing::Test {
+  protected:
+    WorldTest() {
+        parameters.population_size = 12;
+        parameters.generation_s = 0.2; // 12 ticks
+    }
+    World make() const { return {parameters, base::Seed{5}}; }
+    void run_generation(World& world) {
+        do
+            world.advance_tick(executor);
+        while (!world.generation_over());
+    }
+    template <class Kind>
+    static std::vector<Kind> events(World& world) {
+        std::vector<Kind> found;
+        for (EventKind& event : world.take_events())
+            if (auto* kind = std::get_if<Kind>(&event))
+                found.push_back(std::move(*kind));
+        return found;
+    }
+    void request(World& world, std::vector<Assignment> assignments) {
+        const auto requested = assign(world.parameters().requested, assignments);
+        ASSERT_TRUE(requested.has_value()) << to_text(requested.error());
+        world.request_parameters(*requested);
+    }
+
+    Parameters parameters;
+    support::InlineExecutor executor;
+};
+
+TEST_F(WorldTest, EndsAGenerationAfterItsTimeExactly) {
+    for (const auto& [generation_s, tick_s, ticks] :
+         {std::tuple{0.2, 1.0 / 60, 12u}, {40.0, 1.0 / 60, 2400u}, {1.0, 0.1, 10u}, {0.3, 0.1, 3u}, {7.0, 0.07, 100u},
+          {0.001, 0.001, 1u}, {0.9, 0.3, 3u}}) {
+        parameters.generation_s = generation_s;
+        parameters.tick_s = tick_s;
+        parameters.health_loss_per_s = 0;
+        parameters.poison_count = 0;
+        World world = make();
+        run_generation(world);
+        EXPECT_EQ(world.moment().tick, ticks) << generation_s << " s of " << tick_s << " s";
+        EXPECT_NEAR(world.moment().simulated_s, generation_s, 1e-9);
+    }
+}
+
+TEST_F(WorldTest, StandsAtTheEndOfAGenerationUntilTheNextTickBreedsTheNext) {
+    World world = make();
+    run_generation(world);
+    EXPECT_EQ(world.moment().generation, 1u);
+    EXPECT_EQ(world.moment().generation_tick, 12u);
+    EXPECT_EQ(world.history().size(), 1u);
+    EXPECT_EQ(events<GenerationFinished>(world).size(), 1u);
+    world.advance_tick(executor);
+    EXPECT_FALSE(world.generation_over());
+    EXPECT_EQ(world.moment().generation, 2u);
+    EXPECT_EQ(world.moment().generation_tick, 1u);
+    EXPECT_EQ(world.moment().tick, 13u);
+}
+
+TEST_F(WorldTest, TurnsOverAsTheNextTickWould) {
+    World at_once = make(), in_two = make();
+    run_generation(at_once);
+    run_generation(in_two);
+    in_two.turn_over(executor);
+    EXPECT_EQ(in_two.moment().generation, 2u);
+    EXPECT_EQ(in_two.moment().generation_tick, 0u);
+    in_two.turn_over(executor); // nothing has ended
+    EXPECT_EQ(in_two.moment().generation, 2u);
+    at_once.advance_tick(executor);
+    in_two.advance_tick(executor);
+    EXPECT_EQ(in_two.hash(), at_once.hash());
+}
+
+TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
+    parameters.island_count = 3;
+    parameters.generation_s = 1000;
+    parameters.health_loss_per_s = 100;
+    parameters.respawn = false;
+    World world = make();
+    std::vector<base::StateHash> frozen(3);
+    std::vector<bool> dead(3, false);
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+        for (std::size_t i = 0; i < 3; ++i) {
+            ASSERT_TRUE(!dead[i] || world.islands()[i].hash() == frozen[i]) << "an island that has died out waits";
+            dead[i] = world.islands()[i].living().size() == 0;
+            frozen[i] = world.islands()[i].hash();
+        }
+    }
+    EXPECT_EQ(world.alive_count(), 0u);
+    std::vector<std::uint32_t> extinct;
+    std::uint64_t longest = 0;
+    for (const Extinction& extinction : events<Extinction>(world))
+        extinct.push_back(extinction.island);
+    EXPECT_THAT(extinct, testing::UnorderedElementsAre(0, 1, 2));
+    for (const Island& island : world.islands())
+        for (const std::uint32_t ticks : island.fate().lived_ticks)
+            longest = std::max<std::uint64_t>(longest, ticks);
+    EXPECT_EQ(world.moment().generation_tick, longest);
+    world.advance_tick(executor);
+    EXPECT_EQ(world.alive_count(), 36u) << "and everything is replaced";
+}
+
+TEST_F(WorldTest, TakesParametersOfTheTickAtOnceAndOthersWithTheGeneration) {
+    World world = make();
+    world.advance_tick(executor);
+    request(world, {{"food_health", 0.0}, {"population_size", std::uint32_t{20}}, {"food_count", std::uint32_t{3}},
+                    {"generation_s", 0.1}});
+    EXPECT_EQ(world.parameters().active.food_health, 0);
+    EXPECT_EQ(world.parameters().active.population_size, 12u);
+    run_generation(world);
+    EXPECT_EQ(world.moment().generation_tick, 12u);
+    EXPECT_EQ(world.islands()[0].food().size(), 25u);
+    run_generation(world);
+    EXPECT_EQ(world.moment().generation_tick, 6u);
+    EXPECT_EQ(world.islands()[0].food().size(), 3u);
+    EXPECT_EQ(world.history().back()[0].organism_count, 20u);
+}
+
+TEST_F(WorldTest, GrowsAndShrinksWithEveryModelAndSelection) {
+    for (const char* model : {"hybrid", "generational", "steady_state"})
+        for (const char* selection : {"roulette", "stochastic_universal", "tournament", "random", "truncation"}) {
+            World world = make();
+            request(world, {{"population_model", std::string{model}}, {"selection", std::string{selection}}});
+            for (const std::uint32_t size : {1u, 2u, 60u, 3u, 31u, 1u, 1u}) {
+                run_generation(world);
+                request(world, {{"population_size", size}});
+                world.advance_tick(executor);
+                ASSERT_EQ(world.islands()[0].fate().cause.size(), size) << model << ", " << selection;
+                ASSERT_EQ(world.islands()[0].bodies().size(), size) << model << ", " << selection;
+            }
+        }
+}
+
+TEST_F(WorldTest, LetsMigrantsGoOncePerEpochAndOnlyThen) {
+    parameters.island_count = 3;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 2;
+    parameters.migrant_count = 2;
+    World world = make();
+    std::vector<std::uint64_t> generations;
+    for (int generation = 1; generation <= 6; ++generation) {
+        run_generation(world);
+        world.turn_over(executor);
+        for (const MigrationHappened& happened : events<MigrationHappened>(world)) {
+            generations.push_back(happened.generation);
+            ASSERT_EQ(happened.edges.size(), 3u);
+            for (const auto& edge : happened.edges) {
+                EXPECT_EQ(edge.to, (edge.from + 1) % 3);
+                EXPECT_EQ(edge.migrant_count, 2u);
+            }
+        }
+    }
+    EXPECT_THAT(generations, ElementsAre(2, 4, 6));
+}
+
+TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
+    // Only the first island can have large genes; without migration no other would ever have any.
+    parameters.island_count = 2;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 1;
+    parameters.mutation_chance = 0;
+    parameters.selection = evolution::SelectionMethod::Truncation;
+    parameters.crossover = evolution::CrossoverMethod::None;
+    World world = make();
+    double best = 0;
+    world.advance_tick(executor);
+    for (const GenerationStatistics& s : world.history().back())
+        best = std::max(best, s.fitness_best);
+    for (int generation = 0; generation < 20; ++generation)
+        world.advance_tick(executor);
+    for (const GenerationStatistics& s : world.history().back()) {
+        EXPECT_EQ(s.fitness_best, best);
+        EXPECT_EQ(s.fitness_worst, best) << "copies of the best take over both islands";
+    }
+}
+
+TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
+    const auto outcome_with = [&](std::vector<Assignment> assignments) {
+        World world{*assign(parameters, assignments), base::Seed{5}};
+        for (int generation = 0; generation < 50 && world.outcome() == evolution::Outcome::Running; ++generation)
+            run_generation(world);
+        const auto terminated = events<RunTerminated>(world);
+        EXPECT_EQ(terminated.size(), world.outcome() == evolution::Outcome::Running ? 0u : 1u);
+        return std::pair{world.outcome(), world.moment().generation};
+    };
+    using evolution::Outcome;
+    EXPECT_EQ(outcome_with({}).first, Outcome::Running);
+    EXPECT_EQ(outcome_with({{"generation_limit", std::uint32_t{4}}}), (std::pair{Outcome::GenerationLimit, std::uint64_t{4}}));
+    EXPECT_EQ(outcome_with({{"stop_at_target_fitness", true}, {"target_fitness", 10.0}}),
+              (std::pair{Outcome::TargetFitness, std::uint64_t{1}}));
+    EXPECT_EQ(outcome_with({{"stop_at_extinction", true}, {"health_loss_per_s", 10'000.0}, {"food_health", 0.0}}),
+              (std::pair{Outcome::Extinction, std::uint64_t{1}}));
+    EXPECT_EQ(outcome_with({{"stagnation_limit", std::uint32_t{3}}, {"mutation_chance", 0.0}, {"fitness", std::string{"gene_sum"}},
+                            {"crossover", std::string{"none"}}, {"elite_count", std::uint32_t{1}}}),
+              (std::pair{Outcome::Stagnation, std::uint64_t{4}}));
+}
+
+TEST_F(WorldTest, OfAFunctionOfTheChromosomeTakesATickAGeneration) {
+    parameters.fitness = FitnessFunction::Rastrigin;
+    World world = make();
+    for (std::uint64_t tick = 1; tick <= 20; ++tick) {
+        world.advance_tick(executor);
+        ASSERT_TRUE(world.generation_over());
+        ASSERT_EQ(world.moment().generation, tick);
+        ASSERT_EQ(world.history().size(), tick);
+    }
+    EXPECT_FALSE(world.has_bodies());
+}
+
+TEST_F(WorldTest, ResetGivesTheSameHashesAgain) {
+    World world = make();
+    std::vector<base::StateHash> hashes{world.hash()};
+    for (int tick = 0; tick < 30; ++tick) {
+        world.advance_tick(executor);
+        hashes.push_back(world.hash());
+    }
+    world.reset(base::Seed{5});
+    EXPECT_TRUE(world.history().empty());
+    EXPECT_EQ(world.hash(), hashes[0]);
+    for (std::size_t tick = 1; tick <= 30; ++tick) {
+        world.advance_tick(executor);
+        ASSERT_EQ(world.hash(), hashes[tick]) << "tick " << tick;
+    }
+    world.reset(base::Seed{6});
+    EXPECT_NE(world.hash(), hashes[0]);
+}
+
+TEST_F(WorldTest, ReplacesEverythingAtUniformPlacesEachGeneration) {
+    World world = make();
+    const std::vector<physics::Coordinate> food = world.islands()[0].food().x(), bodies = world.islands()[0].bodies().x;
+    run_generation(world);
+    world.turn_over(executor);
+    EXPECT_NE(world.islands()[0].food().x(), food);
+    EXPECT_NE(world.islands()[0].bodies().x, bodies);
+    EXPECT_EQ(world.islands()[0].food().present_count(), 25u);
+}
+
+TEST_F(WorldTest, GivesTheStatisticsThatItsOrganismsAddUpTo) {
+    parameters.island_count = 2;
+    parameters.population_size = 25;
+    parameters.generation_s = 12;
+    parameters.poison_count = 120;
+    parameters.mutation_step = 60;
+    World world = make();
+    for (int generation = 1; generation <= 4; ++generation) {
+        run_generation(world);
+        for (std::size_t i = 0; i < 2; ++i) {
+            const GenerationStatistics& s = world.history().back()[i];
+            const Island& island = world.islands()[i];
+            const Fate& fate = island.fate();
+            EXPECT_EQ(s.generation, static_cast<std::uint64_t>(generation));
+            EXPECT_EQ(s.island, i);
+            EXPECT_EQ(s.end_tick, world.moment().tick);
+            EXPECT_EQ(s.organism_count, 25u);
+
+            std::vector<double> fitness(25);
+            std::uint64_t food = 0, poison = 0;
+            std::uint32_t alive = 0, starved = 0, poisoned = 0;
+            for (std::uint32_t id = 0; id < 25; ++id) {
+                const auto body = island.body_of(id);
+                ASSERT_EQ(body.has_value(), fate.cause[id] == CauseOfDeath::Alive);
+                fitness[id] = body ? static_cast<double>(world.moment().generation_tick) / 60 +
+                                         static_cast<double>(island.living().health[*body])
+                                   : fate.lived_ticks[id] / 60.0;
+                food += fate.food_eaten[id];
+                poison += fate.poison_eaten[id];
+                alive += fate.cause[id] == CauseOfDeath::Alive;
+                starved += fate.cause[id] == CauseOfDeath::Starved;
+                poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
+            }
+            EXPECT_EQ(s.food_eaten, food);
+            EXPECT_EQ(s.poison_eaten, poison);
+            EXPECT_EQ(s.alive_count, alive);
+            EXPECT_EQ(s.starved_count, starved);
+            EXPECT_EQ(s.poisoned_count, poisoned);
+            double mean = 0, variance = 0;
+            for (const double value : fitness)
+                mean += value / 25;
+            for (const double value : fitness)
+                variance += (value - mean) * (value - mean) / 25;
+            EXPECT_NEAR(s.fitness_mean, mean, 1e-9);
+            EXPECT_NEAR(s.fitness_deviation, std::sqrt(variance), 1e-9);
+            const auto best = std::max_element(fitness.begin(), fitness.end());
+            EXPECT_NEAR(s.fitness_best, *best, 1e-9);
+            EXPECT_EQ(s.best_organism, best - fitness.begin());
+            std::sort(fitness.begin(), fitness.end());
+            EXPECT_NEAR(s.fitness_worst, fitness.front(), 1e-9);
+            EXPECT_NEAR(s.fitness_median, fitness[12], 1e-9);
+
+            double diversity = 0;
+            const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
+            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+                double sum = 0, squares = 0, least = 1e9, greatest = 0;
+                for (std::uint32_t id = 0; id < 25; ++id) {
+                    const double value = static_cast<double>(evolution::column(island.born().genes, id)[gene]);
+                    sum += value;
+                    squares += value * value;
+                    least = std::min(least, value);
+                    greatest = std::max(greatest, value);
+                }
+                const double deviation = std::sqrt(std::max(squares / 25 - sum / 25 * sum / 25, 0.0));
+                EXPECT_NEAR(s.genes[gene].mean, sum / 25, 1e-9);
+                EXPECT_NEAR(s.genes[gene].deviation, deviation, 1e-6);
+                EXPECT_EQ(s.genes[gene].min, least);
+                EXPECT_EQ(s.genes[gene].max, greatest);
+                diversity += deviation / static_cast<double>(bounds.max(gene) - bounds.min(gene)) / 6;
+            }
+            EXPECT_NEAR(s.diversity, diversity, 1e-6);
+            EXPECT_EQ(s.clamp_count, island.born().clamped_count);
+            const LiveStatistics live = island.live_statistics();
+            EXPECT_EQ(live.alive_count, alive);
+            EXPECT_EQ(live.organism_count, 25u);
+            EXPECT_EQ(live.food_eaten, food);
+        }
+    }
+}
+
+} // namespace
+} // namespace evod::simulation
