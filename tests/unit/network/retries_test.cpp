@@ -1,0 +1,111 @@
+#include "server/network/retries.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::network {
+namespace {
+
+using Verdict = Retries::Verdict;
+
+SharedBytes bytes(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+class RetriesOf : public testing::Test {
+  protected:
+    Verdict begin(std::string key, std::uint64_t id, std::string request = "request") {
+        return retries.begin(key, id, request, [this](const SharedBytes& answer) { heard.push_back(*answer); });
+    }
+    /// Runs one to its end.
+    void run(std::string key, std::uint64_t id, std::string answer = "answer") {
+        ASSERT_EQ(begin(key, id), Verdict::New);
+        retries.finish(key, id, bytes(std::move(answer)));
+        heard.clear();
+    }
+
+    Retries retries{{.kept_per_key = 3, .keys_max = 2, .bytes_max = 1000}};
+    std::vector<std::string> heard;
+};
+
+TEST_F(RetriesOf, ACommandIsRunOnceAndAnsweredAsOften) {
+    EXPECT_EQ(begin("k", 1), Verdict::New);
+    EXPECT_EQ(begin("k", 1), Verdict::Known) << "while it is being run";
+    EXPECT_TRUE(heard.empty());
+    retries.finish("k", 1, bytes("done"));
+    EXPECT_EQ(heard, (std::vector<std::string>{"done", "done"}));
+    EXPECT_EQ(begin("k", 1), Verdict::Known);
+    EXPECT_EQ(heard.size(), 3);
+}
+
+TEST_F(RetriesOf, KeysAreApart) {
+    run("a", 1, "for a");
+    EXPECT_EQ(begin("b", 1), Verdict::New);
+    retries.finish("b", 1, bytes("for b"));
+    begin("a", 1);
+    EXPECT_EQ(heard, (std::vector<std::string>{"for b", "for a"}));
+}
+
+TEST_F(RetriesOf, AnIdServesOneRequest) {
+    EXPECT_EQ(begin("k", 1, "one"), Verdict::New);
+    EXPECT_EQ(begin("k", 1, "two"), Verdict::Different) << "while it is being run";
+    retries.finish("k", 1, bytes("done"));
+    EXPECT_EQ(begin("k", 1, "two"), Verdict::Different);
+    EXPECT_EQ(begin("k", 1, std::string("one\0", 4)), Verdict::Different);
+    EXPECT_EQ(heard.size(), 1);
+}
+
+TEST_F(RetriesOf, WhatIsOlderThanThoseKeptIsNeverRunAgain) {
+    for (std::uint64_t id = 1; id <= 5; ++id)
+        run("k", id);
+    EXPECT_EQ(begin("k", 1), Verdict::TooOld);
+    EXPECT_EQ(begin("k", 2), Verdict::TooOld);
+    EXPECT_EQ(begin("k", 3), Verdict::Known);
+    EXPECT_EQ(begin("k", 5), Verdict::Known);
+    EXPECT_EQ(begin("k", 7), Verdict::New) << "ids may be left out";
+    EXPECT_EQ(begin("k", 6), Verdict::New) << "and come late, if no newer ones have pushed them out";
+}
+
+TEST_F(RetriesOf, WhatIsBeingRunIsKeptHoweverOld) {
+    EXPECT_EQ(begin("k", 1), Verdict::New);
+    for (std::uint64_t id = 2; id <= 9; ++id)
+        run("k", id);
+    EXPECT_EQ(begin("k", 1), Verdict::Known);
+    retries.finish("k", 1, bytes("at last"));
+    EXPECT_EQ(heard, (std::vector<std::string>{"at last", "at last"}));
+}
+
+TEST_F(RetriesOf, WhatCouldNotBeRunMayBeSentAgain) {
+    EXPECT_EQ(begin("k", 1), Verdict::New);
+    retries.forget("k", 1, bytes("busy"));
+    EXPECT_EQ(heard, (std::vector<std::string>{"busy"}));
+    EXPECT_EQ(begin("k", 1), Verdict::New);
+}
+
+TEST_F(RetriesOf, TheKeysLongestUnusedAreForgotten) {
+    run("a", 1);
+    run("b", 1);
+    begin("a", 1); // used again
+    run("c", 1);
+    EXPECT_EQ(retries.key_count(), 2);
+    EXPECT_EQ(begin("a", 1), Verdict::Known);
+    EXPECT_EQ(begin("b", 1), Verdict::New) << "it is a new key again";
+}
+
+TEST_F(RetriesOf, AKeyWithACommandBeingRunIsNotForgotten) {
+    EXPECT_EQ(begin("a", 1), Verdict::New);
+    run("b", 1);
+    run("c", 1);
+    EXPECT_EQ(begin("a", 1), Verdict::Known);
+}
+
+TEST_F(RetriesOf, LongAnswersPushOutOtherKeysButNotTheirOwn) {
+    run("a", 1, std::string(600, 'a'));
+    run("b", 1, std::string(600, 'b'));
+    EXPECT_EQ(retries.key_count(), 1);
+    EXPECT_EQ(begin("b", 1), Verdict::Known);
+    EXPECT_LE(retries.answer_bytes(), 600);
+    for (std::uint64_t id = 2; id <= 10; ++id)
+        run("b", id, std::string(600, 'b'));
+    EXPECT_EQ(retries.answer_bytes(), 3 * 600);
+}
+
+} // namespace
+} // namespace evod::network

@@ -1,0 +1,342 @@
+// What goes out is complete, what comes in is checked: every field is found by walking the descriptors, so one that is
+// added later is tested too.
+#include "server/protocol/commands.h"
+#include "server/protocol/events.h"
+#include "server/protocol/parameters.h"
+#include "server/protocol/queries.h"
+#include "server/protocol/refusals.h"
+#include "server/protocol/worlds.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+namespace evod::protocol {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+/// Fields of `message`, and of the messages in it, that have no value, as paths.
+void find_unset(const Message& message, const std::string& path, std::set<std::string>& unset) {
+    const auto& reflection = *message.GetReflection();
+    for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+        const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+        const std::string name = path + field.name();
+        if (field.is_repeated() ? reflection.FieldSize(message, &field) == 0 : !reflection.HasField(message, &field))
+            unset.insert(name);
+        else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
+            find_unset(field.is_repeated() ? reflection.GetRepeatedMessage(message, &field, 0)
+                                           : reflection.GetMessage(message, &field),
+                       name + ".", unset);
+    }
+}
+
+std::set<std::string> unset_in(const Message& message) {
+    std::set<std::string> unset;
+    find_unset(message, "", unset);
+    return unset;
+}
+
+/// Every number in a message, however deep.
+void collect_numbers(const Message& message, std::vector<double>& numbers) {
+    const auto& reflection = *message.GetReflection();
+    std::vector<const FieldDescriptor*> fields;
+    reflection.ListFields(message, &fields);
+    for (const FieldDescriptor* field : fields) {
+        if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+            if (field->is_repeated())
+                for (int i = 0; i < reflection.FieldSize(message, field); ++i)
+                    collect_numbers(reflection.GetRepeatedMessage(message, field, i), numbers);
+            else
+                collect_numbers(reflection.GetMessage(message, field), numbers);
+        } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+            numbers.push_back(reflection.GetDouble(message, field));
+        } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_UINT64) {
+            numbers.push_back(static_cast<double>(reflection.GetUInt64(message, field)));
+        } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_UINT32) {
+            numbers.push_back(reflection.GetUInt32(message, field));
+        }
+    }
+}
+
+/// A world that has lived: three islands, two generations.
+class Lived : public testing::Test {
+  protected:
+    Lived() {
+        simulation::CreateWorld create{.name = "w", .parameters = {}, .seed = base::Seed{5}, .run_id = {1, 2}};
+        create.parameters.island_count = 3;
+        create.parameters.generation_s = 0.5;
+        EXPECT_TRUE(laboratory.apply(create));
+        EXPECT_TRUE(laboratory.apply(simulation::Run{"w", 100}));
+        EXPECT_TRUE(laboratory.apply(simulation::RunUntilTick{"w", 1000}));
+        for (int tick = 0; tick < 45; ++tick)
+            laboratory.advance(entry(), executor);
+    }
+    simulation::Entry& entry() { return **laboratory.find("w"); }
+
+    class OneThread final : public base::Executor {
+      public:
+        std::size_t thread_count() const override { return 1; }
+
+      protected:
+        void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
+            for (std::size_t begin = 0; begin < count; begin += grain)
+                body({begin, std::min(begin + grain, count)});
+        }
+    } executor;
+    simulation::Laboratory laboratory;
+};
+
+TEST_F(Lived, AWorldIsToldCompletely) {
+    entry().ticks_per_s = 60;
+    EXPECT_THAT(unset_in(to_proto(entry())),
+                testing::ElementsAre("outcome", "speed.max")); // it has not ended, and is paced
+    EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
+}
+
+TEST(Conversions, GenerationStatisticsAreToldCompletelyAndEachInItsPlace) {
+    simulation::GenerationStatistics s;
+    double next = 1;
+    const auto number = [&] { return next++; };
+    const auto count = [&] { return static_cast<std::uint32_t>(next++); };
+    s.generation = count(), s.island = count(), s.end_tick = count(), s.organism_count = count();
+    s.fitness_best = number(), s.fitness_mean = number(), s.fitness_median = number(), s.fitness_worst = number();
+    s.fitness_deviation = number();
+    for (auto& gene : s.genes)
+        gene = {number(), number(), number(), number()};
+    s.diversity = number(), s.alive_count = count(), s.starved_count = count(), s.poisoned_count = count();
+    s.food_eaten = count(), s.poison_eaten = count(), s.clamp_count = count(), s.too_fast_count = count();
+    s.speed_limit_count = count(), s.best_organism = count(), s.simulated_s = number();
+    const auto told = to_proto(s);
+    EXPECT_THAT(unset_in(told), testing::IsEmpty());
+    // The fields of the struct stand in the order of the message's, so the numbers must rise.
+    std::vector<double> numbers, expected;
+    collect_numbers(told, numbers);
+    for (double n = 1; n < next; ++n)
+        expected.push_back(n);
+    EXPECT_EQ(numbers, expected);
+}
+
+TEST(Conversions, LiveStatisticsAreToldCompletely) {
+    const simulation::LiveStatistics s{.organism_count = 2,
+                                       .alive_count = 3,
+                                       .health_mean = 4,
+                                       .food_eaten = 5,
+                                       .poison_eaten = 6,
+                                       .starved_count = 7,
+                                       .poisoned_count = 8};
+    std::vector<double> numbers;
+    collect_numbers(to_proto(s, 1), numbers);
+    EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
+TEST_F(Lived, AnOrganismIsToldCompletely) {
+    std::set<std::string> never;
+    for (std::uint32_t id = 0; id < 50; ++id) {
+        const auto unset = unset_in(organism_info(entry().world, entry().world.islands()[1], id));
+        if (id == 0) {
+            never = unset;
+            continue;
+        }
+        std::set<std::string> both;
+        std::set_intersection(never.begin(), never.end(), unset.begin(), unset.end(), std::inserter(both, both.end()));
+        never = both;
+    }
+    never.erase("poison_eaten"), never.erase("cause_of_death"); // in a quarter of a second nobody need have
+    EXPECT_THAT(never, testing::IsEmpty());
+}
+
+TEST_F(Lived, EveryKindOfEventIsTold) {
+    const simulation::EventKind kinds[] = {
+        simulation::GenerationFinished{{{}}}, simulation::MigrationHappened{1, {{0, 1, 2}}}, simulation::Extinction{1, 2},
+        simulation::RunTerminated{evolution::Outcome::Stagnation}, simulation::GoalReached{}};
+    std::set<int> cases;
+    for (const auto& kind : kinds) {
+        const auto event = to_proto(simulation::Event{"w", {1, 2}, 3, kind}, laboratory);
+        cases.insert(event.event_case());
+        EXPECT_EQ(event.world(), "w");
+        EXPECT_EQ(event.tick(), 3);
+        EXPECT_EQ(event.run_id().size(), 32);
+    }
+    const simulation::Applied applied{.world = "w", .tick = 3, .parameters = simulation::ParameterSet{}};
+    const simulation::Command commands[] = {
+        simulation::CreateWorld{}, simulation::DeleteWorld{}, simulation::ResetWorld{},
+        simulation::Pause{},       simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
+    for (const auto& command : commands) {
+        const auto event = event_of(command, applied, "somebody", laboratory);
+        ASSERT_TRUE(event);
+        cases.insert(event->event_case());
+    }
+    EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
+    // All but the two that the network itself tells.
+    EXPECT_EQ(static_cast<int>(cases.size()) + 2, v1::Event::descriptor()->oneof_decl(0)->field_count());
+}
+
+TEST(Conversions, EveryParameterComesBackAsItWent) {
+    for (const auto& description : simulation::parameter_registry()) {
+        v1::SetParameters message;
+        auto& assignment = *message.add_parameters();
+        assignment.set_name(std::string{description.name});
+        *assignment.mutable_value() = to_proto(description.default_value());
+        std::vector<base::Violation> violations;
+        const auto made = to_assignments(message.parameters(), "", violations);
+        ASSERT_TRUE(violations.empty()) << description.name;
+        ASSERT_EQ(made.size(), 1);
+        EXPECT_EQ(made[0].name, description.name);
+        EXPECT_EQ(made[0].value, description.default_value()) << description.name;
+        EXPECT_FALSE(simulation::fault_of(made[0])) << description.name;
+
+        const auto told = to_proto(description);
+        EXPECT_NE(told.kind(), v1::PARAMETER_KIND_UNSPECIFIED);
+        EXPECT_NE(told.effect(), v1::PARAMETER_EFFECT_UNSPECIFIED);
+        EXPECT_TRUE(told.has_default_value());
+    }
+}
+
+TEST(Conversions, ASetTellsWhatHoldsAndWhatWaits) {
+    simulation::ParameterSet set;
+    set.requested.population_size = 60;
+    set.revision = 9;
+    const auto told = to_proto(set);
+    EXPECT_EQ(told.revision(), 9);
+    EXPECT_EQ(static_cast<std::size_t>(told.parameters_size()), simulation::parameter_registry().size());
+    for (const auto& state : told.parameters())
+        EXPECT_EQ(state.has_pending(), state.name() == "population_size") << state.name();
+}
+
+// ---- requests --------------------------------------------------------------------------------------------------
+
+const Draws draws{.seed = base::Seed{1}, .run_id = {2, 3}};
+
+TEST(Requests, EveryOneIsOfAKind) {
+    const auto& requests = *v1::Request::descriptor()->FindOneofByName("request");
+    for (int i = 0; i < requests.field_count(); ++i) {
+        v1::Request request;
+        request.GetReflection()->MutableMessage(&request, requests.field(i));
+        const auto kind = kind_of(request);
+        EXPECT_NE(kind, RequestKind::Unknown) << requests.field(i)->name();
+        if (kind == RequestKind::Command) {
+            const auto command = to_command(request, draws);
+            ASSERT_FALSE(command) << "it has no client_key";
+            EXPECT_EQ(command.error().violations.front().field, "client_key");
+        }
+    }
+    EXPECT_EQ(kind_of(v1::Request{}), RequestKind::Unknown);
+}
+
+/// Sets every double in a request, one at a time, to something that is no number, and expects a refusal that names it.
+void poison_doubles(v1::Request& request, Message& part, double poison, int& poisoned) {
+    const auto& reflection = *part.GetReflection();
+    for (int i = 0; i < part.GetDescriptor()->field_count(); ++i) {
+        const FieldDescriptor& field = *part.GetDescriptor()->field(i);
+        if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+            Message& inner = field.is_repeated() ? *reflection.AddMessage(&part, &field)
+                                                 : *reflection.MutableMessage(&part, &field);
+            if (inner.GetDescriptor()->name() == "ParameterAssignment")
+                static_cast<v1::ParameterAssignment&>(inner).set_name("mutation_chance");
+            poison_doubles(request, inner, poison, poisoned);
+            reflection.ClearField(&part, &field);
+        } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+            reflection.SetDouble(&part, &field, poison);
+            ++poisoned;
+            if (kind_of(request) == RequestKind::Command) {
+                auto command = to_command(request, draws);
+                if (command) { // then it is for the world to refuse
+                    simulation::Laboratory laboratory;
+                    ASSERT_TRUE(laboratory.apply(simulation::CreateWorld{"w", {}, {}, {}}));
+                    const auto applied = laboratory.apply(*command);
+                    ASSERT_FALSE(applied) << request.ShortDebugString();
+                    EXPECT_THAT(applied.error().violations, testing::Not(testing::IsEmpty()));
+                }
+            } else {
+                EXPECT_THAT(faults_of(request), testing::SizeIs(1)) << request.ShortDebugString();
+            }
+            reflection.ClearField(&part, &field);
+        }
+    }
+}
+
+TEST(Requests, NoNumberInThemMayBeNoneOrInfinite) {
+    const auto& requests = *v1::Request::descriptor()->FindOneofByName("request");
+    int poisoned = 0;
+    for (const double poison : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                                -std::numeric_limits<double>::infinity()}) {
+        for (int i = 0; i < requests.field_count(); ++i) {
+            v1::Request request;
+            request.set_client_key("k");
+            auto& part = *request.GetReflection()->MutableMessage(&request, requests.field(i));
+            if (request.has_create_world())
+                request.mutable_create_world()->set_name("new");
+            poison_doubles(request, part, poison, poisoned);
+        }
+    }
+    EXPECT_EQ(poisoned, 3 * 4); // two lists of parameters, a speed, a rate
+}
+
+TEST(Requests, EveryFaultIsNamedAtOnce) {
+    v1::Request request;
+    auto& create = *request.mutable_create_world();
+    create.set_name("no good");
+    create.add_parameters()->set_name("food_count"); // no value
+    auto& wrong = *create.add_parameters();
+    wrong.set_name("mutation_chance");
+    wrong.mutable_value()->set_real(2);
+    const auto command = to_command(request, draws);
+    ASSERT_FALSE(command);
+    std::vector<std::string> fields;
+    for (const auto& violation : command.error().violations)
+        fields.push_back(violation.field);
+    EXPECT_THAT(fields, testing::UnorderedElementsAre("client_key", "create_world.name", "create_world.food_count",
+                                                      "create_world.mutation_chance"));
+}
+
+TEST(Requests, WhatIsLeftOutIsDrawnAndWhatIs0IsKept) {
+    v1::Request request;
+    request.set_client_key("k");
+    request.mutable_create_world()->set_name("w");
+    EXPECT_EQ(std::get<simulation::CreateWorld>(*to_command(request, draws)).seed, draws.seed);
+    EXPECT_EQ(std::get<simulation::CreateWorld>(*to_command(request, draws)).run_id, draws.run_id);
+    request.mutable_create_world()->set_seed(0);
+    EXPECT_EQ(std::get<simulation::CreateWorld>(*to_command(request, draws)).seed, base::Seed{0});
+    request.mutable_reset_world();
+    EXPECT_FALSE(std::get<simulation::ResetWorld>(*to_command(request, draws)).seed);
+    request.mutable_set_parameters();
+    EXPECT_FALSE(std::get<simulation::SetParameters>(*to_command(request, draws)).expected_revision);
+    request.mutable_set_parameters()->set_expected_revision(0);
+    EXPECT_EQ(std::get<simulation::SetParameters>(*to_command(request, draws)).expected_revision, 0);
+}
+
+// ---- words -----------------------------------------------------------------------------------------------------
+
+TEST(Refusals, QuoteNothingThatHarms) {
+    EXPECT_EQ(quotable("a\nb\x1b[31m"), "a?b?[31m");
+    EXPECT_EQ(quotable("abcdef", 3), "abc…");
+    EXPECT_EQ(quotable("ää", 3), "ä…") << "not in the middle of a character";
+    EXPECT_EQ(quotable("äää", 0), "…");
+}
+
+TEST(Refusals, AreNotLongerThanAnybodyReads) {
+    base::Refusal refusal;
+    refusal.violations.assign(100'000, {std::string(10'000, 'f'), "a", ""});
+    const auto status = to_proto(refusal);
+    EXPECT_EQ(status.violations_size(), 200);
+    EXPECT_LT(status.ByteSizeLong(), 100'000);
+    EXPECT_THAT(status.message(), testing::HasSubstr("100000"));
+    EXPECT_EQ(status.violations(0).got(), "nothing");
+}
+
+TEST(Names, AreChecked) {
+    for (const char* good : {"a", "A-z_09", "default"})
+        EXPECT_TRUE(is_world_name(good)) << good;
+    for (const std::string& bad : {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}})
+        EXPECT_FALSE(is_world_name(bad)) << bad;
+}
+
+} // namespace
+} // namespace evod::protocol

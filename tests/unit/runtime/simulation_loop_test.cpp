@@ -1,0 +1,378 @@
+// The loop's sense of time, with a clock that only the test moves; and that time has no say in what happens.
+#include "server/runtime/simulation_loop.h"
+
+#include "server/runtime/simulation_thread.h"
+#include "tests/support/inline_executor.h"
+#include "tests/support/manual_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <set>
+
+namespace evod::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+using simulation::Laboratory;
+
+simulation::CreateWorld create(const char* name, std::uint64_t seed = 1) {
+    simulation::CreateWorld command{.name = name, .parameters = {}, .seed = base::Seed{seed}, .run_id = {seed, 1}};
+    command.parameters.tick_s = 0.01; // so that times are round
+    command.parameters.population_size = 5;
+    return command;
+}
+
+class Loop : public testing::Test {
+  protected:
+    Loop()
+        : loop{mailbox, demand, executor, clock,
+               {.events =
+                    [this](const Laboratory&, std::vector<simulation::Event> told) {
+                        events.insert(events.end(), told.begin(), told.end());
+                    },
+                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); }}} {}
+
+    void send(simulation::Command command) {
+        mailbox.try_push(CommandMail{std::move(command), [this](const Laboratory&, const simulation::Command& applied,
+                                                                const base::Result<simulation::Applied>& result) {
+                                         ASSERT_TRUE(result) << to_text(result.error());
+                                         last_applied = applied;
+                                     }});
+    }
+    const simulation::Entry& world(std::string_view name = "") { return **loop.laboratory().find(name); }
+    std::uint64_t tick(std::string_view name = "") { return world(name).world.moment().tick; }
+    void watch(const char* name, double rate_hz, std::uint64_t newcomers = 1) {
+        demand.set({{name, Watch{.rate_hz = rate_hz, .all_islands = true, .islands = {}, .newcomers = newcomers}}});
+    }
+    /// Time passes in steps of 1 ms, with a pass after each.
+    void live_through(std::chrono::milliseconds time) {
+        for (auto passed = 0ms; passed < time; passed += 1ms) {
+            clock.advance(1ms);
+            loop.pass();
+        }
+    }
+
+    Mailbox mailbox;
+    Demand demand;
+    support::InlineExecutor executor;
+    support::ManualClock clock;
+    std::vector<simulation::Event> events;
+    std::vector<SnapshotPtr> pictures;
+    std::optional<simulation::Command> last_applied;
+    SimulationLoop loop;
+};
+
+TEST_F(Loop, SleepsUntilMailWhenNothingIsToBeDone) {
+    EXPECT_FALSE(loop.pass());
+    send(create("w"));
+    EXPECT_FALSE(loop.pass());
+    EXPECT_EQ(tick(), 0);
+}
+
+TEST_F(Loop, APacedWorldTakesATickEveryTickLength) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    EXPECT_EQ(tick(), 1) << "the first at once";
+    live_through(500ms);
+    EXPECT_EQ(tick(), 51);
+    const auto now = clock.now();
+    EXPECT_EQ(loop.pass(), now + 10ms);
+}
+
+TEST_F(Loop, TheSpeedFactorScalesThePace) {
+    send(create("fast"));
+    send(create("slow", 2));
+    send(simulation::SetSpeed{"fast", 10.0});
+    send(simulation::SetSpeed{"slow", 0.1});
+    send(simulation::Run{"fast", {}});
+    send(simulation::Run{"slow", {}});
+    loop.pass();
+    live_through(1000ms);
+    EXPECT_EQ(tick("fast"), 1001);
+    EXPECT_EQ(tick("slow"), 11);
+}
+
+TEST_F(Loop, AWorldThatFellBehindIsGivenBackNoMoreThanTheBound) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    clock.advance(10s);
+    for (int i = 0; i < 100; ++i)
+        loop.pass();
+    // The tick that was late, the bound's worth of ticks, and the one that is due now.
+    const auto given_back = 1 + 1 + SimulationLoop::catch_up_max / 10ms + 1;
+    EXPECT_EQ(tick(), given_back);
+    live_through(100ms);
+    EXPECT_EQ(tick(), given_back + 10);
+}
+
+TEST_F(Loop, APauseIsNotMadeUpFor) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    send(simulation::Pause{"w"});
+    loop.pass();
+    clock.advance(10s);
+    send(simulation::Resume{"w"});
+    for (int i = 0; i < 10; ++i)
+        loop.pass();
+    EXPECT_EQ(tick(), 2);
+}
+
+TEST_F(Loop, FullSpeedComesInSlices) {
+    send(create("w"));
+    send(simulation::SetSpeed{"w", {}});
+    send(simulation::Run{"w", {}});
+    clock.per_look = 100us; // a tick takes as long
+    EXPECT_TRUE(loop.pass());
+    EXPECT_NEAR(static_cast<double>(tick()), SimulationLoop::slice / 100us, 3);
+}
+
+TEST_F(Loop, ASliceEndsWhenMailComes) {
+    // The clock stands still, so nothing but mail ends the slice: it is sent by the events of the first generation.
+    auto create_other = create("quick", 2);
+    create_other.parameters.fitness = simulation::FitnessFunction::GeneSum;
+    bool sent = false;
+    SimulationLoop other{mailbox, demand, executor, clock,
+                         {.events =
+                              [&](const Laboratory&, std::vector<simulation::Event>) {
+                                  if (!sent)
+                                      send(simulation::Pause{"quick"});
+                                  sent = true;
+                              },
+                          .picture = {}}};
+    mailbox.drain();
+    send(create_other);
+    send(simulation::SetSpeed{"quick", {}});
+    send(simulation::Run{"quick", {}});
+    other.pass();
+    EXPECT_EQ((*other.laboratory().find("quick"))->world.moment().tick, 1);
+}
+
+TEST_F(Loop, APacedWorldKeepsItsPaceBesideOneAtFullSpeed) {
+    send(create("paced"));
+    send(create("busy", 2));
+    send(simulation::SetSpeed{"busy", {}});
+    send(simulation::Run{"paced", {}});
+    send(simulation::Run{"busy", {}});
+    clock.per_look = 50us;
+    const auto began = clock.now();
+    while (clock.now() - began < 1s)
+        loop.pass();
+    EXPECT_NEAR(static_cast<double>(tick("paced")), 101, 2);
+    EXPECT_GT(tick("busy"), 3000);
+}
+
+TEST_F(Loop, MeasuresTicksPerSecond) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    live_through(300ms);
+    EXPECT_NEAR(world().ticks_per_s, 100, 10) << "a first figure soon";
+    live_through(2000ms);
+    EXPECT_NEAR(world().ticks_per_s, 100, 2);
+    send(simulation::Pause{"w"});
+    loop.pass();
+    EXPECT_EQ(world().ticks_per_s, 0);
+}
+
+TEST_F(Loop, CommandsNameTheirWorldWhenTheyAreApplied) {
+    send(create("only"));
+    send(simulation::Run{"", 1});
+    loop.pass();
+    EXPECT_EQ(std::get<simulation::Run>(*last_applied).world, "only");
+}
+
+TEST_F(Loop, AnAnswerSeesTheStateInWhichItsCommandBeginsToHold) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    live_through(200ms);
+    bool answered = false;
+    mailbox.try_push(CommandMail{simulation::Pause{"w"},
+                                 [&](const Laboratory& laboratory, const simulation::Command&, const auto& applied) {
+                                     answered = true;
+                                     EXPECT_EQ(applied->tick, (*laboratory.find("w"))->world.moment().tick);
+                                 }});
+    loop.pass();
+    EXPECT_TRUE(answered);
+}
+
+TEST_F(Loop, TakesNoPictureForNobody) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    live_through(100ms);
+    EXPECT_TRUE(pictures.empty());
+}
+
+TEST_F(Loop, PicturesComeAtTheRateThatIsWanted) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    watch("w", 25);
+    loop.pass();
+    pictures.clear();
+    live_through(2000ms);
+    EXPECT_NEAR(static_cast<double>(pictures.size()), 50, 1);
+    for (std::size_t i = 1; i < pictures.size(); ++i)
+        EXPECT_LT(pictures[i - 1]->moment.tick, pictures[i]->moment.tick);
+}
+
+TEST_F(Loop, ANewcomerAndAChangeArePicturedAtOnceAndAWorldThatStandsOnlyOnce) {
+    send(create("w"));
+    loop.pass();
+    watch("w", 0.001);
+    loop.pass();
+    ASSERT_EQ(pictures.size(), 1);
+    live_through(100ms);
+    EXPECT_EQ(pictures.size(), 1) << "it stands still";
+    watch("w", 0.001, 2);
+    loop.pass();
+    EXPECT_EQ(pictures.size(), 2) << "somebody new";
+    send(simulation::RunUntilTick{"w", 3});
+    loop.pass();
+    ASSERT_EQ(pictures.size(), 3) << "it was told to run";
+    EXPECT_TRUE(pictures.back()->after_change);
+    live_through(100ms);
+    ASSERT_EQ(pictures.size(), 4) << "it has reached its goal";
+    EXPECT_EQ(pictures.back()->moment.tick, 3);
+    EXPECT_EQ(pictures.back()->state, simulation::RunState::Paused);
+    EXPECT_EQ(pictures.back()->hash, world().world.hash());
+    send(simulation::ResetWorld{"w", {}, {9, 9}});
+    loop.pass();
+    EXPECT_EQ(pictures.size(), 5);
+    send(simulation::DeleteWorld{"w"});
+    send(create("w", 3));
+    loop.pass();
+    ASSERT_EQ(pictures.size(), 6) << "another of the same name";
+    EXPECT_EQ(pictures.back()->run_id, (simulation::RunId{3, 1}));
+}
+
+TEST_F(Loop, OnlyTheIslandsThatAreWatchedAreCopied) {
+    auto command = create("w");
+    command.parameters.island_count = 5;
+    send(command);
+    demand.set({{"w", Watch{.rate_hz = 1, .all_islands = false, .islands = {1, 3, 99}, .newcomers = 1}}});
+    loop.pass();
+    ASSERT_EQ(pictures.size(), 1);
+    ASSERT_EQ(pictures[0]->islands.size(), 2);
+    EXPECT_EQ(pictures[0]->islands[1].island, 3);
+    EXPECT_EQ(pictures[0]->island_count, 5);
+}
+
+TEST_F(Loop, APictureStaysAsItWasAndItsMemoryComesBack) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    watch("w", 1000);
+    loop.pass();
+    const SnapshotPtr kept = pictures.front();
+    const auto place = kept->islands[0].organisms.x;
+    pictures.clear();
+    std::set<const void*> used;
+    for (int i = 0; i < 100; ++i) {
+        live_through(10ms);
+        for (const SnapshotPtr& picture : pictures)
+            used.insert(picture.get());
+        pictures.clear();
+    }
+    EXPECT_EQ(kept->islands[0].organisms.x, place);
+    EXPECT_LE(used.size(), 2);
+}
+
+TEST_F(Loop, EventsComeAsTheyHappen) {
+    auto command = create("w");
+    command.parameters.generation_s = 0.05; // 5 ticks
+    send(command);
+    send(simulation::Run{"w", 2});
+    live_through(200ms);
+    ASSERT_EQ(events.size(), 3);
+    EXPECT_TRUE(std::holds_alternative<simulation::GenerationFinished>(events[0].kind));
+    EXPECT_TRUE(std::holds_alternative<simulation::GenerationFinished>(events[1].kind));
+    EXPECT_TRUE(std::holds_alternative<simulation::GoalReached>(events[2].kind));
+    EXPECT_EQ(events[2].tick, 10);
+}
+
+// ---- determinism -----------------------------------------------------------------------------------------------
+
+/// What the worlds below are told, at which ticks.
+simulation::Assignment change_at(std::uint64_t tick) {
+    return {tick % 2 ? "food_health" : "mutation_chance", tick % 2 ? 20.0 + static_cast<double>(tick) / 10 : 0.5};
+}
+constexpr std::uint64_t changes[] = {7, 40, 41, 90};
+constexpr std::uint64_t last_tick = 150;
+
+simulation::CreateWorld create_for_comparison() {
+    auto command = create("w", 42);
+    command.parameters.population_size = 50;
+    command.parameters.generation_s = 0.6;
+    return command;
+}
+
+base::StateHash hash_of_a_world_advanced_directly() {
+    support::InlineExecutor executor;
+    const auto command = create_for_comparison();
+    simulation::World world{command.parameters, command.seed};
+    for (const std::uint64_t at : {changes[0], changes[1], changes[2], changes[3], last_tick}) {
+        while (world.moment().tick < at)
+            world.advance_tick(executor);
+        if (at != last_tick)
+            world.request_parameters(
+                *simulation::assign(world.parameters().requested, std::vector{change_at(at)}));
+    }
+    return world.hash();
+}
+
+TEST_F(Loop, TheSameCommandsAtTheSameTicksGiveTheHashOfAWorldAdvancedDirectly) {
+    send(create_for_comparison());
+    send(simulation::SetSpeed{"w", 3.0});
+    watch("w", 77);
+    for (const std::uint64_t at : changes) {
+        send(simulation::RunUntilTick{"w", at});
+        live_through(1000ms);
+        ASSERT_EQ(tick(), at);
+        send(simulation::SetParameters{"w", {change_at(at)}, false, {}});
+    }
+    send(simulation::RunUntilTick{"w", last_tick});
+    live_through(1000ms);
+    EXPECT_EQ(world().world.hash(), hash_of_a_world_advanced_directly());
+}
+
+TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
+    Mailbox mailbox;
+    Demand demand;
+    demand.set({{"w", Watch{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
+    support::InlineExecutor executor;
+    SteadyClock clock;
+    SimulationThread thread{mailbox,
+                            demand,
+                            executor,
+                            clock,
+                            {.events = [](const Laboratory&, std::vector<simulation::Event>) {}, .picture = [](SnapshotPtr) {}}};
+    const auto send = [&](simulation::Command command) {
+        ASSERT_TRUE(mailbox.try_push(CommandMail{
+            std::move(command), [](const Laboratory&, const simulation::Command&, const auto& applied) { ASSERT_TRUE(applied); }}));
+    };
+    const auto look = [&] {
+        std::promise<std::pair<std::uint64_t, base::StateHash>> seen;
+        mailbox.try_push(QueryMail{[&](const Laboratory& laboratory) {
+            const auto& world = (*laboratory.find("w"))->world;
+            seen.set_value({world.moment().tick, world.hash()});
+        }});
+        return seen.get_future().get();
+    };
+    send(create_for_comparison());
+    send(simulation::SetSpeed{"w", {}});
+    for (const std::uint64_t at : changes) {
+        send(simulation::RunUntilTick{"w", at});
+        while (look().first < at) {
+        }
+        send(simulation::SetParameters{"w", {change_at(at)}, false, {}});
+    }
+    send(simulation::RunUntilTick{"w", last_tick});
+    while (look().first < last_tick) {
+    }
+    EXPECT_EQ(look().second, hash_of_a_world_advanced_directly());
+}
+
+} // namespace
+} // namespace evod::runtime
