@@ -1,0 +1,17 @@
+// Any text as an experiment file: valid parameters, which are written and read back the same, or a refusal.
+#include "server/simulation/experiment.h"
+
+#include <cstdlib>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace evod::simulation;
+    const auto experiment = parse_experiment({reinterpret_cast<const char*>(data), size});
+    if (!experiment)
+        return 0;
+    if (!validate(experiment->parameters).empty())
+        std::abort();
+    const auto again = parse_experiment(to_experiment_text(experiment->parameters));
+    if (!again || !(again->parameters == experiment->parameters))
+        std::abort();
+    return 0;
+}

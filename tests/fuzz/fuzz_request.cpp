@@ -1,0 +1,36 @@
+// Any bytes a client may send as a message: parsed, judged and turned into a command, or refused with fields named.
+#include "evod/v1/session.pb.h"
+#include "proto/wire/framing.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/refusals.h"
+
+#include <cstdlib>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace evod;
+    const auto message = wire::parse_body<v1::ClientMessage>(std::as_bytes(std::span{data, size}));
+    if (!message || !message->has_request())
+        return 0;
+    const v1::Request& request = message->request();
+    base::Refusal refusal;
+    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
+        const auto command = protocol::to_command(request, {.seed = {1}, .run_id = {2, 3}});
+        if (command) {
+            // What the core is given must be right in itself.
+            if (const auto* create = std::get_if<simulation::CreateWorld>(&*command))
+                if (!protocol::is_world_name(create->name) || !simulation::validate(create->parameters).empty())
+                    std::abort();
+            if (const auto* set = std::get_if<simulation::SetParameters>(&*command))
+                (void)simulation::assign({}, set->assignments);
+            return 0;
+        }
+        refusal = command.error();
+        if (refusal.violations.empty())
+            std::abort();
+    } else {
+        refusal = {.code = base::RefusalCode::InvalidArgument, .message = "", .violations = protocol::faults_of(request)};
+    }
+    if (protocol::refusing(request.request_id(), refusal).ByteSizeLong() > (1u << 20))
+        std::abort();
+    return 0;
+}
