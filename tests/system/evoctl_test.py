@@ -110,6 +110,7 @@ class Commands(WithServer):
                          ["population_size=7", "food_count=9"])
         self.assertIn("ALREADY_EXISTS", self.evoctl("create", "other", status=1))
         self.evoctl("create", "no/slash", status=1)
+        self.evoctl("--world", "other", "speed", "max")  # a new world has the pace of real time
         self.evoctl("--world", "other", "run", "1", "--wait")
         self.assertIn("GENERATION", self.evoctl("--world", "other", "history"))
         self.evoctl("delete", "other")
