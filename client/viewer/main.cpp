@@ -1,12 +1,11 @@
 // evoview: options → a window, or one screenshot → exit status.
+#include "client/viewer/display.h"
 #include "client/viewer/options.h"
 #include "client/viewer/screenshot.h"
 #include "client/viewer/window.h"
 
-#include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <stdexcept>
 
 int main(int argc, char** argv) {
     using namespace evod::viewer;
@@ -16,9 +15,7 @@ int main(int argc, char** argv) {
     }
     const auto& options = std::get<Options>(parsed);
     try {
-        if (std::getenv("DISPLAY") == nullptr) {
-            throw std::runtime_error{"no display: DISPLAY is not set; without a screen, use xvfb-run evoview …"};
-        }
+        check_display();
         if (options.screenshot) {
             take_screenshot(options, *options.screenshot);
         } else {

@@ -59,6 +59,7 @@ Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
 }
 
 void Overlay::notice(std::string text, Clock::time_point now) {
+    std::erase_if(notices_, [&](const Notice& shown) { return shown.text == text; });
     notices_.push_back({std::move(text), now + notice_shown});
     if (notices_.size() > notices_max) {
         notices_.pop_front();
@@ -121,7 +122,7 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui) {
     } else if (status.state != link::State::Connected) {
         text = "Connecting to " + server + " …" + (status.reason.empty() ? "" : "\n" + status.reason + "; retrying");
     } else if (const auto refusal = watch.refusal()) {
-        text = *refusal + "\nW shows another world";
+        text = *refusal + "\nW shows another world, Tab another island";
     } else if (watch.picture() == nullptr) {
         text = "Waiting for the first picture …";
     } else {

@@ -1,5 +1,6 @@
 #include "client/viewer/readout.h"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 
@@ -54,6 +55,17 @@ const char* shown_state(evod::v1::RunState state) {
     default:
         return "…";
     }
+}
+
+std::string shown_refusal(const evod::v1::Status& status) {
+    std::string text = status.message();
+    if (!text.empty()) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    }
+    for (const evod::v1::Violation& violation : status.violations()) {
+        text += (violation.got().empty() ? "" : " (" + violation.got() + ")") + "; allowed: " + violation.allowed();
+    }
+    return text;
 }
 
 std::string title(const evod::v1::SnapshotFrame& picture) {

@@ -3,7 +3,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/viewer/watch.h"
+#include "client/viewer/run_control.h"
 
 #include <cstdint>
 #include <string>
@@ -15,6 +15,9 @@ std::string with_separators(std::uint64_t number);     // 1234567 → "1,234,567
 std::string shown_duration(double seconds);            // 75.25 → "1:15.2"
 std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
 const char* shown_state(evod::v1::RunState state);
+
+/// Why the server says no, for a person: "There is no such island (9); allowed: 0 to 7".
+std::string shown_refusal(const evod::v1::Status& status);
 
 /// "Generation 12"; empty before the first picture.
 std::string title(const evod::v1::SnapshotFrame& picture);

@@ -1,5 +1,7 @@
 #include "client/viewer/watch.h"
 
+#include "client/viewer/readout.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -134,7 +136,7 @@ void Watch::take_command_answer(const link::Result<evod::v1::Response>& response
     if (!response) {
         notices_.push_back(response.error().what);
     } else if (!link::accepted(*response)) {
-        notices_.push_back(link::to_text(response->status()));
+        notices_.push_back(shown_refusal(response->status()));
     }
     send(control_.answered(response ? &*response : nullptr));
 }
@@ -188,7 +190,7 @@ void Watch::take_event(const evod::v1::Event& event) {
     case Kind::kWorldDeleted:
         notices_.push_back("The world " + event.world() + " was deleted by " + event.world_deleted().by());
         control_.forget();
-        view_.clear();
+        look_at(event.world(), 0); // there may be one of this name again
         break;
     case Kind::kParametersChanged: {
         std::string names;
@@ -218,7 +220,7 @@ std::optional<std::string> Watch::refusal() const {
     if (!answer || link::accepted(*answer)) {
         return std::nullopt;
     }
-    return link::to_text(answer->status());
+    return shown_refusal(answer->status());
 }
 
 } // namespace evod::viewer

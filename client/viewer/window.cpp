@@ -1,11 +1,8 @@
 #include "client/viewer/window.h"
 
-#include <SFML/System/Err.hpp>
-
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <ostream>
 #include <thread>
 
 namespace evod::viewer {
@@ -25,10 +22,7 @@ Window::Window(const Options& options)
     : window_{sf::VideoMode{options.width_pixels, options.height_pixels}, "evoview", sf::Style::Default,
               context_settings()}
     , watch_{{.server = options.server, .world = options.world, .island = options.island}} {
-    // SFML complains on a screen that has no such thing; the loop minds that itself.
-    std::streambuf* const complaints = sf::err().rdbuf(nullptr);
     window_.setVerticalSyncEnabled(true);
-    sf::err().rdbuf(complaints);
 }
 
 Stage::Frame Window::frame() const {

@@ -33,6 +33,16 @@ TEST(Readout, WritesSpeedsAsMultiplesOfRealTime) {
     EXPECT_EQ(shown_speed(speed), "max");
 }
 
+TEST(Readout, ARefusalIsASentence) {
+    evod::v1::Status status;
+    status.set_message("there is no such island");
+    auto& violation = *status.add_violations();
+    violation.set_field("subscribe_snapshots.island");
+    violation.set_got("9");
+    violation.set_allowed("0 to 7");
+    EXPECT_EQ(shown_refusal(status), "There is no such island (9); allowed: 0 to 7");
+}
+
 TEST(Readout, TellsTheIslandOnlyWhereThereAreSeveral) {
     evod::v1::SnapshotFrame picture;
     picture.set_world("default");
