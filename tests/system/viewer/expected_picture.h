@@ -5,6 +5,7 @@
 #pragma once
 
 #include "client/viewer/camera.h"
+#include "client/viewer/overlay.h"
 #include "client/viewer/palette.h"
 #include "proto/wire/snapshot_codec.h"
 
@@ -18,6 +19,14 @@
 #include <vector>
 
 namespace evod::viewer {
+
+/// The camera of a window that nobody has touched.
+inline Camera camera_of(const evod::v1::SnapshotFrame& picture, unsigned width_pixels, unsigned height_pixels) {
+    Camera camera;
+    camera.set_viewport(viewport_of(width_pixels, height_pixels));
+    camera.set_island(picture.width_px(), picture.height_px());
+    return camera;
+}
 
 class ExpectedPicture {
   public:

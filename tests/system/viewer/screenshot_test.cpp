@@ -1,46 +1,23 @@
 // evoview --screenshot against a server of the test's own: every pixel is what the picture says.
 //
-// Runs under Xvfb; EVOVIEW is the program.
+// Runs under Xvfb.
 #include "client/viewer/overlay.h"
 #include "tests/system/viewer/expected_picture.h"
 #include "tests/system/viewer/playing_server.h"
+#include "tests/system/viewer/processes.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <memory>
+#include <tuple>
 
 namespace evod::viewer {
 namespace {
 
-struct Ran {
-    int status = -1;
-    std::string output; // both of them
-};
-
-Ran run_evoview(const std::string& arguments) {
-    Ran ran;
-    FILE* pipe = popen((std::string{EVOVIEW} + " " + arguments + " 2>&1").c_str(), "r");
-    std::array<char, 256> part;
-    while (std::fgets(part.data(), part.size(), pipe) != nullptr) {
-        ran.output += part.data();
-    }
-    ran.status = WEXITSTATUS(pclose(pipe));
-    return ran;
-}
-
 struct ScreenshotTest : testing::Test {
-    ScreenshotTest() {
-        std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
-        folder = mkdtemp(name.data());
-        path = (folder / "picture.png").string();
-    }
-    ~ScreenshotTest() override { std::filesystem::remove_all(folder); }
-    std::filesystem::path folder;
-    std::string path;
+    TemporaryFolder folder;
+    std::string path = folder.file("picture.png");
 };
 
 constexpr std::int32_t px = 1 << 12; // in the fixed point of the columns
@@ -81,13 +58,6 @@ evod::v1::SnapshotFrame known_picture() {
     frame.mutable_live()->set_food_eaten(312);
     frame.mutable_live()->set_poison_eaten(45);
     return frame;
-}
-
-Camera camera_of(const evod::v1::SnapshotFrame& picture, unsigned width_pixels, unsigned height_pixels) {
-    Camera camera;
-    camera.set_viewport(viewport_of(width_pixels, height_pixels));
-    camera.set_island(picture.width_px(), picture.height_px());
-    return camera;
 }
 
 TEST_F(ScreenshotTest, EveryPixelIsWhatThePictureSays) {
@@ -148,7 +118,7 @@ TEST_F(ScreenshotTest, TellsThatThereIsNoSuchWorld) {
     PlayingServer server{known_picture()};
     const Ran ran = run_evoview("--server " + server.address() + " --world mars --screenshot " + path);
     EXPECT_EQ(ran.status, 1);
-    EXPECT_NE(ran.output.find("no world \"mars\""), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("No world \"mars\""), std::string::npos) << ran.output;
 }
 
 TEST_F(ScreenshotTest, TellsThatTheWorldStandsStillBeforeTheTick) {

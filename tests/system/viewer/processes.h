@@ -1,0 +1,142 @@
+// The real programs, as children of a test. EVOD and EVOVIEW are their paths.
+#pragma once
+
+#include "client/link/connection.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
+        path_ = mkdtemp(name.data());
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+struct Ran {
+    int status = -1;
+    std::string output; // both of them
+};
+
+/// Runs evoview to its end.
+inline Ran run_evoview(const std::string& arguments) {
+    Ran ran;
+    FILE* pipe = popen((std::string{EVOVIEW} + " " + arguments + " 2>&1").c_str(), "r");
+    std::array<char, 256> part;
+    while (std::fgets(part.data(), part.size(), pipe) != nullptr) {
+        ran.output += part.data();
+    }
+    ran.status = WEXITSTATUS(pclose(pipe));
+    return ran;
+}
+
+/// A program that runs beside the test; its end is waited for.
+class Process {
+  public:
+    Process(std::string program, std::vector<std::string> arguments) {
+        std::array<int, 2> ends;
+        EXPECT_EQ(pipe(ends.data()), 0);
+        id_ = fork();
+        if (id_ == 0) {
+            dup2(ends[1], STDOUT_FILENO);
+            dup2(ends[1], STDERR_FILENO);
+            close(ends[0]);
+            close(ends[1]);
+            std::vector<char*> pointers{program.data()};
+            for (std::string& argument : arguments) {
+                pointers.push_back(argument.data());
+            }
+            pointers.push_back(nullptr);
+            execv(program.c_str(), pointers.data());
+            _exit(127);
+        }
+        close(ends[1]);
+        output_ = fdopen(ends[0], "r");
+    }
+    ~Process() {
+        if (id_ > 0) {
+            kill(id_, SIGTERM);
+            wait();
+        }
+        std::fclose(output_);
+    }
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    /// The next line of what it says; empty at its end.
+    std::string read_line() {
+        std::array<char, 512> line{};
+        return std::fgets(line.data(), line.size(), output_) == nullptr ? "" : line.data();
+    }
+    /// Its exit status; -1 if a signal ended it.
+    int wait() {
+        int status = 0;
+        waitpid(id_, &status, 0);
+        id_ = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+  private:
+    pid_t id_ = 0;
+    FILE* output_ = nullptr;
+};
+
+/// evod on a port of its own, with a connection of the test's own.
+class RealServer {
+  public:
+    explicit RealServer(std::vector<std::string> arguments) : process_{EVOD, with_port(std::move(arguments))} {
+        for (std::string line = process_.read_line(); !line.empty(); line = process_.read_line()) {
+            if (const auto begin = line.find("listening on "); begin != std::string::npos) {
+                const std::string address = line.substr(begin + 13, line.find(',', begin) - begin - 13);
+                connection.emplace(
+                    link::Options{.server = link::parse_endpoint(address).value(), .client_name = "a test"});
+                address_ = address;
+                return;
+            }
+        }
+        ADD_FAILURE() << "evod did not start";
+    }
+
+    const std::string& address() const { return address_; }
+    evod::v1::WorldInfo ask(const evod::v1::Request& request) {
+        const auto response = connection->request(request).value();
+        EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
+        return response.has_statistics() ? response.statistics().world() : response.world();
+    }
+    evod::v1::WorldInfo state() {
+        evod::v1::Request request;
+        request.mutable_get_statistics();
+        return ask(request);
+    }
+
+    std::optional<link::Connection> connection;
+
+  private:
+    static std::vector<std::string> with_port(std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--port", "0"});
+        return arguments;
+    }
+    Process process_;
+    std::string address_;
+};
+
+} // namespace evod::viewer
