@@ -38,7 +38,7 @@ float between(float from, float to, double blend) {
 
 void WorldView::add(std::shared_ptr<const wire::Picture> picture, Clock::time_point arrived) {
     if (latest_ && follows(picture->about, latest_->about)) {
-        interval_ = arrived - latest_arrived_;
+        glide_ = std::min(std::chrono::duration<double>{arrived - latest_arrived_}, glide_max);
         match_ = match(picture->organisms.id, latest_->organisms.id);
         previous_ = std::move(latest_);
     } else {
@@ -53,10 +53,10 @@ void WorldView::clear() {
 }
 
 double WorldView::blend_at(Clock::time_point now) const {
-    if (!previous_ || interval_.count() <= 0) {
+    if (!previous_ || glide_.count() <= 0) {
         return 1;
     }
-    return std::clamp(std::chrono::duration<double>{now - latest_arrived_} / interval_, 0.0, 1.0);
+    return std::clamp(std::chrono::duration<double>{now - latest_arrived_} / glide_, 0.0, 1.0);
 }
 
 const WorldView::Positions& WorldView::organisms_at(double blend) {

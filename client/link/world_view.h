@@ -26,6 +26,9 @@ class WorldView {
 
     /// Pictures more simulated seconds apart than this are not blended: the straight way between them means nothing.
     static constexpr double blended_s_max = 0.5;
+    /// The way from one picture to the next takes as long as lay between their arrivals, and no longer than this: a
+    /// world that was paused shows its next tick now.
+    static constexpr std::chrono::duration<double> glide_max{0.25};
 
     /// A picture of another run, generation or time back stands alone: nobody glides from one life to the next.
     void add(std::shared_ptr<const wire::Picture> picture, Clock::time_point arrived);
@@ -49,8 +52,8 @@ class WorldView {
   private:
     std::shared_ptr<const wire::Picture> latest_, previous_;
     Clock::time_point latest_arrived_{};
-    std::chrono::duration<double> interval_{0}; // between the arrivals of the two
-    std::vector<std::size_t> match_;            // by index in latest_: index in previous_, or npos
+    std::chrono::duration<double> glide_{0}; // how long the way from one to the other takes
+    std::vector<std::size_t> match_;         // by index in latest_: index in previous_, or npos
     Positions organisms_, crates_;
 };
 

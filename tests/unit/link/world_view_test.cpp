@@ -48,6 +48,13 @@ TEST(WorldView, StandsStillAfterTheLatest) {
     EXPECT_EQ(view.organisms_at(1).x_px, (std::vector<float>{4}));
 }
 
+TEST(WorldView, AStepAfterALongPauseIsSeenAtOnce) {
+    WorldView view;
+    view.add(picture(10, {{1, 0, 0}}), start);
+    view.add(picture(11, {{1, 4, 8}}), start + 60s);
+    EXPECT_EQ(view.blend_at(start + 60s + 250ms), 1);
+}
+
 TEST(WorldView, DoesNotBlendLivesOrLongLeaps) {
     const auto alone_after = [](const auto& change) {
         WorldView view;
