@@ -314,6 +314,12 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement)
         require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
 
+    // What a server with a few gigabytes can hold; a parameter alone says nothing of the islands' number.
+    const double organisms = static_cast<double>(p.island_count) * p.population_size;
+    if (organisms > 4e6)
+        refuse("island_count", "so many that all islands together have at most 4000000 organisms",
+               std::to_string(p.island_count) + ", with " + number_text(organisms));
+
     if (p.fitness != FitnessFunction::Life)
         return violations;
     require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
@@ -331,6 +337,10 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
     if (plan.poison_count > 20'000'000)
         refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
+    const double items = static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
+    if (items > 4e7)
+        refuse("island_count", "so many that all islands together have at most 40000000 items",
+               std::to_string(p.island_count) + ", with " + number_text(items));
     if (const double share = covered_share(p, plan); share > 0.4)
         refuse("population_size",
                "so many that organisms of body_size_max, crates and obstacles cover at most 0.4 of an island",

@@ -31,7 +31,7 @@ EVOD_CHOICE_NAMES(evod::simulation::IntegratorChoice, "symplectic_euler", "expli
 #define EVOD_SIMULATION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                          \
     CHOICE(fitness, FitnessFunction, Life, Reset, "What evolution strives for: life is seconds lived + health at the end; gene_sum and rastrigin are functions of the chromosome alone.") \
     REAL(generation_s, 40, 0.001, 86'400, "s", NextGeneration, "How long a generation lasts, unless everyone dies before.") \
-    REAL(tick_s, 1.0 / 60, 0.0001, 1, "s", NextGeneration, "Length of a physics step.")                                 \
+    REAL(tick_s, 1.0 / 60, 0.001, 1, "s", NextGeneration, "Length of a physics step.")                                 \
     COUNT(island_count, 1, 1, 4096, "islands", Reset, "Islands that evolve apart but for migration.")                  \
     REAL(island_width_px, 1280, 100, 500'000, "px", NextGeneration, "Distance between the left and right walls.")      \
     REAL(island_height_px, 720, 100, 500'000, "px", NextGeneration, "Distance between the upper and lower walls.")     \

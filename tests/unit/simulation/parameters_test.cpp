@@ -247,6 +247,18 @@ TEST(CrossFieldRules, LimitTicksAndWays) {
     EXPECT_TRUE(set({{"max_speed_px_s", 50'000.0}, {"tick_s", 0.1}}));
 }
 
+TEST(CrossFieldRules, BoundWhatAllIslandsHoldTogether) {
+    const auto set = [](std::vector<Assignment> assignments) { return assign({}, assignments).has_value(); };
+    const Assignment scaled{"scale_with_population", true};
+    EXPECT_TRUE(set({scaled, {"population_size", std::uint32_t{500'000}}, {"island_count", std::uint32_t{8}}}));
+    EXPECT_FALSE(set({scaled, {"population_size", std::uint32_t{500'000}}, {"island_count", std::uint32_t{9}}}));
+    EXPECT_FALSE(set({{"fitness", std::string{"gene_sum"}},
+                      {"population_size", std::uint32_t{1'000'000}},
+                      {"island_count", std::uint32_t{5}}}));
+    EXPECT_TRUE(set({{"food_count", std::uint32_t{10'000'000}}, {"island_count", std::uint32_t{3}}}));
+    EXPECT_FALSE(set({{"food_count", std::uint32_t{10'000'000}}, {"island_count", std::uint32_t{4}}}));
+}
+
 TEST(CrossFieldRules, KeepRoomForOrganisms) {
     EXPECT_FALSE(accepted("population_size", std::uint32_t{400}));
     EXPECT_TRUE(accepted("population_size", std::uint32_t{200}));
