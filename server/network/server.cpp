@@ -21,6 +21,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (!listener)
         return listener.error();
     server->listener_ = *std::move(listener);
+    std::signal(SIGPIPE, SIG_IGN); // whoever read the log may go; the server stays
     // From now on: whoever reads that the server listens may send them.
     server->signals_.add(SIGINT);
     server->signals_.add(SIGTERM);

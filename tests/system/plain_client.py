@@ -1175,6 +1175,19 @@ class StartAndEnd(unittest.TestCase):
                 server.end(how)
                 self.assertLess(time.monotonic() - began, 10)
 
+    def test_it_outlives_the_reader_of_its_log(self):
+        process = subprocess.Popen([evod_path, "--port", "0"], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.wait, patience_s)
+        self.addCleanup(process.terminate)
+        line = process.stdout.readline()
+        process.stdout.close()
+        server = lambda: None  # as much of a Server as a Client needs
+        server.port = int(re.search(r":(\d+), world", line)[1])
+        for _ in range(3):  # each is logged
+            with Client(server) as client:
+                client.call(list_worlds=c.ListWorlds())
+        self.assertIsNone(process.poll())
+
     def test_signals_in_a_row_do_no_harm(self):
         server = Server("--start", "--speed", "max")
         for _ in range(5):
