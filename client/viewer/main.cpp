@@ -9,12 +9,12 @@
 
 int main(int argc, char** argv) {
     using namespace evod::viewer;
-    const auto parsed = parse_options(argc, argv);
-    if (const int* status = std::get_if<int>(&parsed)) {
-        return *status;
-    }
-    const auto& options = std::get<Options>(parsed);
     try {
+        const auto parsed = parse_options(argc, argv);
+        if (const int* status = std::get_if<int>(&parsed)) {
+            return *status;
+        }
+        const auto& options = std::get<Options>(parsed);
         check_display();
         if (options.screenshot) {
             take_screenshot(options, *options.screenshot);

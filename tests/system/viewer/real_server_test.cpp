@@ -58,8 +58,10 @@ TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
         }));
         const TemporaryFolder folder;
         const std::string path = folder.file("picture.png");
-        const Ran ran = run_evoview("--server " + server.address() + " --world " + world + " --screenshot " + path +
-                                    " --at-tick " + std::to_string(tick));
+        std::string arguments = "--server " + server.address();
+        arguments.append(" --world ").append(world).append(" --screenshot ").append(path);
+        arguments.append(" --at-tick ").append(std::to_string(tick));
+        const Ran ran = run_evoview(arguments);
         ASSERT_EQ(ran.status, 0) << ran.output;
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
