@@ -1,6 +1,7 @@
 #include "server/runtime/worker_pool.h"
 
 #include "server/base/assert.h"
+#include "server/base/inline_executor.h"
 
 #ifdef EVOD_THREAD_EXECUTOR
 #include "tests/support/thread_executor.h"
@@ -15,17 +16,6 @@
 
 namespace evod::runtime {
 namespace {
-
-class OneThread final : public base::Executor {
-  public:
-    std::size_t thread_count() const override { return 1; }
-
-  protected:
-    void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
-        for (std::size_t begin = 0; begin < count; begin += grain)
-            body({begin, std::min(begin + grain, count)});
-    }
-};
 
 #ifndef EVOD_THREAD_EXECUTOR
 class Pool final : public base::Executor {
@@ -64,7 +54,7 @@ class Pool final : public base::Executor {
 std::unique_ptr<base::Executor> make_executor(std::size_t threads) {
     EVOD_ASSERT(threads >= 1);
     if (threads == 1)
-        return std::make_unique<OneThread>();
+        return std::make_unique<base::InlineExecutor>();
 #ifdef EVOD_THREAD_EXECUTOR
     return std::make_unique<support::ThreadExecutor>(threads);
 #else

@@ -3,7 +3,7 @@
 // items_per_second is organism-ticks per second: organisms alive at the start of each tick, summed, by processor time.
 #include "server/simulation/experiment.h"
 #include "server/simulation/world.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <benchmark/benchmark.h>
 
@@ -21,7 +21,7 @@ simulation::Parameters experiment(const std::string& name) {
 }
 
 void advance(benchmark::State& state, const simulation::Parameters& parameters) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     simulation::World world{parameters, base::Seed{1}};
     std::uint64_t organism_ticks = 0;
     for (auto _ : state) {

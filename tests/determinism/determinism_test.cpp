@@ -1,7 +1,7 @@
 // Equal (parameters, seed, commands) give equal bits after every tick, whatever works on them and whoever looks on.
 
 #include "tests/determinism/scenarios.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 #include "tests/support/thread_executor.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ class SameStateOnAnyThreadCount : public testing::TestWithParam<std::tuple<Scena
 TEST_P(SameStateOnAnyThreadCount, TickByTick) {
     const auto& [scenario, thread_count] = GetParam();
     Play reference{scenario}, subject{scenario};
-    support::InlineExecutor one;
+    base::InlineExecutor one;
     support::ThreadExecutor many{thread_count};
     ASSERT_EQ(subject.world().hash(), reference.world().hash()) << "states differ from the start";
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(All, AnyScenario, testing::ValuesIn(all()), testing::Pr
 TEST_P(AnyScenario, WithTheSameSeedGivesTheSameHashesAndWithAnotherNone) {
     const Scenario& scenario = GetParam();
     Play first{scenario}, again{scenario}, other{scenario, base::Seed{scenario.seed.value + (1ull << 32)}};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
         first.advance(executor);
         again.advance(executor);
@@ -53,7 +53,7 @@ TEST_P(AnyScenario, WithTheSameSeedGivesTheSameHashesAndWithAnotherNone) {
 
 TEST_P(AnyScenario, ChangesItsHashWithEveryTick) {
     Play run{GetParam()};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     base::StateHash before = run.world().hash();
     for (std::uint64_t tick = 1; tick <= GetParam().ticks; ++tick) {
         run.advance(executor);
@@ -65,7 +65,7 @@ TEST_P(AnyScenario, ChangesItsHashWithEveryTick) {
 TEST_P(AnyScenario, DoesNotDependOnWhoLooksOn) {
     const Scenario& scenario = GetParam();
     Play alone{scenario}, watched{scenario};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     support::ThreadExecutor other_executor{3};
     std::uint64_t seen = 0;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
@@ -100,7 +100,7 @@ TEST(AWorld, DoesNotDependOnTheOthersOfItsLaboratory) {
     };
     create("a", mine.seed.value);
     create("b", 5);
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (std::uint64_t tick = 1; tick <= 300; ++tick) {
         alone.advance(executor);
         crowded.advance(executor);
@@ -118,7 +118,7 @@ TEST_P(AnyScenario, ResetGivesTheFirstRunsHashesAgain) {
     if (!scenario.changes.empty())
         return; // a reset keeps the parameters last asked for
     Play fresh{scenario}, used{scenario};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (int tick = 0; tick < 50; ++tick)
         used.advance(executor);
     ASSERT_TRUE(used.laboratory().apply(simulation::ResetWorld{.world = "w", .seed = {}, .run_id = {}}).has_value());

@@ -4,7 +4,7 @@
 // model and the model version of run files rises.
 
 #include "tests/determinism/scenarios.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(All, GoldenHash, testing::ValuesIn(all()), testing::Pri
 TEST_P(GoldenHash, IsTheSameInEveryBuild) {
     const Scenario& scenario = GetParam();
     Play run{scenario};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick)
         run.advance(executor);
     const auto known = golden_hashes.find(scenario.name);
@@ -44,7 +44,7 @@ TEST_P(GoldenHash, IsTheSameInEveryBuild) {
 TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) { EXPECT_EQ(golden_hashes.size(), all().size()); }
 
 TEST(TheScenarios, UseWhatTheyAreFor) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     std::uint64_t limited = 0, deaths = 0, poisoned = 0, clamped = 0, generations = 0, extinct = 0;
     for (const Scenario& scenario : all()) {
         Play run{scenario};

@@ -1,4 +1,4 @@
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 #include "tests/support/thread_executor.h"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "server/base/random.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <cstdint>
 #include <span>

@@ -31,7 +31,7 @@ Population population_of(std::uint32_t count, std::uint64_t seed) {
 
 NextGeneration breed(const Population& population, const Parameters& parameters, std::uint32_t wanted,
                      std::uint64_t seed = 221, std::uint64_t generation = 1) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     return next_generation(population.fitness, population.genes, parameters, wanted,
                            {.seed = base::Seed{seed}, .island = 0, .generation = generation}, executor);
 }
@@ -322,7 +322,7 @@ TEST(NextGeneration, ClampingsAreCounted) {
 
 TEST(NextGeneration, EverySeedIslandAndGenerationBreedsDifferently) {
     const Population population = population_of(30, 236);
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const auto bred = [&](BreedingKey key) {
         return next_generation(population.fitness, population.genes, {}, 30, key, executor).genes;
     };

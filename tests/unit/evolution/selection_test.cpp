@@ -18,13 +18,13 @@ constexpr double huge = std::numeric_limits<double>::max();
 constexpr double tiny = std::numeric_limits<double>::denorm_min();
 
 std::vector<std::uint64_t> spins(const std::vector<double>& weights, std::uint32_t count, std::uint64_t seed) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     return count_each(spin_roulette(Wheel{weights}, count, key_of(seed), executor), weights.size());
 }
 
 std::vector<std::uint64_t> picks(const std::vector<double>& fitness, const Parameters& parameters, std::uint32_t count,
                                  std::uint64_t seed) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     Ranking ranking{fitness};
     return count_each(select(ranking, {.wanted = count, .pool = 1}, parameters, key_of(seed), executor),
                       fitness.size());
@@ -40,7 +40,7 @@ TEST(Roulette, PicksInProportionToFitness) {
 
 TEST(Roulette, SpinsDoNotDependOnEachOther) {
     // Law: p_i p_j for two spins in a row. Chi-square over 100 pairs, 99 degrees of freedom.
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const auto picked = spin_roulette(Wheel{ten_to_one}, 1'000'000, key_of(132), executor);
     std::vector<std::uint64_t> counts(100);
     for (std::size_t i = 0; i + 1 < picked.size(); i += 2)
@@ -252,7 +252,7 @@ TEST(Select, RouletteUnderWindowingNeverPicksTheWorst) {
 }
 
 TEST(Select, ScalingDoesNotChangeTournamentAndTruncation) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     std::vector<double> fitness(300); // the lower half gets no weight at all from this decay
     for (std::size_t i = 0; i < fitness.size(); ++i)
         fitness[i] = static_cast<double>(i);
@@ -268,7 +268,7 @@ TEST(Select, ScalingDoesNotChangeTournamentAndTruncation) {
 }
 
 TEST(Select, EveryMethodPicksAsManyAsWanted) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (const SelectionMethod method :
          {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal, SelectionMethod::Tournament,
           SelectionMethod::Random, SelectionMethod::Truncation}) {

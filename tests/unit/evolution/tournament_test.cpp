@@ -45,7 +45,7 @@ std::vector<double> closed_form(std::uint32_t n, const Tournament& tournament, s
 /// How often winner number `place` has each rank, when the fitness falls from organism to organism.
 std::vector<std::uint64_t> ranks_of_winners(std::uint32_t n, const Tournament& tournament, std::uint32_t place,
                                             std::uint32_t tournaments, std::uint64_t seed) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     std::vector<double> fitness(n);
     std::iota(fitness.rbegin(), fitness.rend(), -3.0);
     Ranking ranking{fitness};
@@ -119,7 +119,7 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
 }
 
 TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     std::vector<double> fitness(12);
     std::iota(fitness.begin(), fitness.end(), 0.0);
     for (const std::uint32_t size : {4u, 11u}) { // held, and drawn directly
@@ -134,7 +134,7 @@ TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {
 }
 
 TEST(Tournament, OfEverybodyTheBestWin) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const std::vector<double> fitness = {3, 9, 1, 9, 5};
     for (const std::uint32_t size : {5u, 6u, 1'000'000u}) {
         Ranking ranking{fitness};
@@ -146,7 +146,7 @@ TEST(Tournament, OfEverybodyTheBestWin) {
 
 TEST(Tournament, TiesGoToTheLowerIndex) {
     // Law: among equals the index is the rank. Chi-square against size 3 with replacement.
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const std::vector<double> fitness(10, 4.0);
     Ranking ranking{fitness};
     const auto picked = hold_tournaments(ranking, {.size = 3}, 300'000, key_of(166), executor);
@@ -155,7 +155,7 @@ TEST(Tournament, TiesGoToTheLowerIndex) {
 
 TEST(Tournament, MoreWinnersThanContestantsMeansThatAllOfThemWin) {
     // Law: uniform, as nobody loses. Chi-square, 9 degrees of freedom.
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const std::vector<double> fitness = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
     Ranking ranking{fitness};
     const auto picked = hold_tournaments(ranking, {.size = 2, .winners = 9}, 200'000, key_of(167), executor);
@@ -163,7 +163,7 @@ TEST(Tournament, MoreWinnersThanContestantsMeansThatAllOfThemWin) {
 }
 
 TEST(Tournament, SurplusWinnersOfTheLastOneAreDropped) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const std::vector<double> fitness = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
     Ranking ranking{fitness};
     const Tournament tournament{.size = 4, .winners = 3, .replacement = false};

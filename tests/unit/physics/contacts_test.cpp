@@ -67,7 +67,7 @@ TEST(Resolving, MovesApartInProportionToInverseMass) {
     scene.add_circle(1000, 1000, 5, 1);
     scene.add_circle(1006, 1000, 5, 3);
     Contacts contacts;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     contacts.find(scene.circles, scene.boxes, scene.area, executor);
     ASSERT_EQ(contacts.size(), 1u);
     contacts.resolve(scene.circles, scene.boxes, 0.8f);
@@ -200,7 +200,7 @@ RC_GTEST_PROP(BroadPhase, FindsExactlyWhatTryingAllPairsFinds, ()) {
         scene.add_box(x, y, half, on_whole_px ? 16 : uniform_float(random, 1, 100), random.chance(0.5) ? 0.0f : 1.0f);
     }
     Contacts contacts;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     contacts.find(scene.circles, scene.boxes, scene.area, executor);
     RC_ASSERT(contacts.size() == all_touching_pairs(scene.circles, scene.boxes));
 }
@@ -213,7 +213,7 @@ RC_GTEST_PROP(BroadPhase, FindsBoxesThatTouchWhateverTheFractionOfTheirSizes, ()
     const auto reach = static_cast<Coordinate>(std::floor((a + b) * units_per_px)); // touching just so
     scene.boxes.add(scene.boxes.x[0] + reach, scene.boxes.y[0], b, b, 1);
     Contacts contacts;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     contacts.find(scene.circles, scene.boxes, scene.area, executor);
     RC_ASSERT(contacts.size() == all_touching_pairs(scene.circles, scene.boxes));
 }

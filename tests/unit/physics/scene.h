@@ -3,7 +3,7 @@
 
 #include "server/base/random.h"
 #include "server/physics/step.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <cstdint>
 #include <ostream>
@@ -32,7 +32,7 @@ struct Scene {
         boxes.velocity_y.back() = velocity_y;
     }
     void step() {
-        support::InlineExecutor executor;
+        base::InlineExecutor executor;
         step(executor);
     }
     void step(base::Executor& executor) {

@@ -60,7 +60,7 @@ TEST(Collisions, ConserveMomentumAndNeverAddKineticEnergy) {
     for (int tick = 0; tick < 400; ++tick) {
         // Without the walls: momentum goes nowhere else. Positions move as they do in a step.
         Contacts found;
-        support::InlineExecutor executor;
+        base::InlineExecutor executor;
         found.find(scene.circles, scene.boxes, scene.area, executor);
         contacts += found.size();
         const Totals before = totals(scene);

@@ -1,5 +1,6 @@
 // What goes out is complete, what comes in is checked: every field is found by walking the descriptors, so one that is
 // added later is tested too.
+#include "server/base/inline_executor.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
@@ -80,16 +81,7 @@ class Lived : public testing::Test {
     }
     simulation::Entry& entry() { return **laboratory.find("w"); }
 
-    class OneThread final : public base::Executor {
-      public:
-        std::size_t thread_count() const override { return 1; }
-
-      protected:
-        void run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) override {
-            for (std::size_t begin = 0; begin < count; begin += grain)
-                body({begin, std::min(begin + grain, count)});
-        }
-    } executor;
+    base::InlineExecutor executor;
     simulation::Laboratory laboratory;
 };
 

@@ -2,7 +2,7 @@
 #include "server/runtime/simulation_loop.h"
 
 #include "server/runtime/simulation_thread.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 #include "tests/support/manual_clock.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ class Loop : public testing::Test {
 
     Mailbox mailbox;
     Demand demand;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     support::ManualClock clock;
     std::vector<simulation::Event> events;
     std::vector<SnapshotPtr> pictures;
@@ -309,7 +309,7 @@ simulation::CreateWorld create_for_comparison() {
 }
 
 base::StateHash hash_of_a_world_advanced_directly() {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const auto command = create_for_comparison();
     simulation::World world{command.parameters, command.seed};
     for (const std::uint64_t at : {changes[0], changes[1], changes[2], changes[3], last_tick}) {
@@ -341,7 +341,7 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
     Mailbox mailbox;
     Demand demand;
     demand.set({{"w", Watch{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     SteadyClock clock;
     SimulationThread thread{mailbox,
                             demand,

@@ -1,7 +1,7 @@
 #include "server/simulation/behaviour.h"
 
 #include "tests/support/chi_square.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ class OneOrganism : public testing::Test {
     BehaviourRules rules{};
     Sight sight;
     base::RandomKey key{base::Seed{2}, base::Purpose::Behaviour, 0, 1};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
 };
 
 TEST_F(OneOrganism, SteersToSeenFoodAgainstItsOwnVelocity) {

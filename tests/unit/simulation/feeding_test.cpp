@@ -2,7 +2,7 @@
 
 #include "server/base/random.h"
 #include "server/physics/step.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ struct Blind {
 
 std::vector<Meal> meals_of(const physics::Circles& bodies, const Items& items) {
     Feeding feeding;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     const Blind blind{bodies};
     return feeding.meals(bodies, items, blind.sight, blind.distance, executor);
 }
@@ -133,7 +133,7 @@ TEST_P(ARunningIsland, NeverMissesAMealForWhatWasSeen) {
                                .certain_impulse = 200,
                                .force_per_unit = GetParam().force};
     const base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     Sight sight;
     Feeding feeding;
     std::size_t eaten = 0;

@@ -1,7 +1,7 @@
 #include "server/simulation/island.h"
 
 #include "server/simulation/fitness.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ class SmallIsland : public testing::Test {
     Parameters parameters;
     Island island{base::Seed{1}, 0};
     std::uint32_t now = 0;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
 };
 
 TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {

@@ -1,6 +1,6 @@
 #include "server/simulation/laboratory.h"
 
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ class OneWorld : public testing::Test {
 
     Parameters parameters;
     Laboratory laboratory;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
 };
 
 TEST_F(OneWorld, WaitsAfterItsCreationAtItsFirstMoment) {
@@ -275,7 +275,7 @@ TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
 
 TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
     // Random values of random parameters; what is accepted must not stop a world, however the effects fall together.
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     std::uint64_t accepted = 0, refused = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         base::RandomStream random{base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};

@@ -6,7 +6,7 @@
 // food and 0.028 poison. Every comparison allows 4 standard errors of the difference (6e-5 each, two-sided).
 
 #include "server/simulation/world.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ History history_of(SelectionMethod selection, std::size_t generations, base::See
     Parameters parameters;
     parameters.selection = selection;
     World world{parameters, seed};
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     History history;
     while (history.size() < generations) {
         world.advance_tick(executor);

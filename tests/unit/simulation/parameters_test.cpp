@@ -1,7 +1,7 @@
 #include "server/simulation/parameters.h"
 
 #include "server/simulation/laboratory.h"
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -339,7 +339,7 @@ World small_world() {
 }
 
 TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
     for (const ParameterDescription& description : parameter_registry()) {
         World world = small_world();
         world.advance_tick(executor);

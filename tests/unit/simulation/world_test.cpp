@@ -1,6 +1,6 @@
 #include "server/simulation/world.h"
 
-#include "tests/support/inline_executor.h"
+#include "server/base/inline_executor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class WorldTest : public testing::Test {
     }
 
     Parameters parameters;
-    support::InlineExecutor executor;
+    base::InlineExecutor executor;
 };
 
 TEST_F(WorldTest, EndsAGenerationAfterItsTimeExactly) {
