@@ -119,9 +119,9 @@ int main(int argument_count, char** arguments) {
     run_options.drawn_seed = network::draw_seed();
     CLI::App& run = *app.add_subcommand("run", "Run an experiment without a network");
     run.add_option("experiment", run_options.experiment, "JSON file; without one, the default world");
-    run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance")
-        ->check(whole_number);
-    run.add_option("--generations", run_options.generations, "How many; takes the place of generation_limit, 0 is no limit");
+    run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance")->check(whole_number);
+    run.add_option("--generations", run_options.generations,
+                   "How many; takes the place of generation_limit, 0 is no limit");
     run.add_option("--threads", run_options.threads, "Threads that simulate")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
@@ -134,7 +134,8 @@ int main(int argument_count, char** arguments) {
     CLI::App& check = *app.add_subcommand("check", "Say what an experiment file changes, or what is wrong with it");
     check.add_option("experiment", checked_file, "JSON file")->required();
 
-    const CLI::App& parameters = *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
+    const CLI::App& parameters =
+        *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
 
     app.require_subcommand(0, 1);
     try {

@@ -311,7 +311,8 @@ void add_look_commands(CLI::App& app, const Common& common, Selected& selected) 
     auto* past = app.add_subcommand("history", "The statistics of ended generations")->group(group);
     auto options = std::make_shared<HistoryOptions>();
     past->add_flag("--csv", options->csv, "Comma-separated, with every column and the genes");
-    past->add_option("--from", options->from, "First generation; without it the oldest that is kept")->check(whole_number);
+    past->add_option("--from", options->from, "First generation; without it the oldest that is kept")
+        ->check(whole_number);
     past->add_option("--to", options->to, "Last generation; without it the last that has ended")->check(whole_number);
     past->add_option("--island", options->island, "One island only, from 0")->check(whole_number);
     past->footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");

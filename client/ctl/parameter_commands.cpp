@@ -147,8 +147,10 @@ void add_parameter_commands(CLI::App& app, const Common& common, Selected& selec
     auto options = std::make_shared<SetOptions>();
     set_command->add_option("NAME=VALUE", options->words, "Parameters with their new values")->required();
     set_command->add_flag("--dry-run", options->dry_run, "Only check; change nothing");
-    set_command->add_option("--if-revision", options->expected_revision,
-                            "Refuse if anyone has changed a parameter since this revision")->check(whole_number);
+    set_command
+        ->add_option("--if-revision", options->expected_revision,
+                     "Refuse if anyone has changed a parameter since this revision")
+        ->check(whole_number);
     set_command->footer("Examples:\n  evoctl set selection=tournament mutation_chance=0.05 mutate_survivors=true\n"
                         "  evoctl set --dry-run food_count=1e6\n"
                         "Names and ranges: evoctl params");

@@ -272,8 +272,8 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
     auto* create_command = app.add_subcommand("create", "Make a world; it waits to be run")->group(group);
     auto options = std::make_shared<CreateOptions>();
     create_command->add_option("NAME", options->name, "1 to 64 of a-z A-Z 0-9 _ -")->required();
-    create_command->add_option("--seed", options->seed,
-                               "Without it, and without one in the file, the server draws one")->check(whole_number);
+    create_command->add_option("--seed", options->seed, "Without it, and without one in the file, the server draws one")
+        ->check(whole_number);
     create_command->add_option("--set", options->words, "Parameters as NAME=VALUE; the others have their defaults");
     create_command->add_option("--experiment", options->experiment,
                                "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");

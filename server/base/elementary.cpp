@@ -25,8 +25,8 @@ constexpr std::array<double, 24> inverse_factorials() {
 }
 constexpr auto inverse_factorial = inverse_factorials();
 
-/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4: with 18 or 19 the first
-/// term left out is below 1e-19.
+/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4: with 18 or 19 the
+/// first term left out is below 1e-19.
 template <class Real>
 constexpr Real series(Real x, int last) {
     const Real square = x * x;

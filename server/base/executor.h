@@ -19,12 +19,12 @@ template <class R, class... Arguments>
 class FunctionRef<R(Arguments...)> {
   public:
     template <class F>
-        requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
-    FunctionRef(F&& function) // NOLINT(bugprone-forwarding-reference-overload): constrained above
-        : object_{const_cast<void*>(static_cast<const void*>(std::addressof(function)))},
-          call_{[](void* object, Arguments... arguments) -> R {
-              return (*static_cast<std::remove_reference_t<F>*>(object))(arguments...);
-          }} {}
+    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef>)
+        FunctionRef(F&& function) // NOLINT(bugprone-forwarding-reference-overload): constrained above
+        : object_{const_cast<void*>(static_cast<const void*>(std::addressof(function)))}
+        , call_{[](void* object, Arguments... arguments) -> R {
+            return (*static_cast<std::remove_reference_t<F>*>(object))(arguments...);
+        }} {}
 
     R operator()(Arguments... arguments) const { return call_(object_, arguments...); }
 

@@ -1,4 +1,5 @@
-// InlineExecutor: runs every piece on the calling thread, in index order; where one thread is all there is, and in tests.
+// InlineExecutor: runs every piece on the calling thread, in index order; where one thread is all there is, and in
+// tests.
 #pragma once
 
 #include "server/base/executor.h"

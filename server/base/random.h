@@ -53,7 +53,9 @@ class RandomKey {
 };
 
 /// A uniform number in [0, 1) from one word: 24 bits, exact in float.
-inline float unit_float(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
+inline float unit_float(std::uint32_t word) {
+    return static_cast<float>(word >> 8) * 0x1p-24f;
+}
 
 /// A sequence of draws of one entity at one tick, for code that needs an unknown number of them.
 class RandomStream {
@@ -77,7 +79,8 @@ class RandomStream {
     double uniform() { return static_cast<double>(long_word() >> 11) * 0x1p-53; }
     /// Uniform in [low, high); two words.
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    /// Uniform in 0 … bound − 1 without bias (Lemire 2019, "Fast random integer generation in an interval"); bound >= 1.
+    /// Uniform in 0 … bound − 1 without bias (Lemire 2019, "Fast random integer generation in an interval"); bound
+    /// >= 1.
     std::uint32_t below(std::uint32_t bound);
     /// True with probability p; two words whatever p is.
     bool chance(double p) { return uniform() < p; }

@@ -1,8 +1,9 @@
 // State hash: one 128-bit number for the whole state of a world, the same however the work was cut.
 //
 // Each entity is mixed to two 64-bit words from its identity and its fields; the hash is the sum of the words, so it
-// does not depend on the order of entities, on threads or on memory layout, and can be updated when one of them changes.
-// Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators" (SplitMix64).
+// does not depend on the order of entities, on threads or on memory layout, and can be updated when one of them
+// changes. Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators"
+// (SplitMix64).
 #pragma once
 
 #include <bit>

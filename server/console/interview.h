@@ -7,8 +7,8 @@
 
 namespace evod::console {
 
-/// Asks one question a parameter; an empty answer, or the end of the input, takes what is proposed. An answer that cannot
-/// be is explained and asked for again.
+/// Asks one question a parameter; an empty answer, or the end of the input, takes what is proposed. An answer that
+/// cannot be is explained and asked for again.
 ///
 /// proposed  what each question proposes; valid.
 /// returns   a valid set.

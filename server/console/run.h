@@ -13,7 +13,7 @@ namespace evod::console {
 struct RunOptions {
     std::string experiment; // path; empty: the defaults of the registry
     std::optional<std::uint64_t> seed;
-    base::Seed drawn_seed; // by chance, for an experiment that has none
+    base::Seed drawn_seed;                    // by chance, for an experiment that has none
     std::optional<std::uint32_t> generations; // takes the place of generation_limit
     std::size_t threads = 1;
     std::vector<std::string> changes; // "name=value"

@@ -113,7 +113,7 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::steady_timer hello_timer_, farewell_timer_, writer_signal_;
     bool greeted_ = false, finishing_ = false, ended_ = false;
     bool input_over_ = false; // the client will send nothing more
-    int coroutines_ = 0; // that still run
+    int coroutines_ = 0;      // that still run
 
     std::deque<Queued> queue_;
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in queue_

@@ -17,14 +17,20 @@ constexpr Coordinate units_per_px = 4096;
 constexpr float px_per_unit = 1.0f / units_per_px;
 
 /// The nearest whole unit, halves to even; |px| < 2^19.
-inline Coordinate to_units(double px) { return static_cast<Coordinate>(std::lrint(px * units_per_px)); }
+inline Coordinate to_units(double px) {
+    return static_cast<Coordinate>(std::lrint(px * units_per_px));
+}
 inline Coordinate to_units(float px) {
     return static_cast<Coordinate>(std::lrint(px * static_cast<float>(units_per_px)));
 }
-inline double to_px(Coordinate units) { return static_cast<double>(units) / units_per_px; }
+inline double to_px(Coordinate units) {
+    return static_cast<double>(units) / units_per_px;
+}
 
 /// b − a in px; exact up to 4,096 px.
-inline float distance_px(Coordinate a, Coordinate b) { return static_cast<float>(b - a) * px_per_unit; }
+inline float distance_px(Coordinate a, Coordinate b) {
+    return static_cast<float>(b - a) * px_per_unit;
+}
 
 /// An island's inside: 0 … width, 0 … height. The walls are half-planes beyond it.
 struct Area {

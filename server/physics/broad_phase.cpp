@@ -6,7 +6,8 @@ namespace evod::physics {
 
 void CircleGrid::build(const Circles& circles, const Area& area, float reach_px) {
     const std::size_t n = circles.size();
-    const double share = static_cast<double>(area.width) * area.height / static_cast<double>(std::max<std::size_t>(n, 1));
+    const double share =
+        static_cast<double>(area.width) * area.height / static_cast<double>(std::max<std::size_t>(n, 1));
     const double least = static_cast<double>(reach_px) * units_per_px;
     shift_ = 12;
     while (shift_ < 30 && (static_cast<double>(1u << shift_) < least ||

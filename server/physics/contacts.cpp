@@ -18,7 +18,9 @@ bool circles_touch(const Circles& circles, std::uint32_t a, std::uint32_t b) {
     return dx * dx + dy * dy <= reach * reach;
 }
 
-BoxShape shape_of(const Boxes& boxes, std::size_t i) { return {boxes.half_width[i], boxes.half_height[i]}; }
+BoxShape shape_of(const Boxes& boxes, std::size_t i) {
+    return {boxes.half_width[i], boxes.half_height[i]};
+}
 
 Overlap overlap_of(const Boxes& boxes, std::size_t a, std::size_t b) {
     return box_box(distance_px(boxes.x[a], boxes.x[b]), distance_px(boxes.y[a], boxes.y[b]), shape_of(boxes, a),
@@ -140,9 +142,8 @@ void Contacts::find_box_pairs(const Circles& circles, const Boxes& boxes) {
     boxes_by_left_.resize(boxes.size());
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
         boxes_by_left_[i] = i;
-    std::sort(boxes_by_left_.begin(), boxes_by_left_.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return left(a) != left(b) ? left(a) < left(b) : a < b;
-    });
+    std::sort(boxes_by_left_.begin(), boxes_by_left_.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return left(a) != left(b) ? left(a) < left(b) : a < b; });
     for (std::size_t i = 0; i < boxes_by_left_.size(); ++i) {
         const std::uint32_t a = boxes_by_left_[i];
         // One unit more, because both halves have been rounded.

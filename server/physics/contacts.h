@@ -1,7 +1,7 @@
 // Contacts: finds which bodies touch, and resolves them.
 //
-// Resolving a contact moves the two apart in proportion to their inverse masses and, if they approach, gives the impulse
-// j = −(1 + e)(v_rel·n)/(Σ inverse mass) along n.
+// Resolving a contact moves the two apart in proportion to their inverse masses and, if they approach, gives the
+// impulse j = −(1 + e)(v_rel·n)/(Σ inverse mass) along n.
 //
 // Threads      pairs are looked for in rows of cells side by side; they are resolved one after another.
 // Determinism  contacts are resolved in rising order of (first body, second body): circles by id, then boxes by index.

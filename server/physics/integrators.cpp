@@ -5,11 +5,13 @@
 namespace evod::physics {
 
 Integration integration(Integrator integrator, double tick_s, double damping_rate) {
-    const double kept = integrator == Integrator::BackwardEuler ? 1 / (1 + damping_rate * tick_s)
-                                                                : base::exp(-damping_rate * tick_s);
+    const double kept =
+        integrator == Integrator::BackwardEuler ? 1 / (1 + damping_rate * tick_s) : base::exp(-damping_rate * tick_s);
     return {integrator, static_cast<float>(tick_s), static_cast<float>(kept)};
 }
 
-double damping_rate(double share_kept) { return -base::log(share_kept) * 60; }
+double damping_rate(double share_kept) {
+    return -base::log(share_kept) * 60;
+}
 
 } // namespace evod::physics

@@ -23,8 +23,8 @@ Overlap circle_circle(float dx, float dy, float first_radius, float second_radiu
 /// dx, dy  second centre − first centre, px. Of equal overlaps the x axis wins; equal centres: normal +x or +y.
 Overlap box_box(float dx, float dy, BoxShape first, BoxShape second);
 
-/// dx, dy  circle's centre − box's centre, px. A centre inside the box, or on its edge, leaves by the nearest side: depth
-/// is the way to it plus the radius; of equally near sides the x axis wins, then +.
+/// dx, dy  circle's centre − box's centre, px. A centre inside the box, or on its edge, leaves by the nearest side:
+/// depth is the way to it plus the radius; of equally near sides the x axis wins, then +.
 Overlap box_circle(float dx, float dy, BoxShape box, float radius);
 
 } // namespace evod::physics

@@ -8,8 +8,10 @@ namespace {
 
 void accelerate_all(Bodies& bodies, const Integration& integration) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies.velocity_x[i] = accelerate(integration, bodies.velocity_x[i], bodies.force_x[i] * bodies.inverse_mass[i]);
-        bodies.velocity_y[i] = accelerate(integration, bodies.velocity_y[i], bodies.force_y[i] * bodies.inverse_mass[i]);
+        bodies.velocity_x[i] =
+            accelerate(integration, bodies.velocity_x[i], bodies.force_x[i] * bodies.inverse_mass[i]);
+        bodies.velocity_y[i] =
+            accelerate(integration, bodies.velocity_y[i], bodies.force_y[i] * bodies.inverse_mass[i]);
     }
 }
 
@@ -25,7 +27,8 @@ bool limit_speed(float& vx, float& vy, float limit) {
 }
 
 /// extent(i)  the radius, or least half side, px.
-/// drift      what explicit Euler adds to the velocity that moves a body, or nullptr. The limit acts on both velocities.
+/// drift      what explicit Euler adds to the velocity that moves a body, or nullptr. The limit acts on both
+/// velocities.
 template <class Extent>
 void move_all(Bodies& bodies, const StepParameters& parameters, const float* drift_x, const float* drift_y,
               Extent&& extent, StepCounts& counts) {
@@ -77,10 +80,12 @@ StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const
     StepCounts counts;
     const float* drift_x = is_explicit ? drift_x_.data() : nullptr;
     const float* drift_y = is_explicit ? drift_y_.data() : nullptr;
-    move_all(circles, parameters, drift_x, drift_y, [&](std::size_t i) { return circles.radius[i]; }, counts);
-    move_all(boxes, parameters, is_explicit ? drift_x + circles.size() : nullptr,
-             is_explicit ? drift_y + circles.size() : nullptr,
-             [&](std::size_t i) { return std::min(boxes.half_width[i], boxes.half_height[i]); }, counts);
+    move_all(
+        circles, parameters, drift_x, drift_y, [&](std::size_t i) { return circles.radius[i]; }, counts);
+    move_all(
+        boxes, parameters, is_explicit ? drift_x + circles.size() : nullptr,
+        is_explicit ? drift_y + circles.size() : nullptr,
+        [&](std::size_t i) { return std::min(boxes.half_width[i], boxes.half_height[i]); }, counts);
     keep_inside(circles, boxes, area, parameters.restitution);
     return counts;
 }

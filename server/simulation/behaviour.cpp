@@ -41,8 +41,8 @@ void perceive_and_choose(const Living& living, const Items& food, const Items& p
             sight.poison_distance[i] = std::sqrt(danger.square);
             const bool sees_food = meal.item != Items::none, sees_poison = danger.item != Items::none;
 
-            const bool afraid = sees_poison && (rules.flee_rule == FleeRule::Always || !sees_food ||
-                                                danger.square < meal.square);
+            const bool afraid =
+                sees_poison && (rules.flee_rule == FleeRule::Always || !sees_food || danger.square < meal.square);
             const float effort = living.impulse[i] * rules.force_per_unit;
             Force force;
             if (afraid && base::unit_float(key.words(id, tick, 0)[1]) * rules.certain_impulse < living.impulse[i])

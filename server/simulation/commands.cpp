@@ -4,6 +4,8 @@
 
 namespace evod::simulation {
 
-std::string to_text(const RunId& id) { return base::to_text(base::StateHash{.low = id.low, .high = id.high}); }
+std::string to_text(const RunId& id) {
+    return base::to_text(base::StateHash{.low = id.low, .high = id.high});
+}
 
 } // namespace evod::simulation

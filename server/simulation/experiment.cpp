@@ -77,8 +77,7 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     json::stream_parser parser;
     boost::system::error_code error;
     const std::size_t read = parser.write_some(text, error);
-    if (!error && read < text.size() &&
-        text.find_first_not_of(" \t\r\n", read) != std::string_view::npos)
+    if (!error && read < text.size() && text.find_first_not_of(" \t\r\n", read) != std::string_view::npos)
         error = json::error::extra_data;
     if (!error)
         parser.finish(error);
@@ -104,8 +103,8 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
             if (value.is_uint64() || (value.is_int64() && value.get_int64() >= 0))
                 experiment.seed = base::Seed{value.to_number<std::uint64_t>()};
             else
-                violations.push_back({with_line(fields, name), "a whole number, 0 to 18446744073709551615",
-                                      json::serialize(value)});
+                violations.push_back(
+                    {with_line(fields, name), "a whole number, 0 to 18446744073709551615", json::serialize(value)});
         } else if (name == "description") {
             if (value.is_string())
                 experiment.description = std::string{value.get_string()};
@@ -146,7 +145,8 @@ std::string to_experiment_text(const Parameters& parameters) {
         const ParameterValue value = description.get(parameters);
         // What a reader takes where nothing is said.
         const bool follows = description.name == "reference_population";
-        if (follows ? parameters.reference_population == parameters.population_size : value == description.default_value())
+        if (follows ? parameters.reference_population == parameters.population_size
+                    : value == description.default_value())
             continue;
         text += text.size() > 1 ? ",\n  " : "\n  ";
         text += "\"" + std::string{description.name} + "\": ";

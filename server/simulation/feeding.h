@@ -1,7 +1,8 @@
 // Feeding: who touches which items after the tick's move, and who gets each.
 //
 // Threads      organisms are looked at in blocks side by side; what each block found is put together in order.
-// Determinism  an item goes to its nearest toucher, of equally near ones to the lowest id, whatever the order of search.
+// Determinism  an item goes to its nearest toucher, of equally near ones to the lowest id, whatever the order of
+// search.
 #pragma once
 
 #include "server/base/executor.h"

@@ -17,9 +17,8 @@ enum HashKind : std::uint32_t { OrganismKind = 1, FoodKind = 2, PoisonKind = 3, 
 constexpr std::size_t organisms_per_block = 1024;
 
 physics::StepParameters step_parameters(const Parameters& p) {
-    constexpr physics::Integrator integrators[] = {physics::Integrator::SymplecticEuler,
-                                                   physics::Integrator::ExplicitEuler,
-                                                   physics::Integrator::BackwardEuler};
+    constexpr physics::Integrator integrators[] = {
+        physics::Integrator::SymplecticEuler, physics::Integrator::ExplicitEuler, physics::Integrator::BackwardEuler};
     return {.integration = physics::integration(integrators[static_cast<std::size_t>(p.integrator)], p.tick_s,
                                                 physics::damping_rate(p.damping)),
             .restitution = static_cast<float>(p.restitution),
@@ -68,13 +67,12 @@ void Island::place(const Parameters& parameters, std::uint64_t generation) {
     area_ = {physics::to_units(plan.width_px), physics::to_units(plan.height_px)};
     step_parameters_ = step_parameters(parameters);
 
-    PlacedBoxes placed =
-        place_boxes({.obstacle_count = parameters.obstacle_count,
-                     .crate_count = parameters.crate_count,
-                     .obstacle_half_size_px = static_cast<float>(parameters.obstacle_size_px / 2),
-                     .crate_half_size_px = static_cast<float>(parameters.crate_size_px / 2),
-                     .crate_mass_kg = static_cast<float>(parameters.crate_mass_kg)},
-                    seed_, index_, generation, area_);
+    PlacedBoxes placed = place_boxes({.obstacle_count = parameters.obstacle_count,
+                                      .crate_count = parameters.crate_count,
+                                      .obstacle_half_size_px = static_cast<float>(parameters.obstacle_size_px / 2),
+                                      .crate_half_size_px = static_cast<float>(parameters.crate_size_px / 2),
+                                      .crate_mass_kg = static_cast<float>(parameters.crate_mass_kg)},
+                                     seed_, index_, generation, area_);
     obstacles_ = std::move(placed.obstacles);
     boxes_ = std::move(placed.crates);
     crate_count_ = static_cast<std::uint32_t>(boxes_.size());

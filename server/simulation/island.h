@@ -45,8 +45,8 @@ class Island {
     /// tick  of the generation, 1 for its first.
     void advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
-    /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end, or
-    /// the function of the chromosome.
+    /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end,
+    /// or the function of the chromosome.
     std::vector<double> fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const;
 
     /// The index in bodies() of a living organism; nullopt if it is dead.

@@ -31,10 +31,10 @@ void Items::begin_generation(const ItemRules& rules, base::Seed seed, std::uint3
 
 void Items::choose_cells(std::uint32_t count) {
     // About three items to a cell, so that few buckets overflow and a query meets few empty ones.
-    const double share =
-        3 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
+    const double share = 3 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
     shift_ = 12;
-    while (shift_ < 30 && static_cast<double>(1u << (shift_ + 1)) * static_cast<double>(1u << (shift_ + 1)) <= 2 * share)
+    while (shift_ < 30 &&
+           static_cast<double>(1u << (shift_ + 1)) * static_cast<double>(1u << (shift_ + 1)) <= 2 * share)
         ++shift_;
     columns_ = (static_cast<std::uint32_t>(area_.width) >> shift_) + 1;
     rows_ = (static_cast<std::uint32_t>(area_.height) >> shift_) + 1;
@@ -133,8 +133,8 @@ void Items::reappear(std::uint32_t tick, const physics::Boxes& obstacles) {
     }
 }
 
-// The query is where most of a tick goes. Four slots are looked at at a time, by the compiler's vector types, which halves
-// its time. A lane computes what a loop over single slots would, so the width changes no bit.
+// The query is where most of a tick goes. Four slots are looked at at a time, by the compiler's vector types, which
+// halves its time. A lane computes what a loop over single slots would, so the width changes no bit.
 namespace {
 
 constexpr std::uint32_t lanes = 4;

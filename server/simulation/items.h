@@ -1,6 +1,7 @@
 // Items: the food, or the poison, of an island; they rest where they are, are eaten, and reappear.
 //
-// Those that are there lie in a uniform grid of buckets, eight items to a bucket, updated in place as items come and go.
+// Those that are there lie in a uniform grid of buckets, eight items to a bucket, updated in place as items come and
+// go.
 //
 // Threads      consume() and reappear() by one thread; queries by any number while nothing changes.
 // Determinism  where an item reappears depends on (seed, island, generation, item, tick) alone; queries answer by
@@ -68,7 +69,7 @@ class Items {
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return due_tick_[item] == 0; }
     const std::vector<std::uint32_t>& due_tick() const { return due_tick_; } // by id; 0: there
-    const std::vector<physics::Coordinate>& x() const { return x_; } // by id; of one that is away, where it was
+    const std::vector<physics::Coordinate>& x() const { return x_; }         // by id; of one that is away, where it was
     const std::vector<physics::Coordinate>& y() const { return y_; }
     float radius_px() const { return rules_.radius_px; }
     /// Of all items; kept up to date as they come and go.
@@ -133,11 +134,11 @@ class Items {
     struct Due {
         std::uint32_t tick, item;
     };
-    std::vector<Due> due_;        // in order of tick, from due_begin_
+    std::vector<Due> due_; // in order of tick, from due_begin_
     std::size_t due_begin_ = 0;
-    unsigned shift_ = 0;          // a cell's side is 2^shift_ units
+    unsigned shift_ = 0; // a cell's side is 2^shift_ units
     std::uint32_t rows_ = 0, columns_ = 0;
-    std::vector<Bucket> buckets_; // one per cell, then those that took what did not fit
+    std::vector<Bucket> buckets_;      // one per cell, then those that took what did not fit
     std::vector<std::uint32_t> spare_; // of the latter, those that are empty
     std::uint32_t present_count_ = 0;
     base::StateHash hash_;

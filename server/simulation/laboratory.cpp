@@ -47,7 +47,9 @@ Applied applied_now(const Entry& entry) {
     return {.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
 }
 
-bool has_goal(const RunControl& control) { return control.endless || control.until_generation; }
+bool has_goal(const RunControl& control) {
+    return control.endless || control.until_generation;
+}
 
 } // namespace
 
@@ -153,8 +155,8 @@ Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
-    const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const auto& entry) { return entry->name == command.world; });
+    const auto found =
+        std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == command.world; });
     if (found == entries_.end())
         return not_found(command.world);
     const Applied applied{.world = command.world, .tick = (*found)->world.moment().tick, .parameters = {}};
@@ -225,11 +227,9 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     if (command.expected_revision && *command.expected_revision != world.parameters().revision)
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "the parameters have been changed by someone else since",
-                       .violations = {{"set_parameters.expected_revision",
-                                       std::to_string(world.parameters().revision),
+                       .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}}};
-    const Result<Parameters> requested =
-        assign(world.parameters().requested, command.assignments, "set_parameters.");
+    const Result<Parameters> requested = assign(world.parameters().requested, command.assignments, "set_parameters.");
     if (!requested)
         return requested.error();
     // What waits for a reset may wait for ever, so the rest must go together without it.

@@ -61,7 +61,8 @@ class Laboratory {
     /// Advances a world that wants a tick by one, and minds its goals.
     void advance(Entry& entry, base::Executor& executor);
 
-    /// The world named, or for an empty name the only one, or `default`. Refused with NOT_FOUND and the names there are.
+    /// The world named, or for an empty name the only one, or `default`. Refused with NOT_FOUND and the names there
+    /// are.
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 

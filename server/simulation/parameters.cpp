@@ -54,45 +54,44 @@ std::string number_text(double value) {
 /// Sets one parameter, or says what is wrong with the value.
 std::optional<base::Violation> set_value(const ParameterDescription& description, const ParameterValue& value,
                                          Parameters& parameters, std::string field) {
-    const bool done = std::visit(
-        Overloaded{
-            [&](const RealParameter& real) {
-                double number;
-                if (const auto* given = std::get_if<double>(&value))
-                    number = *given;
-                else if (const auto* whole = std::get_if<std::uint32_t>(&value))
-                    number = *whole;
-                else
-                    return false;
-                if (!(number >= real.range.min && number <= real.range.max)) // a NaN is in no range
-                    return false;
-                real.set(parameters, number);
-                return true;
-            },
-            [&](const CountParameter& count) {
-                const auto* given = std::get_if<std::uint32_t>(&value);
-                if (given == nullptr || *given < count.range.min || *given > count.range.max)
-                    return false;
-                count.set(parameters, *given);
-                return true;
-            },
-            [&](const FlagParameter& flag) {
-                const auto* given = std::get_if<bool>(&value);
-                if (given != nullptr)
-                    flag.set(parameters, *given);
-                return given != nullptr;
-            },
-            [&](const ChoiceParameter& choice) {
-                const auto* given = std::get_if<std::string>(&value);
-                if (given == nullptr)
-                    return false;
-                const auto found = std::find(choice.names.begin(), choice.names.end(), *given);
-                if (found == choice.names.end())
-                    return false;
-                choice.set(parameters, static_cast<std::size_t>(found - choice.names.begin()));
-                return true;
-            }},
-        description.kind);
+    const bool done =
+        std::visit(Overloaded{[&](const RealParameter& real) {
+                                  double number;
+                                  if (const auto* given = std::get_if<double>(&value))
+                                      number = *given;
+                                  else if (const auto* whole = std::get_if<std::uint32_t>(&value))
+                                      number = *whole;
+                                  else
+                                      return false;
+                                  if (!(number >= real.range.min && number <= real.range.max)) // a NaN is in no range
+                                      return false;
+                                  real.set(parameters, number);
+                                  return true;
+                              },
+                              [&](const CountParameter& count) {
+                                  const auto* given = std::get_if<std::uint32_t>(&value);
+                                  if (given == nullptr || *given < count.range.min || *given > count.range.max)
+                                      return false;
+                                  count.set(parameters, *given);
+                                  return true;
+                              },
+                              [&](const FlagParameter& flag) {
+                                  const auto* given = std::get_if<bool>(&value);
+                                  if (given != nullptr)
+                                      flag.set(parameters, *given);
+                                  return given != nullptr;
+                              },
+                              [&](const ChoiceParameter& choice) {
+                                  const auto* given = std::get_if<std::string>(&value);
+                                  if (given == nullptr)
+                                      return false;
+                                  const auto found = std::find(choice.names.begin(), choice.names.end(), *given);
+                                  if (found == choice.names.end())
+                                      return false;
+                                  choice.set(parameters, static_cast<std::size_t>(found - choice.names.begin()));
+                                  return true;
+                              }},
+                   description.kind);
     if (done)
         return std::nullopt;
     return base::Violation{std::move(field), description.allowed(), to_text(value)};
@@ -135,13 +134,12 @@ double covered_share(const Parameters& p, const IslandPlan& plan) {
 } // namespace
 
 ParameterValue ParameterDescription::get(const Parameters& parameters) const {
-    return std::visit(Overloaded{[&](const RealParameter& p) -> ParameterValue { return p.get(parameters); },
-                                 [&](const CountParameter& p) -> ParameterValue { return p.get(parameters); },
-                                 [&](const FlagParameter& p) -> ParameterValue { return p.get(parameters); },
-                                 [&](const ChoiceParameter& p) -> ParameterValue {
-                                     return std::string{p.names[p.get(parameters)]};
-                                 }},
-                      kind);
+    return std::visit(
+        Overloaded{[&](const RealParameter& p) -> ParameterValue { return p.get(parameters); },
+                   [&](const CountParameter& p) -> ParameterValue { return p.get(parameters); },
+                   [&](const FlagParameter& p) -> ParameterValue { return p.get(parameters); },
+                   [&](const ChoiceParameter& p) -> ParameterValue { return std::string{p.names[p.get(parameters)]}; }},
+        kind);
 }
 
 void ParameterDescription::copy(const Parameters& from, Parameters& to) const {
@@ -165,11 +163,10 @@ std::string ParameterDescription::allowed() const {
 }
 
 std::string to_text(const ParameterValue& value) {
-    return std::visit(Overloaded{[](double v) { return number_text(v); },
-                                 [](std::uint32_t v) { return std::to_string(v); },
-                                 [](bool v) { return std::string{v ? "true" : "false"}; },
-                                 [](const std::string& v) { return v; }},
-                      value);
+    return std::visit(
+        Overloaded{[](double v) { return number_text(v); }, [](std::uint32_t v) { return std::to_string(v); },
+                   [](bool v) { return std::string{v ? "true" : "false"}; }, [](const std::string& v) { return v; }},
+        value);
 }
 
 std::span<const ParameterDescription> parameter_registry() {
@@ -227,7 +224,8 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
                           .violations = {}};
     if (const std::size_t most = parameter_registry().size(); assignments.size() > most) {
         // Not looked at one by one: it may be a great many.
-        const std::string field = field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
+        const std::string field =
+            field_prefix.empty() ? "parameters" : std::string{field_prefix.substr(0, field_prefix.size() - 1)};
         refusal.violations.push_back(
             {field, "at most " + std::to_string(most) + ", each parameter once", std::to_string(assignments.size())});
         return refusal;
@@ -274,7 +272,8 @@ base::Result<ParameterValue> parse_value(const ParameterDescription& description
                                      return ParameterValue{text == "true"};
                                  },
                                  [&](const ChoiceParameter& choice) -> base::Result<ParameterValue> {
-                                     if (std::find(choice.names.begin(), choice.names.end(), text) == choice.names.end())
+                                     if (std::find(choice.names.begin(), choice.names.end(), text) ==
+                                         choice.names.end())
                                          return refused();
                                      return ParameterValue{std::string{text}};
                                  }},
@@ -337,7 +336,8 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
     if (plan.poison_count > 20'000'000)
         refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
-    const double items = static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
+    const double items =
+        static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
     if (items > 4e7)
         refuse("island_count", "so many that all islands together have at most 40000000 items",
                std::to_string(p.island_count) + ", with " + number_text(items));

@@ -130,8 +130,9 @@ struct Assignment {
 /// What is wrong with an assignment on its own: its name, its kind, its range.
 std::optional<base::Violation> fault_of(const Assignment& assignment, std::string_view field_prefix = "");
 
-/// `parameters` with every assignment made. A count is taken for a real. Refuses unknown and repeated names, wrong kinds,
-/// values outside their range (NaN too) and sets that do not go together, naming every one as `field_prefix` + name.
+/// `parameters` with every assignment made. A count is taken for a real. Refuses unknown and repeated names, wrong
+/// kinds, values outside their range (NaN too) and sets that do not go together, naming every one as `field_prefix` +
+/// name.
 base::Result<Parameters> assign(Parameters parameters, std::span<const Assignment> assignments,
                                 std::string_view field_prefix = "");
 
@@ -150,8 +151,8 @@ IslandPlan island_plan(const Parameters& parameters);
 
 /// What holds during a generation and what was asked for, for parameters that wait for a generation or a reset.
 struct ParameterSet {
-    Parameters active;    // holds now
-    Parameters requested; // will hold in the end
+    Parameters active;          // holds now
+    Parameters requested;       // will hold in the end
     std::uint64_t revision = 1; // rises with every accepted change
 };
 

@@ -48,8 +48,8 @@ class PlacedCircles {
   public:
     PlacedCircles(const std::vector<float>& radius, const physics::Area& area) : radius_{radius} {
         const float widest = radius.empty() ? 0 : 2 * *std::max_element(radius.begin(), radius.end());
-        const double share =
-            static_cast<double>(area.width) * area.height / static_cast<double>(std::max<std::size_t>(radius.size(), 1));
+        const double share = static_cast<double>(area.width) * area.height /
+                             static_cast<double>(std::max<std::size_t>(radius.size(), 1));
         while (shift_ < 30 &&
                (static_cast<double>(1u << shift_) < static_cast<double>(widest) * physics::units_per_px ||
                 static_cast<double>(1u << shift_) * static_cast<double>(1u << shift_) * 4 < share))

@@ -1,8 +1,8 @@
 // World: one experiment with its parameters, seed, islands and history. Pure: ticks happen when advance_tick is called.
 //
 // A moment is (generation, tick within it). A generation's last tick ends it: statistics are made and the world stands
-// there, its dead and living still to be looked at, until the next advance_tick breeds the next generation and takes its
-// first tick. So breeding uses the parameters that hold when it happens.
+// there, its dead and living still to be looked at, until the next advance_tick breeds the next generation and takes
+// its first tick. So breeding uses the parameters that hold when it happens.
 //
 // Threads      called on the simulation thread; work goes to the executor it is handed.
 // Determinism  the state after any tick is a pure function of (parameters, seed, changes at their ticks).
@@ -42,7 +42,8 @@ class World {
     /// Begins the run again with the parameters last asked for.
     void reset(base::Seed seed);
 
-    /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while outcome() is not Running.
+    /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while outcome() is
+    /// not Running.
     void advance_tick(base::Executor& executor);
 
     /// Breeds the next generation and places it, as advance_tick would; does nothing if none has ended.

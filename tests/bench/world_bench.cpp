@@ -1,9 +1,9 @@
 // Ticks of whole worlds: the default one, and the benchmark's at several populations, on one thread.
 //
 // items_per_second is organism-ticks per second: organisms alive at the start of each tick, summed, by processor time.
+#include "server/base/inline_executor.h"
 #include "server/simulation/experiment.h"
 #include "server/simulation/world.h"
-#include "server/base/inline_executor.h"
 
 #include <benchmark/benchmark.h>
 
@@ -33,7 +33,9 @@ void advance(benchmark::State& state, const simulation::Parameters& parameters) 
 }
 
 /// Turnovers of generations included, as they come.
-void default_world(benchmark::State& state) { advance(state, experiment("default")); }
+void default_world(benchmark::State& state) {
+    advance(state, experiment("default"));
+}
 BENCHMARK(default_world)->Unit(benchmark::kMicrosecond)->MinTime(3);
 
 void bench_world(benchmark::State& state) {

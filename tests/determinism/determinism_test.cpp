@@ -1,7 +1,7 @@
 // Equal (parameters, seed, commands) give equal bits after every tick, whatever works on them and whoever looks on.
 
-#include "tests/determinism/scenarios.h"
 #include "server/base/inline_executor.h"
+#include "tests/determinism/scenarios.h"
 #include "tests/support/thread_executor.h"
 
 #include <gtest/gtest.h>

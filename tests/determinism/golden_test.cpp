@@ -3,8 +3,8 @@
 // They change only on purpose: with a change of the model, whose commit says old and new. Then old runs are of another
 // model and the model version of run files rises.
 
-#include "tests/determinism/scenarios.h"
 #include "server/base/inline_executor.h"
+#include "tests/determinism/scenarios.h"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,9 @@ TEST_P(GoldenHash, IsTheSameInEveryBuild) {
         << scenario.name;
 }
 
-TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) { EXPECT_EQ(golden_hashes.size(), all().size()); }
+TEST(GoldenHashes, AreKnownForEveryScenarioAndNoOther) {
+    EXPECT_EQ(golden_hashes.size(), all().size());
+}
 
 TEST(TheScenarios, UseWhatTheyAreFor) {
     base::InlineExecutor executor;

@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 const fs::path root = EVOD_SOURCE_FOLDER;
 
 struct Source {
-    std::string path;                          // from the root
-    std::string folder;                        // of the table below
-    std::vector<std::string> ours, libraries;  // included, as written
-    std::string code;                          // without comments
+    std::string path;                         // from the root
+    std::string folder;                       // of the table below
+    std::vector<std::string> ours, libraries; // included, as written
+    std::string code;                         // without comments
 };
 
 // Folder → the folders it may include, its own aside. A folder has an arrow only to folders printed below it in
@@ -44,8 +44,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/runtime",
      {"server/storage", "server/protocol", "server/simulation", "server/evolution", "server/physics", "server/base",
       "proto/wire", "proto/evod", "tests/support"}}, // the tsan preset's worker pool is that of tests/support
-    {"server/console",
-     {"server/runtime", "server/simulation", "server/evolution", "server/physics", "server/base"}},
+    {"server/console", {"server/runtime", "server/simulation", "server/evolution", "server/physics", "server/base"}},
     {"server/network",
      {"server/runtime", "server/protocol", "server/simulation", "server/evolution", "server/base", "proto/wire",
       "proto/evod"}},
@@ -159,13 +158,14 @@ TEST(Layering, ServerNeverIncludesTestsButTheWorkerPoolOfTsan) {
 
 TEST(Core, IncludesNothingThatHasATimeADiskAThreadOrADevice) {
     static const std::set<std::string> forbidden = {
-        "thread",  "chrono",   "fstream",      "iostream",   "random",    "mutex",         "future",
-        "atomic",  "stop_token", "shared_mutex", "filesystem", "condition_variable", "ctime", "time.h",
-        "unistd.h", "semaphore", "barrier",      "latch",      "coroutine", "execution",     "regex",
-        "unordered_map", "unordered_set"}; // the last two: their order is the library's
-    static const std::vector<std::string> forbidden_beginnings = {"google/", "evod/", "boost/asio", "boost/beast",
-                                                                  "sys/", "spdlog/", "fmt/", "tbb/", "oneapi/", "sqlite",
-                                                                  "zstd", "proto/"};
+        "thread",    "chrono",    "fstream",    "iostream",      "random",       "mutex",
+        "future",    "atomic",    "stop_token", "shared_mutex",  "filesystem",   "condition_variable",
+        "ctime",     "time.h",    "unistd.h",   "semaphore",     "barrier",      "latch",
+        "coroutine", "execution", "regex",      "unordered_map", "unordered_set"}; // the last two: their order is the
+                                                                                   // library's
+    static const std::vector<std::string> forbidden_beginnings = {"google/", "evod/",   "boost/asio", "boost/beast",
+                                                                  "sys/",    "spdlog/", "fmt/",       "tbb/",
+                                                                  "oneapi/", "sqlite",  "zstd",       "proto/"};
     for (const Source& source : sources()) {
         if (!is_core(source))
             continue;
@@ -193,21 +193,24 @@ void expect_nowhere_in_core(const std::regex& pattern, const char* why) {
 TEST(Core, CallsNoTranscendentalFunctionOfTheCLibrary) {
     // √, floor, ceil, abs, lrint and round are exact; every other function of <cmath> differs between processors.
     expect_nowhere_in_core(
-        std::regex{R"((std::|[^\w:.]::)(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1)"
-                   R"(|log|log2|log10|log1p|pow|hypot|cbrt|erf|erfc|tgamma|lgamma|fma|remainder|lerp|midpoint)f?l?\s*\()"},
+        std::regex{
+            R"((std::|[^\w:.]::)(sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|asinh|acosh|atanh|exp|exp2|expm1)"
+            R"(|log|log2|log10|log1p|pow|hypot|cbrt|erf|erfc|tgamma|lgamma|fma|remainder|lerp|midpoint)f?l?\s*\()"},
         "a function with last bits of its own: ");
 }
 
 TEST(Core, UsesNoDistributionOrDeviceOfTheStandardLibrary) {
-    expect_nowhere_in_core(std::regex{R"(std::(random_device|\w+_distribution|mt19937\w*|shuffle|sample|rand|time|clock)\b)"},
-                           "randomness or time that is not ours: ");
+    expect_nowhere_in_core(
+        std::regex{R"(std::(random_device|\w+_distribution|mt19937\w*|shuffle|sample|rand|time|clock)\b)"},
+        "randomness or time that is not ours: ");
     expect_nowhere_in_core(std::regex{R"(\b(rdtsc|getenv|_mm_rsqrt|_mm_rcp|rsqrt)\b)"}, "not the same everywhere: ");
 }
 
 TEST(Core, ReducesNothingWithEigen) {
     // The order of such a sum depends on the width of a register.
     expect_nowhere_in_core(
-        std::regex{R"((\.|->)(sum|dot|norm|squaredNorm|stableNorm|mean|prod|trace|normalized|normalize|redux|rsqrt)\s*\()"},
+        std::regex{
+            R"((\.|->)(sum|dot|norm|squaredNorm|stableNorm|mean|prod|trace|normalized|normalize|redux|rsqrt)\s*\()"},
         "a reduction in Eigen's order: ");
 }
 

@@ -7,7 +7,9 @@
 
 namespace evod::scenarios {
 
-void PrintTo(const Scenario& scenario, std::ostream* out) { *out << scenario.name; }
+void PrintTo(const Scenario& scenario, std::ostream* out) {
+    *out << scenario.name;
+}
 
 const std::vector<Scenario>& all() {
     static const std::vector<Scenario> scenarios = {
@@ -16,24 +18,32 @@ const std::vector<Scenario>& all() {
         {"classic",
          R"({"population_size": 20, "food_count": 65, "steering_lookahead_s": 0, "flee_rule": "always",
              "mutate_survivors": true, "generation_s": 4})",
-         base::Seed{43}, 600, {}},
+         base::Seed{43},
+         600,
+         {}},
 
         {"crates_and_obstacles_explicit_euler",
          R"({"integrator": "explicit_euler", "obstacle_count": 15, "crate_count": 12, "crate_mass_kg": 1.5,
              "respawn_s": 1.5, "generation_s": 5, "selection": "tournament", "crossover": "single_point"})",
-         base::Seed{44}, 700, {}},
+         base::Seed{44},
+         700,
+         {}},
 
         {"dense_backward_euler", // organisms touch all the time, at another tick length
          R"({"integrator": "backward_euler", "population_size": 160, "island_width_px": 960, "island_height_px": 660,
              "damping": 0.98, "restitution": 1, "tick_s": 0.025, "food_count": 60, "poison_count": 60,
              "crate_count": 5, "generation_s": 6, "selection": "truncation", "max_speed_px_s": 60})",
-         base::Seed{45}, 500, {}},
+         base::Seed{45},
+         500,
+         {}},
 
         {"ring_of_four",
          R"({"island_count": 4, "population_size": 30, "migration": "ring", "migration_epoch": 1, "migrant_count": 2,
              "generation_s": 2, "selection": "stochastic_universal", "fitness_scaling": "linear_ranking",
              "crossover": "multi_point", "rearranging": "inversion", "elite_count": 2})",
-         base::Seed{46}, 600, {}},
+         base::Seed{46},
+         600,
+         {}},
 
         {"trade_offs_dying_out", // islands die out one after another, and generations end early
          R"({"island_count": 3, "population_size": 24, "health_loss_per_s": 40, "respawn": false, "food_count": 40,
@@ -41,7 +51,9 @@ const std::vector<Scenario>& all() {
              "poison_radius_cost": 0.1, "health_cap_per_size": 3, "migration": "fully_connected",
              "migration_epoch": 2, "immigrants_replace": "random", "population_model": "steady_state",
              "replaced_count": 9})",
-         base::Seed{47}, 900, {}},
+         base::Seed{47},
+         900,
+         {}},
 
         {"changes_while_it_runs",
          R"({"island_count": 2, "generation_s": 1.5, "scale_with_population": true})",
@@ -61,19 +73,25 @@ const std::vector<Scenario>& all() {
          R"({"population_size": 3000, "scale_with_population": true, "reference_population": 50, "obstacle_count": 30,
              "crate_count": 30, "generation_s": 2, "tournament_size": 4, "selection": "tournament",
              "tournament_replacement": false})",
-         base::Seed{49}, 150, {}},
+         base::Seed{49},
+         150,
+         {}},
 
         {"far_corner", // coordinates near the greatest there are
          R"({"island_width_px": 500000, "island_height_px": 500000, "population_size": 400, "food_count": 3000,
              "poison_count": 3000, "generation_s": 2})",
-         base::Seed{50}, 200, {}},
+         base::Seed{50},
+         200,
+         {}},
 
         {"rastrigin", // a generation is a tick
          R"({"fitness": "rastrigin", "population_size": 2500, "island_count": 3, "migration": "ring",
              "fitness_scaling": "exponential_ranking", "creep": "gaussian", "mutation_step": 4,
              "rearranging": "swap", "reset_chance": 0.01, "bit_flip_chance": 0.01, "crossover": "multi_point",
              "crossover_cuts": 3, "migration_epoch": 3})",
-         base::Seed{51}, 40, {}},
+         base::Seed{51},
+         40,
+         {}},
     };
     return scenarios;
 }
@@ -104,8 +122,8 @@ void Play::advance(base::Executor& executor) {
         for (const simulation::ParameterDescription& description : simulation::parameter_registry())
             if (change.parameters.find("\"" + std::string{description.name} + "\":") != std::string_view::npos)
                 assignments.push_back({std::string{description.name}, description.get(values)});
-        auto changed = laboratory_.apply(
-            simulation::SetParameters{.world = "w", .assignments = assignments, .dry_run = false, .expected_revision = {}});
+        auto changed = laboratory_.apply(simulation::SetParameters{
+            .world = "w", .assignments = assignments, .dry_run = false, .expected_revision = {}});
         if (!changed)
             std::fputs(to_text(changed.error()).c_str(), stderr);
         EVOD_ASSERT(changed.has_value());

@@ -28,7 +28,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (refusal.violations.empty())
             std::abort();
     } else {
-        refusal = {.code = base::RefusalCode::InvalidArgument, .message = "", .violations = protocol::faults_of(request)};
+        refusal = {
+            .code = base::RefusalCode::InvalidArgument, .message = "", .violations = protocol::faults_of(request)};
     }
     if (protocol::refusing(request.request_id(), refusal).ByteSizeLong() > (1u << 20))
         std::abort();

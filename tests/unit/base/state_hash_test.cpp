@@ -8,7 +8,9 @@
 namespace evod::base {
 namespace {
 
-StateHash entity(std::uint32_t kind, std::uint64_t id, float x) { return EntityHash{kind, id}.add(x, 0.0f).finish(); }
+StateHash entity(std::uint32_t kind, std::uint64_t id, float x) {
+    return EntityHash{kind, id}.add(x, 0.0f).finish();
+}
 
 TEST(StateHash, DoesNotDependOnTheOrderOfEntities) {
     const StateHash forward = entity(1, 1, 10) + entity(1, 2, 20) + entity(2, 1, 30);

@@ -1,9 +1,9 @@
 // What the tests of the genetic algorithm share: streams by seed, and counting how often things happen.
 #pragma once
 
+#include "server/base/inline_executor.h"
 #include "server/base/random.h"
 #include "tests/support/chi_square.h"
-#include "server/base/inline_executor.h"
 
 #include <cstdint>
 #include <span>

@@ -7,7 +7,9 @@ namespace {
 
 using Verdict = Retries::Verdict;
 
-SharedBytes bytes(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+SharedBytes bytes(std::string text) {
+    return std::make_shared<const std::string>(std::move(text));
+}
 
 class RetriesOf : public testing::Test {
   protected:

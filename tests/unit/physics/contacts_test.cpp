@@ -86,7 +86,8 @@ TEST(Resolving, PartsCirclesAtEqualCentresAlongX) {
 }
 
 TEST(Resolving, OneGroupIsNotInfluencedByAnother) {
-    // A pile of touching bodies gives the same bits with and without a second pile far away, before or after it in memory.
+    // A pile of touching bodies gives the same bits with and without a second pile far away, before or after it in
+    // memory.
     const auto pile = [](Scene& scene, double x, std::uint64_t seed) {
         base::RandomStream random = scene_stream(seed);
         for (int i = 0; i < 30; ++i)
@@ -172,15 +173,15 @@ std::size_t all_touching_pairs(const Circles& circles, const Boxes& boxes) {
     return count;
 }
 
-// Every pair found has been tested for touching, so the sets are equal if the counts are; a pair found twice in the place
-// of another would have to hide in every random scene.
+// Every pair found has been tested for touching, so the sets are equal if the counts are; a pair found twice in the
+// place of another would have to hide in every random scene.
 RC_GTEST_PROP(BroadPhase, FindsExactlyWhatTryingAllPairsFinds, ()) {
     Scene scene;
     const int width = *rc::gen::inRange(100, 1500), height = *rc::gen::inRange(100, 1500);
     scene.area = {to_units(static_cast<double>(width)), to_units(static_cast<double>(height))};
     base::RandomStream random = scene_stream(*rc::gen::arbitrary<std::uint64_t>());
     const bool on_whole_px = *rc::gen::arbitrary<bool>(); // many exact touches
-    const auto place = [&](double size) { // bodies beyond a wall included
+    const auto place = [&](double size) {                 // bodies beyond a wall included
         const double at = random.uniform(-40, size + 40);
         return on_whole_px ? std::floor(at) : at;
     };

@@ -52,7 +52,8 @@ INSTANTIATE_TEST_SUITE_P(TickLengths, ConstantForce,
                          [](const auto& fall) { return std::to_string(std::lround(fall.param.tick_s * 100)) + "cs"; });
 
 TEST(BackwardEuler, TakesDampingImplicitly) {
-    // v' = (v + a·dt)/(1 + c·dt), x' = x + v'·dt, worked out in double; 120 ticks of rounding to 1/4096 px and to float.
+    // v' = (v + a·dt)/(1 + c·dt), x' = x + v'·dt, worked out in double; 120 ticks of rounding to 1/4096 px and to
+    // float.
     constexpr double rate = 1.7, tick_s = 0.02, acceleration = 500;
     Scene scene;
     scene.parameters.integration = integration(Integrator::BackwardEuler, tick_s, rate);

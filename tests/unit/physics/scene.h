@@ -1,9 +1,9 @@
 // Scene: circles and boxes in an area, and the steps of them, for tests of physics.
 #pragma once
 
+#include "server/base/inline_executor.h"
 #include "server/base/random.h"
 #include "server/physics/step.h"
-#include "server/base/inline_executor.h"
 
 #include <cstdint>
 #include <ostream>
@@ -14,9 +14,8 @@ struct Scene {
     Area area{to_units(300'000.0), to_units(300'000.0)};
     Circles circles;
     Boxes boxes;
-    StepParameters parameters{.integration = {Integrator::SymplecticEuler, 1.0f / 60, 1},
-                              .restitution = 0.8f,
-                              .max_speed_px_s = 100'000};
+    StepParameters parameters{
+        .integration = {Integrator::SymplecticEuler, 1.0f / 60, 1}, .restitution = 0.8f, .max_speed_px_s = 100'000};
     Stepper stepper;
     StepCounts counts; // of all steps so far
 

@@ -27,9 +27,13 @@ TEST(CircleCircle, ThatShareOnePointTouchWithDepthZero) {
     expect_overlap(circle_circle(0, -7, 5, 2), 0, 0, -1);
 }
 
-TEST(CircleCircle, AtEqualCentresPartAlongXByTheSumOfRadii) { expect_overlap(circle_circle(0, 0, 2, 3), 5, 1, 0); }
+TEST(CircleCircle, AtEqualCentresPartAlongXByTheSumOfRadii) {
+    expect_overlap(circle_circle(0, 0, 2, 3), 5, 1, 0);
+}
 
-TEST(CircleCircle, OneInsideTheOtherLeavesTheShortWay) { expect_overlap(circle_circle(0, 1, 10, 2), 11, 0, 1); }
+TEST(CircleCircle, OneInsideTheOtherLeavesTheShortWay) {
+    expect_overlap(circle_circle(0, 1, 10, 2), 11, 0, 1);
+}
 
 TEST(BoxBox, OverlapAlongTheAxisOfLeastPenetration) {
     expect_overlap(box_box(3, 1, {2, 2}, {2, 2}), 1, 1, 0);
@@ -44,7 +48,9 @@ TEST(BoxBox, ThatShareAnEdgeOrACornerTouchWithDepthZero) {
     expect_overlap(box_box(-4, 4, {2, 2}, {2, 2}), 0, -1, 0);
 }
 
-TEST(BoxBox, OfEqualOverlapsPartAlongX) { expect_overlap(box_box(-3, 3, {2, 2}, {2, 2}), 1, -1, 0); }
+TEST(BoxBox, OfEqualOverlapsPartAlongX) {
+    expect_overlap(box_box(-3, 3, {2, 2}, {2, 2}), 1, -1, 0);
+}
 
 TEST(BoxBox, AtEqualCentresPartAlongTheNarrowerAxisTowardPlus) {
     expect_overlap(box_box(0, 0, {2, 3}, {1, 3}), 3, 1, 0);

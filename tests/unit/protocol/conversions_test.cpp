@@ -145,9 +145,10 @@ TEST_F(Lived, AnOrganismIsToldCompletely) {
 }
 
 TEST_F(Lived, EveryKindOfEventIsTold) {
-    const simulation::EventKind kinds[] = {
-        simulation::GenerationFinished{{{}}}, simulation::MigrationHappened{1, {{0, 1, 2}}}, simulation::Extinction{1, 2},
-        simulation::RunTerminated{evolution::Outcome::Stagnation}, simulation::GoalReached{}};
+    const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
+                                           simulation::MigrationHappened{1, {{0, 1, 2}}}, simulation::Extinction{1, 2},
+                                           simulation::RunTerminated{evolution::Outcome::Stagnation},
+                                           simulation::GoalReached{}};
     std::set<int> cases;
     for (const auto& kind : kinds) {
         const auto event = to_proto(simulation::Event{"w", {1, 2}, 3, kind}, laboratory);
@@ -157,9 +158,9 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
         EXPECT_EQ(event.run_id().size(), 32);
     }
     const simulation::Applied applied{.world = "w", .tick = 3, .parameters = simulation::ParameterSet{}};
-    const simulation::Command commands[] = {
-        simulation::CreateWorld{}, simulation::DeleteWorld{}, simulation::ResetWorld{},
-        simulation::Pause{},       simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
+    const simulation::Command commands[] = {simulation::CreateWorld{}, simulation::DeleteWorld{},
+                                            simulation::ResetWorld{}, simulation::Pause{},
+                                            simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
     for (const auto& command : commands) {
         const auto event = event_of(command, applied, "somebody", laboratory);
         ASSERT_TRUE(event);
@@ -228,8 +229,8 @@ void poison_doubles(v1::Request& request, Message& part, double poison, int& poi
     for (int i = 0; i < part.GetDescriptor()->field_count(); ++i) {
         const FieldDescriptor& field = *part.GetDescriptor()->field(i);
         if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-            Message& inner = field.is_repeated() ? *reflection.AddMessage(&part, &field)
-                                                 : *reflection.MutableMessage(&part, &field);
+            Message& inner =
+                field.is_repeated() ? *reflection.AddMessage(&part, &field) : *reflection.MutableMessage(&part, &field);
             if (inner.GetDescriptor()->name() == "ParameterAssignment")
                 static_cast<v1::ParameterAssignment&>(inner).set_name("mutation_chance");
             poison_doubles(request, inner, poison, poisoned);
@@ -326,7 +327,8 @@ TEST(Refusals, AreNotLongerThanAnybodyReads) {
 TEST(Names, AreChecked) {
     for (const char* good : {"a", "A-z_09", "default"})
         EXPECT_TRUE(is_world_name(good)) << good;
-    for (const std::string& bad : {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}})
+    for (const std::string& bad :
+         {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}})
         EXPECT_FALSE(is_world_name(bad)) << bad;
 }
 

@@ -1,8 +1,8 @@
 // The loop's sense of time, with a clock that only the test moves; and that time has no say in what happens.
 #include "server/runtime/simulation_loop.h"
 
-#include "server/runtime/simulation_thread.h"
 #include "server/base/inline_executor.h"
+#include "server/runtime/simulation_thread.h"
 #include "tests/support/manual_clock.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,10 @@ simulation::CreateWorld create(const char* name, std::uint64_t seed = 1) {
 class Loop : public testing::Test {
   protected:
     Loop()
-        : loop{mailbox, demand, executor, clock,
+        : loop{mailbox,
+               demand,
+               executor,
+               clock,
                {.events =
                     [this](const Laboratory&, std::vector<simulation::Event> told) {
                         events.insert(events.end(), told.begin(), told.end());
@@ -135,7 +138,10 @@ TEST_F(Loop, ASliceEndsWhenMailComes) {
     auto create_other = create("quick", 2);
     create_other.parameters.fitness = simulation::FitnessFunction::GeneSum;
     bool sent = false;
-    SimulationLoop other{mailbox, demand, executor, clock,
+    SimulationLoop other{mailbox,
+                         demand,
+                         executor,
+                         clock,
                          {.events =
                               [&](const Laboratory&, std::vector<simulation::Event>) {
                                   if (!sent)
@@ -316,8 +322,7 @@ base::StateHash hash_of_a_world_advanced_directly() {
         while (world.moment().tick < at)
             world.advance_tick(executor);
         if (at != last_tick)
-            world.request_parameters(
-                *simulation::assign(world.parameters().requested, std::vector{change_at(at)}));
+            world.request_parameters(*simulation::assign(world.parameters().requested, std::vector{change_at(at)}));
     }
     return world.hash();
 }
@@ -343,14 +348,16 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
     demand.set({{"w", Watch{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
     base::InlineExecutor executor;
     SteadyClock clock;
-    SimulationThread thread{mailbox,
-                            demand,
-                            executor,
-                            clock,
-                            {.events = [](const Laboratory&, std::vector<simulation::Event>) {}, .picture = [](SnapshotPtr) {}}};
+    SimulationThread thread{
+        mailbox,
+        demand,
+        executor,
+        clock,
+        {.events = [](const Laboratory&, std::vector<simulation::Event>) {}, .picture = [](SnapshotPtr) {}}};
     const auto send = [&](simulation::Command command) {
-        ASSERT_TRUE(mailbox.try_push(CommandMail{
-            std::move(command), [](const Laboratory&, const simulation::Command&, const auto& applied) { ASSERT_TRUE(applied); }}));
+        ASSERT_TRUE(
+            mailbox.try_push(CommandMail{std::move(command), [](const Laboratory&, const simulation::Command&,
+                                                                const auto& applied) { ASSERT_TRUE(applied); }}));
     };
     const auto look = [&] {
         std::promise<std::pair<std::uint64_t, base::StateHash>> seen;

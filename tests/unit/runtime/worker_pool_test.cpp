@@ -18,7 +18,8 @@ INSTANTIATE_TEST_SUITE_P(Threads, PoolOf, testing::Values(1, 2, 3, 8));
 TEST_P(PoolOf, CutsAtTheMultiplesOfTheGrain) {
     const auto pool = make_executor(GetParam());
     EXPECT_EQ(pool->thread_count(), GetParam());
-    for (const auto& [count, grain] : {std::pair<std::size_t, std::size_t>{0, 1}, {1, 1}, {10, 3}, {12, 3}, {1000, 7}, {5, 100}}) {
+    for (const auto& [count, grain] :
+         {std::pair<std::size_t, std::size_t>{0, 1}, {1, 1}, {10, 3}, {12, 3}, {1000, 7}, {5, 100}}) {
         std::mutex mutex;
         std::set<std::pair<std::size_t, std::size_t>> pieces, expected;
         pool->parallel_for(count, grain, [&](base::Range range) {
@@ -42,9 +43,8 @@ TEST_P(PoolOf, RunsLoopsInsidePieces) {
 
 TEST(PoolOfOne, RunsEverythingOnItsCaller) {
     const auto pool = make_executor(1);
-    pool->parallel_for(100, 1, [caller = std::this_thread::get_id()](base::Range) {
-        EXPECT_EQ(std::this_thread::get_id(), caller);
-    });
+    pool->parallel_for(
+        100, 1, [caller = std::this_thread::get_id()](base::Range) { EXPECT_EQ(std::this_thread::get_id(), caller); });
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "server/simulation/behaviour.h"
 
-#include "tests/support/chi_square.h"
 #include "server/base/inline_executor.h"
+#include "tests/support/chi_square.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@ using physics::to_units;
 
 constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail
 
-/// One organism beside at most one food and one poison. The items are put at random, so the organism is put beside them.
+/// One organism beside at most one food and one poison. The items are put at random, so the organism is put beside
+/// them.
 class OneOrganism : public testing::Test {
   protected:
     static Items item_at_most_one(bool there, base::Purpose purpose) {
@@ -176,7 +177,8 @@ TEST_F(OneOrganism, WandersInAFreshUniformDirectionEachTick) {
     for (std::uint32_t tick = 1; tick <= 36'000; ++tick) {
         const Force force = choose(none, none, tick);
         ASSERT_NEAR(std::hypot(force.x, force.y), 100, 1e-3);
-        const double turn = std::atan2(static_cast<double>(force.y), static_cast<double>(force.x)) / (2 * 3.14159265358979) + 0.5;
+        const double turn =
+            std::atan2(static_cast<double>(force.y), static_cast<double>(force.x)) / (2 * 3.14159265358979) + 0.5;
         ++sectors[static_cast<std::size_t>(std::min(turn * 36, 35.0))];
     }
     EXPECT_GT(support::p_value_of_equal_cells(sectors), alpha);

@@ -44,8 +44,9 @@ TEST(Experiment, KeepsAllBitsOfASeed) {
 
 TEST(Experiment, LetsTheReferencePopulationFollowItsOwnPopulation) {
     EXPECT_EQ(parse_experiment(R"({"population_size": 80})")->parameters.reference_population, 80u);
-    EXPECT_EQ(parse_experiment(R"({"population_size": 80, "reference_population": 40})")->parameters.reference_population,
-              40u);
+    EXPECT_EQ(
+        parse_experiment(R"({"population_size": 80, "reference_population": 40})")->parameters.reference_population,
+        40u);
     EXPECT_EQ(parse_experiment(R"({"reference_population": 40})")->parameters.population_size, 50u);
     EXPECT_EQ(parse_experiment("{}")->parameters.reference_population, 50u);
     // A wrong population is told once.

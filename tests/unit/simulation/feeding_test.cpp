@@ -1,8 +1,8 @@
 #include "server/simulation/feeding.h"
 
+#include "server/base/inline_executor.h"
 #include "server/base/random.h"
 #include "server/physics/step.h"
-#include "server/base/inline_executor.h"
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,8 @@ std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Item
             continue;
         float best = 0;
         std::size_t eater = bodies.size();
-        for (std::size_t i = 0; i < bodies.size(); ++i) { // ids rise with the index, so the first of equals has the lower
+        for (std::size_t i = 0; i < bodies.size();
+             ++i) { // ids rise with the index, so the first of equals has the lower
             const float dx = physics::distance_px(bodies.x[i], items.x()[item]);
             const float dy = physics::distance_px(bodies.y[i], items.y()[item]);
             const float reach = bodies.radius[i] + items.radius_px(), square = dx * dx + dy * dy;
@@ -125,13 +126,12 @@ TEST_P(ARunningIsland, NeverMissesAMealForWhatWasSeen) {
     }
     physics::Boxes boxes;
     physics::Stepper stepper;
-    const physics::StepParameters step{.integration = physics::integration(physics::Integrator::SymplecticEuler, 1.0 / 60, 0.06),
+    const physics::StepParameters step{.integration =
+                                           physics::integration(physics::Integrator::SymplecticEuler, 1.0 / 60, 0.06),
                                        .restitution = 0.8f,
                                        .max_speed_px_s = GetParam().max_speed};
-    const BehaviourRules rules{.flee_rule = FleeRule::Nearer,
-                               .lookahead_s = 0.3f,
-                               .certain_impulse = 200,
-                               .force_per_unit = GetParam().force};
+    const BehaviourRules rules{
+        .flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = GetParam().force};
     const base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
     base::InlineExecutor executor;
     Sight sight;

@@ -1,7 +1,7 @@
 #include "server/simulation/island.h"
 
-#include "server/simulation/fitness.h"
 #include "server/base/inline_executor.h"
+#include "server/simulation/fitness.h"
 
 #include <gtest/gtest.h>
 
@@ -134,8 +134,8 @@ TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
         return living.loss_per_tick.front();
     };
     EXPECT_FLOAT_EQ(loss(genes_of(100, 100, 100, 100, 100, 100)), 0.1f);
-    const double factor = 1 + 0.1 * (1.2 - 1) + 0.2 * (1.3 * 1.3 - 1) + 0.5 * (0.9 - 1) + 0.1 * (1.4 * 1.4 - 1) +
-                          0.3 * (0.7 * 0.7 - 1);
+    const double factor =
+        1 + 0.1 * (1.2 - 1) + 0.2 * (1.3 * 1.3 - 1) + 0.5 * (0.9 - 1) + 0.1 * (1.4 * 1.4 - 1) + 0.3 * (0.7 * 0.7 - 1);
     EXPECT_FLOAT_EQ(loss(genes_of(120, 130, 50, 90, 140, 70)), static_cast<float>(0.1 * factor));
     p.base_health_cost = 10;
     EXPECT_EQ(loss(genes_of(20, 20, 100, 20, 20, 20)), 0) << "never a gain";
@@ -232,7 +232,9 @@ TEST_F(SmallIsland, StartsAtRestWithTheSizesOfItsGenes) {
     EXPECT_EQ(island.bodies().velocity_x, (std::vector<float>{0, 0}));
 }
 
-TEST(GeneSum, IsTheSumOfTheGenes) { EXPECT_EQ(gene_sum(genes_of(1, 2, 3, 4, 5, 6.5f)), 21.5); }
+TEST(GeneSum, IsTheSumOfTheGenes) {
+    EXPECT_EQ(gene_sum(genes_of(1, 2, 3, 4, 5, 6.5f)), 21.5);
+}
 
 TEST(Rastrigin, IsGreatestWhereEveryGeneIs150AndFollowsItsFormula) {
     EXPECT_NEAR(rastrigin(genes_of(150, 150, 150, 150, 150, 150)), 0, 1e-12);

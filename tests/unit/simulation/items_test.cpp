@@ -63,8 +63,7 @@ Found within_by_trying_all(const Items& items, Coordinate x, Coordinate y, float
 
 Found within(const Items& items, Coordinate x, Coordinate y, float radius) {
     Found found;
-    items.for_each_within(x, y, radius,
-                          [&](std::uint32_t item, float square) { found.emplace_back(item, square); });
+    items.for_each_within(x, y, radius, [&](std::uint32_t item, float square) { found.emplace_back(item, square); });
     std::sort(found.begin(), found.end());
     return found;
 }

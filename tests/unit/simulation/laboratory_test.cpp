@@ -161,7 +161,8 @@ TEST_F(OneWorld, IsTerminatedByACriterionUntilItIsChangedOrReset) {
 
 TEST_F(OneWorld, ResetKeepsSpeedSeedAndParametersAskedForUnlessToldOtherwise) {
     ASSERT_TRUE(laboratory.apply(SetSpeed{"w", 8.0}).has_value());
-    ASSERT_TRUE(laboratory.apply(set({{"population_size", std::uint32_t{12}}, {"island_count", std::uint32_t{2}}})).has_value());
+    ASSERT_TRUE(laboratory.apply(set({{"population_size", std::uint32_t{12}}, {"island_count", std::uint32_t{2}}}))
+                    .has_value());
     ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
     run_on(20);
     ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
@@ -264,8 +265,8 @@ TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
     ASSERT_TRUE(laboratory.apply(CreateWorld{"a", {}, base::Seed{1}, {}}).has_value());
     ASSERT_TRUE(laboratory.apply(CreateWorld{"b", {}, base::Seed{1}, {}}).has_value());
     for (const Command& command :
-         {Command{DeleteWorld{"x"}}, Command{ResetWorld{"x", {}, {}}}, Command{simulation::Run{"x", 1}}, Command{RunUntilTick{"x", 1}},
-          Command{Pause{"x"}}, Command{Resume{"x"}}, Command{SetSpeed{"x", 1.0}},
+         {Command{DeleteWorld{"x"}}, Command{ResetWorld{"x", {}, {}}}, Command{simulation::Run{"x", 1}},
+          Command{RunUntilTick{"x", 1}}, Command{Pause{"x"}}, Command{Resume{"x"}}, Command{SetSpeed{"x", 1.0}},
           Command{SetParameters{"x", {}, false, {}}}}) {
         const auto refused = laboratory.apply(command);
         ASSERT_FALSE(refused.has_value());
@@ -298,8 +299,9 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
                 if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
                     const double now = real->get(entry.world.parameters().requested);
                     const double any = random.uniform(real->range.min, real->range.max);
-                    value = random.chance(0.1) ? any
-                                               : std::clamp(now * random.uniform(0.5, 2), real->range.min, real->range.max);
+                    value = random.chance(0.1)
+                                ? any
+                                : std::clamp(now * random.uniform(0.5, 2), real->range.min, real->range.max);
                 } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
                     value = std::clamp(random.below(40), count->range.min, count->range.max);
                 } else if (std::holds_alternative<FlagParameter>(description.kind)) {

@@ -1,12 +1,12 @@
 // The default world behaves and evolves as it did in the independent program that was used to choose its parameters.
 //
-// Worlds of 24 seeds run side by side, each on one thread. The figures compared with, and their standard errors, are the
-// other program's: fitness 79 → 106 → 161 → 203 at generations 1, 10, 30 and 60 with roulette, 79 → 121 → 191 → 248 with
-// truncation, flat with random selection; in generation 1 a survival of 0.48, and for each living organism-second 0.217
-// food and 0.028 poison. Every comparison allows 4 standard errors of the difference (6e-5 each, two-sided).
+// Worlds of 24 seeds run side by side, each on one thread. The figures compared with, and their standard errors, are
+// the other program's: fitness 79 → 106 → 161 → 203 at generations 1, 10, 30 and 60 with roulette, 79 → 121 → 191 → 248
+// with truncation, flat with random selection; in generation 1 a survival of 0.48, and for each living organism-second
+// 0.217 food and 0.028 poison. Every comparison allows 4 standard errors of the difference (6e-5 each, two-sided).
 
-#include "server/simulation/world.h"
 #include "server/base/inline_executor.h"
+#include "server/simulation/world.h"
 
 #include <boost/math/distributions/students_t.hpp>
 #include <gtest/gtest.h>
@@ -108,8 +108,8 @@ void run_on_all_cores(std::vector<Series>& all) {
     for (unsigned i = 0; i < std::max(std::thread::hardware_concurrency(), 1u); ++i)
         threads.emplace_back([&] {
             for (std::size_t t = next++; t < tasks.size(); t = next++)
-                tasks[t].series->worlds[tasks[t].seed] =
-                    history_of(tasks[t].series->selection, tasks[t].series->generations, base::Seed{1000 + tasks[t].seed});
+                tasks[t].series->worlds[tasks[t].seed] = history_of(
+                    tasks[t].series->selection, tasks[t].series->generations, base::Seed{1000 + tasks[t].seed});
         });
     for (std::thread& thread : threads)
         thread.join();
@@ -132,8 +132,7 @@ void print(const Series& series) {
 }
 
 void expect_near(const Estimate& measured, double known, double known_error, const std::string& what) {
-    const double allowed =
-        4 * std::sqrt(known_error * known_error + measured.error * measured.error);
+    const double allowed = 4 * std::sqrt(known_error * known_error + measured.error * measured.error);
     EXPECT_NEAR(measured.mean, known, allowed) << what;
 }
 
@@ -145,7 +144,8 @@ TEST(TheDefaultWorld, BehavesAndEvolvesAsItWasMeasuredToDo) {
     all[3] = {SelectionMethod::Tournament, "tournament", 30, {}};
     all[4] = {SelectionMethod::Random, "random", 30, {}};
     run_on_all_cores(all);
-    std::printf("%zu seeds; fitness: mean over the seeds (standard error) at generations 1, 10, 20, 30, 60\n", seed_count);
+    std::printf("%zu seeds; fitness: mean over the seeds (standard error) at generations 1, 10, 20, 30, 60\n",
+                seed_count);
     for (const Series& series : all)
         print(series);
 

@@ -1,7 +1,7 @@
 #include "server/simulation/parameters.h"
 
-#include "server/simulation/laboratory.h"
 #include "server/base/inline_executor.h"
+#include "server/simulation/laboratory.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -188,19 +188,21 @@ TEST(Assign, NamesEveryViolationWithItsPrefixAndChangesNothing) {
                                                        {"food_count", std::uint32_t{31}},
                                                        {"selection", std::string{"lottery"}}},
                                "set_parameters.");
-    EXPECT_THAT(violations(result),
-                ElementsAre("set_parameters.mutation_chance: got 1.5, allowed 0 to 1",
-                            AllOf(HasSubstr("set_parameters.mutation_chence: got an unknown name"),
-                                  HasSubstr("did you mean mutation_chance")),
-                            "set_parameters.food_count: got given twice, allowed given once",
-                            "set_parameters.selection: got lottery, allowed roulette, stochastic_universal, tournament, "
-                            "random, truncation"));
+    EXPECT_THAT(
+        violations(result),
+        ElementsAre("set_parameters.mutation_chance: got 1.5, allowed 0 to 1",
+                    AllOf(HasSubstr("set_parameters.mutation_chence: got an unknown name"),
+                          HasSubstr("did you mean mutation_chance")),
+                    "set_parameters.food_count: got given twice, allowed given once",
+                    "set_parameters.selection: got lottery, allowed roulette, stochastic_universal, tournament, "
+                    "random, truncation"));
 }
 
 TEST(Assign, LooksAtNoMoreThanEachParameterOnce) {
     const std::vector<Assignment> many(200'000, {"foood", 1.0});
-    EXPECT_THAT(violations(assign({}, many, "set_parameters.parameters.")),
-                ElementsAre(AllOf(HasSubstr("set_parameters.parameters: got 200000"), HasSubstr("each parameter once"))));
+    EXPECT_THAT(
+        violations(assign({}, many, "set_parameters.parameters.")),
+        ElementsAre(AllOf(HasSubstr("set_parameters.parameters: got 200000"), HasSubstr("each parameter once"))));
 }
 
 TEST(SimilarNames, AreTheOnesMeantBestFirst) {
@@ -325,7 +327,7 @@ TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
     p.population_size = 12; // 0.24
     EXPECT_EQ(island_plan(p).food_count, 6u);
     EXPECT_EQ(island_plan(p).poison_count, 10u); // 9.6
-    p.population_size = 4'000'000; // 283 times as wide
+    p.population_size = 4'000'000;               // 283 times as wide
     p.island_width_px = 2000;
     EXPECT_THAT(validate(p), testing::Not(IsEmpty())) << "wider than an island can be";
 }

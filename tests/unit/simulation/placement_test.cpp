@@ -148,7 +148,8 @@ TEST(PlaceBoxes, ObstaclesStayFromGenerationToGenerationAndCratesDoNot) {
                          .obstacle_half_size_px = 15,
                          .crate_half_size_px = 12,
                          .crate_mass_kg = 2};
-    const PlacedBoxes first = place_boxes(rules, base::Seed{9}, 0, 1, area), next = place_boxes(rules, base::Seed{9}, 0, 2, area);
+    const PlacedBoxes first = place_boxes(rules, base::Seed{9}, 0, 1, area),
+                      next = place_boxes(rules, base::Seed{9}, 0, 2, area);
     EXPECT_EQ(first.obstacles.x, next.obstacles.x);
     EXPECT_NE(first.crates.x, next.crates.x);
 }

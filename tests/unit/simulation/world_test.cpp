@@ -47,9 +47,13 @@ class WorldTest : public testing::Test {
 };
 
 TEST_F(WorldTest, EndsAGenerationAfterItsTimeExactly) {
-    for (const auto& [generation_s, tick_s, ticks] :
-         {std::tuple{0.2, 1.0 / 60, 12u}, {40.0, 1.0 / 60, 2400u}, {1.0, 0.1, 10u}, {0.3, 0.1, 3u}, {7.0, 0.07, 100u},
-          {0.001, 0.001, 1u}, {0.9, 0.3, 3u}}) {
+    for (const auto& [generation_s, tick_s, ticks] : {std::tuple{0.2, 1.0 / 60, 12u},
+                                                      {40.0, 1.0 / 60, 2400u},
+                                                      {1.0, 0.1, 10u},
+                                                      {0.3, 0.1, 3u},
+                                                      {7.0, 0.07, 100u},
+                                                      {0.001, 0.001, 1u},
+                                                      {0.9, 0.3, 3u}}) {
         parameters.generation_s = generation_s;
         parameters.tick_s = tick_s;
         parameters.health_loss_per_s = 0;
@@ -122,7 +126,9 @@ TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
 TEST_F(WorldTest, TakesParametersOfTheTickAtOnceAndOthersWithTheGeneration) {
     World world = make();
     world.advance_tick(executor);
-    request(world, {{"food_health", 0.0}, {"population_size", std::uint32_t{20}}, {"food_count", std::uint32_t{3}},
+    request(world, {{"food_health", 0.0},
+                    {"population_size", std::uint32_t{20}},
+                    {"food_count", std::uint32_t{3}},
                     {"generation_s", 0.1}});
     EXPECT_EQ(world.parameters().active.food_health, 0);
     EXPECT_EQ(world.parameters().active.population_size, 12u);
@@ -205,13 +211,17 @@ TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
     };
     using evolution::Outcome;
     EXPECT_EQ(outcome_with({}).first, Outcome::Running);
-    EXPECT_EQ(outcome_with({{"generation_limit", std::uint32_t{4}}}), (std::pair{Outcome::GenerationLimit, std::uint64_t{4}}));
+    EXPECT_EQ(outcome_with({{"generation_limit", std::uint32_t{4}}}),
+              (std::pair{Outcome::GenerationLimit, std::uint64_t{4}}));
     EXPECT_EQ(outcome_with({{"stop_at_target_fitness", true}, {"target_fitness", 10.0}}),
               (std::pair{Outcome::TargetFitness, std::uint64_t{1}}));
     EXPECT_EQ(outcome_with({{"stop_at_extinction", true}, {"health_loss_per_s", 10'000.0}, {"food_health", 0.0}}),
               (std::pair{Outcome::Extinction, std::uint64_t{1}}));
-    EXPECT_EQ(outcome_with({{"stagnation_limit", std::uint32_t{3}}, {"mutation_chance", 0.0}, {"fitness", std::string{"gene_sum"}},
-                            {"crossover", std::string{"none"}}, {"elite_count", std::uint32_t{1}}}),
+    EXPECT_EQ(outcome_with({{"stagnation_limit", std::uint32_t{3}},
+                            {"mutation_chance", 0.0},
+                            {"fitness", std::string{"gene_sum"}},
+                            {"crossover", std::string{"none"}},
+                            {"elite_count", std::uint32_t{1}}}),
               (std::pair{Outcome::Stagnation, std::uint64_t{4}}));
 }
 
