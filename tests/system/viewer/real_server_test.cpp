@@ -97,7 +97,10 @@ class Person {
             if (children != nullptr) {
                 XFree(children);
             }
-            return window_ != 0;
+            // It has its name before it is on the screen, and only there can it be looked at.
+            XWindowAttributes attributes{};
+            return window_ != 0 && XGetWindowAttributes(display_, window_, &attributes) != 0 &&
+                   attributes.map_state == IsViewable;
         });
     }
 
