@@ -28,6 +28,11 @@ void CircleGrid::build(const Circles& circles, const Area& area, float reach_px)
         first = end += first;
     for (std::size_t i = n; i-- > 0;) // backwards, so that each cell's circles end up rising
         order_[--first_[cell_of_[i]]] = static_cast<std::uint32_t>(i);
+    sorted_.resize(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::uint32_t i = order_[k];
+        sorted_[k] = {i, circles.x[i], circles.y[i], circles.radius[i]};
+    }
 }
 
 std::span<const std::uint32_t> CircleGrid::cell(std::uint32_t row, std::uint32_t column) const {

@@ -12,9 +12,9 @@ constexpr std::uint64_t pair_of(std::size_t first, std::size_t second) {
     return static_cast<std::uint64_t>(first) << 32 | static_cast<std::uint64_t>(second);
 }
 
-bool circles_touch(const Circles& circles, std::uint32_t a, std::uint32_t b) {
-    const float dx = distance_px(circles.x[a], circles.x[b]), dy = distance_px(circles.y[a], circles.y[b]);
-    const float reach = circles.radius[a] + circles.radius[b];
+bool touch(const CircleGrid::Sorted& a, const CircleGrid::Sorted& b) {
+    const float dx = distance_px(a.x, b.x), dy = distance_px(a.y, b.y);
+    const float reach = a.radius + b.radius;
     return dx * dx + dy * dy <= reach * reach;
 }
 
@@ -70,14 +70,14 @@ void Contacts::find(const Circles& circles, const Boxes& boxes, const Area& area
         radius_max = std::max(radius_max, radius);
     if (circles.size() > 1 || (circles.size() > 0 && boxes.size() > 0)) {
         grid_.build(circles, area, 2 * radius_max);
-        find_circle_pairs(circles, executor);
+        find_circle_pairs(executor);
         find_box_circle_pairs(circles, boxes, radius_max);
     }
     find_box_pairs(circles, boxes);
     std::sort(pairs_.begin(), pairs_.end());
 }
 
-void Contacts::find_circle_pairs(const Circles& circles, base::Executor& executor) {
+void Contacts::find_circle_pairs(base::Executor& executor) {
     constexpr std::size_t rows_per_block = 16;
     pairs_of_block_.resize((grid_.rows() + rows_per_block - 1) / rows_per_block);
     executor.parallel_for(grid_.rows(), rows_per_block, [&](base::Range range) {
@@ -85,34 +85,29 @@ void Contacts::find_circle_pairs(const Circles& circles, base::Executor& executo
         for (std::size_t block = range.begin / rows_per_block; block * rows_per_block < range.end; ++block) {
             std::vector<Pair>& found = pairs_of_block_[block];
             found.clear();
-            const auto test = [&](std::uint32_t a, std::uint32_t b) {
-                if (circles_touch(circles, a, b))
-                    found.push_back(pair_of(std::min(a, b), std::max(a, b)));
+            const std::vector<CircleGrid::Sorted>& circle = grid_.sorted();
+            const auto test = [&](std::size_t k, base::Range others) {
+                for (std::size_t other = others.begin; other < others.end; ++other)
+                    if (touch(circle[k], circle[other]))
+                        found.push_back(pair_of(std::min(circle[k].index, circle[other].index),
+                                                std::max(circle[k].index, circle[other].index)));
             };
             const std::size_t end = std::min<std::size_t>((block + 1) * rows_per_block, grid_.rows());
             for (auto row = static_cast<std::uint32_t>(block * rows_per_block); row < end; ++row)
                 for (std::uint32_t column = 0; column < grid_.columns(); ++column) {
-                    const auto here = grid_.cell(row, column);
-                    if (here.empty())
+                    const base::Range here = grid_.in_row(row, column, column);
+                    if (here.begin == here.end)
                         continue;
-                    for (std::size_t i = 0; i < here.size(); ++i)
-                        for (std::size_t j = i + 1; j < here.size(); ++j)
-                            test(here[i], here[j]);
-                    // Each pair of neighbouring cells is met once: from the cell left of or above the other.
-                    const auto against = [&](std::uint32_t other_row, std::uint32_t other_column) {
-                        for (const std::uint32_t b : grid_.cell(other_row, other_column))
-                            for (const std::uint32_t a : here)
-                                test(a, b);
-                    };
-                    const bool right = column + 1 < grid_.columns();
-                    if (right)
-                        against(row, column + 1);
-                    if (row + 1 < grid_.rows()) {
-                        if (column > 0)
-                            against(row + 1, column - 1);
-                        against(row + 1, column);
-                        if (right)
-                            against(row + 1, column + 1);
+                    // Each pair is met once: the rest of the cell and its right neighbour stand side by side in memory,
+                    // and so do the three neighbours in the next row.
+                    const std::uint32_t left = column > 0 ? column - 1 : 0;
+                    const std::uint32_t right = std::min(column + 1, grid_.columns() - 1);
+                    const std::size_t row_end = grid_.in_row(row, column, right).end;
+                    const base::Range below =
+                        row + 1 < grid_.rows() ? grid_.in_row(row + 1, left, right) : base::Range{0, 0};
+                    for (std::size_t k = here.begin; k < here.end; ++k) {
+                        test(k, {k + 1, row_end});
+                        test(k, below);
                     }
                 }
         }

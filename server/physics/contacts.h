@@ -32,7 +32,7 @@ class Contacts {
     // A pair as one number that sorts by (first, second): bodies are circle indices, then boxes from circle count on.
     using Pair = std::uint64_t;
 
-    void find_circle_pairs(const Circles& circles, base::Executor& executor);
+    void find_circle_pairs(base::Executor& executor);
     void find_box_circle_pairs(const Circles& circles, const Boxes& boxes, float radius_max);
     void find_box_pairs(const Circles& circles, const Boxes& boxes);
 

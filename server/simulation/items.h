@@ -12,6 +12,7 @@
 #include "server/base/state_hash.h"
 #include "server/physics/bodies.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -104,13 +105,13 @@ class Items {
         std::uint32_t left, right, top, bottom; // all included
     };
     CellRange cells_within(physics::Coordinate x, physics::Coordinate y, float radius) const {
-        const auto reach = static_cast<std::int64_t>(radius * static_cast<float>(physics::units_per_px)) + 1;
-        const auto bound = [this](std::int64_t position, std::uint32_t cells) {
-            position >>= shift_;
-            return position < 0 ? 0 : position >= cells ? cells - 1 : static_cast<std::uint32_t>(position);
+        // Islands and radii are small enough that neither sum leaves 32 bits (bodies.h).
+        const auto reach = static_cast<physics::Coordinate>(radius * static_cast<float>(physics::units_per_px)) + 1;
+        const auto cell = [this](physics::Coordinate position) {
+            return static_cast<std::uint32_t>(std::max(position, 0)) >> shift_;
         };
-        return {bound(x - reach, columns_), bound(x + reach, columns_), bound(y - reach, rows_),
-                bound(y + reach, rows_)};
+        return {cell(x - reach), std::min(cell(x + reach), columns_ - 1), cell(y - reach),
+                std::min(cell(y + reach), rows_ - 1)};
     }
 
     template <class Visit>
