@@ -38,7 +38,8 @@ void Items::choose_cells(std::uint32_t count) {
         ++shift_;
     columns_ = (static_cast<std::uint32_t>(area_.width) >> shift_) + 1;
     rows_ = (static_cast<std::uint32_t>(area_.height) >> shift_) + 1;
-    buckets_.assign(std::size_t{rows_} * columns_, Bucket{});
+    places_.assign(std::size_t{rows_} * columns_, Places{});
+    contents_.assign(places_.size(), Contents{});
     spare_.clear();
 }
 
@@ -58,25 +59,25 @@ void Items::settle(std::uint32_t item, base::RandomStream random, const physics:
 
 void Items::insert(std::uint32_t item) {
     std::uint32_t b = cell_of(x_[item], y_[item]);
-    while (buckets_[b].count == slots) {
-        if (buckets_[b].next == none) {
+    while (contents_[b].count == slots) {
+        if (contents_[b].next == none) {
             std::uint32_t added;
             if (spare_.empty()) {
-                added = static_cast<std::uint32_t>(buckets_.size());
-                buckets_.emplace_back();
+                added = static_cast<std::uint32_t>(places_.size());
+                places_.emplace_back();
+                contents_.emplace_back();
             } else {
                 added = spare_.back();
                 spare_.pop_back();
             }
-            buckets_[b].next = added;
+            contents_[b].next = added;
         }
-        b = buckets_[b].next;
+        b = contents_[b].next;
     }
-    Bucket& bucket = buckets_[b];
-    bucket.x[bucket.count] = x_[item];
-    bucket.y[bucket.count] = y_[item];
-    bucket.item[bucket.count] = item;
-    ++bucket.count;
+    const std::uint32_t slot = contents_[b].count++;
+    places_[b].x[slot] = x_[item];
+    places_[b].y[slot] = y_[item];
+    contents_[b].item[slot] = item;
 }
 
 void Items::remove(std::uint32_t item) {
@@ -84,7 +85,7 @@ void Items::remove(std::uint32_t item) {
     std::uint32_t last = cell_of(x_[item], y_[item]), before_last = none;
     std::uint32_t holder = none, slot = 0;
     while (true) {
-        const Bucket& bucket = buckets_[last];
+        const Contents& bucket = contents_[last];
         if (holder == none) {
             const auto end_of_items = bucket.item.begin() + bucket.count;
             const auto found = std::find(bucket.item.begin(), end_of_items, item);
@@ -98,14 +99,14 @@ void Items::remove(std::uint32_t item) {
         before_last = std::exchange(last, bucket.next);
     }
     EVOD_ASSERT(holder != none);
-    const std::uint32_t end = --buckets_[last].count;
-    buckets_[holder].x[slot] = buckets_[last].x[end];
-    buckets_[holder].y[slot] = buckets_[last].y[end];
-    buckets_[holder].item[slot] = buckets_[last].item[end];
-    buckets_[last].x[end] = buckets_[last].y[end] = far_away;
-    buckets_[last].item[end] = none;
+    const std::uint32_t end = --contents_[last].count;
+    places_[holder].x[slot] = places_[last].x[end];
+    places_[holder].y[slot] = places_[last].y[end];
+    contents_[holder].item[slot] = contents_[last].item[end];
+    places_[last].x[end] = places_[last].y[end] = far_away;
+    contents_[last].item[end] = none;
     if (end == 0 && before_last != none) {
-        buckets_[before_last].next = none;
+        contents_[before_last].next = none;
         spare_.push_back(last);
     }
 }
@@ -135,7 +136,7 @@ void Items::reappear(std::uint32_t tick, const physics::Boxes& obstacles) {
 
 // The query is where most of a tick goes. Four slots are looked at at a time, by the compiler's vector types, and in
 // units rather than px, which are a power of two apart: a lane computes what a loop over single slots would, so neither
-// the width nor the unit changes a bit. A tick of 10,000 organisms takes 190 ns an organism so, and 270 ns with that
+// the width nor the unit changes a bit. A tick of 10,000 organisms takes 175 ns an organism so, and 260 ns with that
 // loop.
 namespace {
 
@@ -152,7 +153,8 @@ inline Floats distances(Coordinate from, const Coordinate* to) {
 }
 
 inline bool any(Integers mask) {
-    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(mask);
+    using Halves = std::int64_t __attribute__((vector_size(4 * lanes)));
+    const auto halves = (Halves)mask;
     return (halves[0] | halves[1]) != 0;
 }
 
@@ -160,13 +162,14 @@ inline bool any(Integers mask) {
 
 Items::Nearest Items::nearest(Coordinate x, Coordinate y, float radius) const {
     constexpr float px = physics::units_per_px;
-    std::uint32_t best_item = none;
+    std::uint32_t best_item = none, best_bucket = 0, best_slot = 0;
     float best_square = radius * radius * (px * px);
-    for_each_bucket(x, y, radius, [&](const Bucket& bucket) {
+    for_each_bucket(x, y, radius, [&](std::uint32_t b) {
+        const Places& places = places_[b];
         alignas(Floats) float squares[slots];
         Integers near{};
         for (std::uint32_t first = 0; first < slots; first += lanes) {
-            const Floats dx = distances(x, &bucket.x[first]), dy = distances(y, &bucket.y[first]);
+            const Floats dx = distances(x, &places.x[first]), dy = distances(y, &places.y[first]);
             const Floats square = dx * dx + dy * dy;
             __builtin_memcpy(&squares[first], &square, sizeof square);
             near |= square <= best_square;
@@ -176,10 +179,12 @@ Items::Nearest Items::nearest(Coordinate x, Coordinate y, float radius) const {
         for (std::uint32_t slot = 0; slot < slots; ++slot) {
             if (squares[slot] > best_square)
                 continue;
-            const std::uint32_t item = bucket.item[slot];
+            const std::uint32_t item = contents_[b].item[slot];
             if (squares[slot] < best_square || item < best_item) {
                 best_item = item;
                 best_square = squares[slot];
+                best_bucket = b;
+                best_slot = slot;
             }
         }
     });
@@ -187,8 +192,8 @@ Items::Nearest Items::nearest(Coordinate x, Coordinate y, float radius) const {
         return {.item = none, .square = radius * radius, .dx = 0, .dy = 0};
     return {.item = best_item,
             .square = best_square / (px * px),
-            .dx = physics::distance_px(x, x_[best_item]),
-            .dy = physics::distance_px(y, y_[best_item])};
+            .dx = physics::distance_px(x, places_[best_bucket].x[best_slot]),
+            .dy = physics::distance_px(y, places_[best_bucket].y[best_slot])};
 }
 
 base::StateHash Items::hash_of(std::uint32_t item) const {
