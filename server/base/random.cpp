@@ -1,6 +1,5 @@
 #include "server/base/random.h"
 
-#include "server/base/assert.h"
 #include "server/base/elementary.h"
 
 #include <Random123/philox.h>
@@ -37,15 +36,9 @@ std::array<std::uint32_t, 4> RandomKey::words(std::uint32_t entity, std::uint64_
     return philox({entity, block, low_half(tick), high_half(tick)}, low_, high_);
 }
 
-std::uint32_t RandomStream::below(std::uint32_t bound) {
-    EVOD_ASSERT(bound >= 1);
-    std::uint64_t product = std::uint64_t{word()} * bound;
-    if (low_half(product) < bound) {
-        const std::uint32_t threshold = (0u - bound) % bound;
-        while (low_half(product) < threshold)
-            product = std::uint64_t{word()} * bound;
-    }
-    return high_half(product);
+std::array<std::uint32_t, 2> RandomKey::pair(std::uint32_t entity, std::uint32_t tick) const {
+    const auto out = r123::Philox2x32{}({{entity, pair_counter(tick)}}, {{pair_key()}});
+    return {out[0], out[1]};
 }
 
 double RandomStream::gaussian() {

@@ -2,9 +2,11 @@
 //
 // Determinism  nothing to save, no order of draws between streams, nothing that depends on threads. A draw added to one
 //              purpose shifts nothing in another.
-// Source       Philox4x32-10: Salmon, Moraes, Dror & Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3"; the
-//              implementation is Random123's.
+// Source       Philox4x32-10, and Philox2x32-10 for pair(): Salmon, Moraes, Dror & Shaw 2011, "Parallel random numbers:
+//              as easy as 1, 2, 3"; the implementation is Random123's.
 #pragma once
+
+#include "server/base/assert.h"
 
 #include <array>
 #include <cstdint>
@@ -31,6 +33,7 @@ enum class Purpose : std::uint32_t {
     Mutation = 14,
     SurvivorMutation = 15,
     Migration = 16,
+    Shuffle = 17,        // of many; its seed is drawn, so island and generation are 0
     ScenarioTest = 1000, // tests and demonstrations
 };
 
@@ -47,6 +50,14 @@ class RandomKey {
 
     /// Four uniform 32-bit words.
     std::array<std::uint32_t, 4> words(std::uint32_t entity, std::uint64_t tick, std::uint32_t block) const;
+
+    /// Two uniform 32-bit words, for what is drawn for every organism in every tick: Philox2x32-10, which takes half
+    /// the time. Its key is half of ours; the other half goes into the counter, by exclusive or with the tick. No
+    /// words() of a purpose that uses pair().
+    std::array<std::uint32_t, 2> pair(std::uint32_t entity, std::uint32_t tick) const;
+    // What pair() hands to the generator, for kernels that draw for many entities.
+    std::uint32_t pair_key() const { return low_; }
+    std::uint32_t pair_counter(std::uint32_t tick) const { return high_ ^ tick; }
 
   private:
     std::uint32_t low_, high_;
@@ -81,7 +92,16 @@ class RandomStream {
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
     /// Uniform in 0 … bound − 1 without bias (Lemire 2019, "Fast random integer generation in an interval"); bound
     /// >= 1.
-    std::uint32_t below(std::uint32_t bound);
+    std::uint32_t below(std::uint32_t bound) {
+        EVOD_ASSERT(bound >= 1);
+        std::uint64_t product = std::uint64_t{word()} * bound;
+        if (static_cast<std::uint32_t>(product) < bound) {
+            const std::uint32_t threshold = (0u - bound) % bound;
+            while (static_cast<std::uint32_t>(product) < threshold)
+                product = std::uint64_t{word()} * bound;
+        }
+        return static_cast<std::uint32_t>(product >> 32);
+    }
     /// True with probability p; two words whatever p is.
     bool chance(double p) { return uniform() < p; }
     /// Standard normal (Box & Muller 1958, cosine branch); four words.

@@ -1,6 +1,6 @@
 #include "server/console/experiment_file.h"
 
-#include "server/simulation/laboratory.h"
+#include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -78,7 +78,7 @@ base::Result<simulation::Parameters> with_changes(const simulation::Parameters& 
 std::string world_name(const std::string& path) {
     std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
     for (char& c : name)
-        if (!((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-'))
+        if (!simulation::is_world_name_character(c))
             c = '_';
     return name.empty() ? "default" : name;
 }

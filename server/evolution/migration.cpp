@@ -1,6 +1,7 @@
 #include "server/evolution/migration.h"
 
 #include "server/base/assert.h"
+#include "server/base/inline_executor.h"
 #include "server/evolution/ranking.h"
 #include "server/evolution/selection.h"
 
@@ -58,6 +59,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
     const auto stream = [&](std::uint32_t island, std::uint32_t entity, Decision decision) {
         return base::RandomStream{{seed, base::Purpose::Migration, island, generation}, entity, decision};
     };
+    base::InlineExecutor executor;
     std::vector<Ranking> rankings(fitness.begin(), fitness.end());
 
     std::vector<Migrant> migrants;
@@ -73,7 +75,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
                 replaced.assign(order.rbegin(), order.rend());
             } else {
                 base::RandomStream random = stream(edge.to, 0, WhoIsReplaced);
-                replaced = draw_unique(population(edge.to), population(edge.to), random);
+                replaced = draw_unique(population(edge.to), population(edge.to), random, executor);
             }
         }
         const std::uint32_t leaving =
@@ -84,7 +86,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
             emigrants = rankings[edge.from].best_first().first(leaving);
         } else {
             base::RandomStream random = stream(edge.from, edge.to, WhoLeaves);
-            drawn = draw_unique(population(edge.from), leaving, random);
+            drawn = draw_unique(population(edge.from), leaving, random, executor);
             emigrants = drawn;
         }
         for (const std::uint32_t organism : emigrants)

@@ -3,6 +3,7 @@
 #include "server/base/elementary.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -14,22 +15,64 @@ double symmetric_uniform(base::RandomStream& random) {
     return (random.word() + 0.5) * 0x1p-31 - 1;
 }
 
-/// Independent standard normal numbers, two from every two uniform ones. Source: Box & Muller 1958.
-class NormalPairs {
+/// Standard normal numbers, most of them for one word: the area under the density is covered by layers of equal area,
+/// and a place in a layer that lies wholly under the density is taken as it is. Source: Marsaglia & Tsang 2000, "The
+/// ziggurat method for generating random variables", with independent bits for layer and place (Doornik 2005).
+class Ziggurat {
   public:
-    double draw(base::RandomStream& random) {
-        second_ = !second_;
-        if (!second_)
-            return radius_ * base::sin_turns(turns_);
-        radius_ = std::sqrt(-2 * base::log(1 - random.uniform())); // 1 − [0, 1) is never 0
-        turns_ = random.uniform();
-        return radius_ * base::cos_turns(turns_);
+    Ziggurat() {
+        width_[0] = area / density(tail); // the lowest layer, the tail included
+        width_[1] = tail;
+        for (unsigned i = 2; i < layers; ++i)
+            width_[i] = std::sqrt(-2 * base::log(area / width_[i - 1] + density(width_[i - 1])));
+        width_[layers] = 0;
+        for (unsigned i = 0; i < layers; ++i)
+            wholly_under_[i] = width_[i + 1] / width_[i];
+    }
+
+    double draw(base::RandomStream& random) const {
+        while (true) {
+            const std::uint32_t word = random.word();
+            const unsigned layer = word % layers;
+            const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1; // in (−1, 1), 25 bits
+            const double x = share * width_[layer];
+            if (std::abs(share) < wholly_under_[layer])
+                return x;
+            if (layer == 0)
+                return std::copysign(draw_tail(random), x);
+            // Between the densities at the layer's two edges.
+            const double low = density(width_[layer]), high = density(width_[layer + 1]);
+            if (low + random.uniform() * (high - low) < density(x))
+                return x;
+        }
     }
 
   private:
-    double radius_ = 0, turns_ = 0;
-    bool second_ = false; // whether the next is the second of a pair
+    static constexpr unsigned layers = 128;
+    static constexpr double tail = 3.442619855899, area = 9.91256303526217e-3; // for 128 layers
+
+    static double density(double x) { return base::exp(-x * x / 2); } // but for a factor
+
+    /// Source: Marsaglia 1964, "Generating a variable from the tail of the normal distribution".
+    static double draw_tail(base::RandomStream& random) {
+        while (true) {
+            const double beyond = -base::log(1 - random.uniform()) / tail; // 1 − [0, 1) is never 0
+            if (-2 * base::log(1 - random.uniform()) >= beyond * beyond)
+                return tail + beyond;
+        }
+    }
+
+    std::array<double, layers + 1> width_;    // of half a layer, from the lowest up; falling
+    std::array<double, layers> wholly_under_; // the share of it above which the next layer lies
 };
+
+double draw_normal(base::RandomStream& random) {
+    static const Ziggurat ziggurat;
+    return ziggurat.draw(random);
+}
+
+// Up to here it is cheaper to draw the ways from flip to flip than to draw for each bit.
+constexpr double rare_flip_chance_max = 0.125;
 
 /// Calls `change` for every gene of the mask, in order.
 template <class Change>
@@ -59,13 +102,15 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , step_{parameters.mutation_step}
     , reset_chance_{parameters.reset_chance}
     , bit_flip_chance_{parameters.bit_flip_chance}
-    , bits_{parameters.bit_flip_bits} {}
+    , bits_{parameters.bit_flip_bits} {
+    if (!bit_flip_chance_.is_never() && parameters.bit_flip_chance <= rare_flip_chance_max)
+        rare_flips_.emplace(gene_count * bits_, parameters.bit_flip_chance);
+}
 
 unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
-    NormalPairs normal;
     if (!creep_chance_.is_never())
         for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
-            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : normal.draw(random);
+            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
             genes[gene] = static_cast<float>(genes[gene] + step_ * unit);
         });
     if (!reset_chance_.is_never())
@@ -74,12 +119,28 @@ unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
         });
     const unsigned clamped = clamp(genes, bounds_);
     if (!bit_flip_chance_.is_never())
-        for (unsigned gene = 0; gene < gene_count; ++gene)
-            if (const std::uint32_t flips = bit_flip_chance_.draw_bits(bits_, random); flips != 0) {
-                const BinaryView view{bounds_.min[gene], bounds_.max[gene], bits_};
-                genes[gene] = view.to_value(view.to_code(genes[gene]) ^ flips);
-            }
+        flip_bits(genes, random);
     return clamped;
+}
+
+void ValueMutation::flip_bits(Genes genes, base::RandomStream& random) const {
+    std::array<std::uint32_t, gene_count> flips{};
+    if (rare_flips_) {
+        // A division by bits_, exact for so few trials: what the reciprocal is too large comes to less than 2^16.
+        const unsigned reciprocal = (1u << 16) / bits_ + 1;
+        rare_flips_->draw(random, [&](unsigned trial) {
+            const unsigned gene = trial * reciprocal >> 16;
+            flips[gene] |= 1u << (trial - gene * bits_);
+        });
+    } else {
+        for (std::uint32_t& flipped : flips)
+            flipped = bit_flip_chance_.draw_bits(bits_, random);
+    }
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        if (flips[gene] != 0) {
+            const BinaryView view{bounds_.min[gene], bounds_.max[gene], bits_};
+            genes[gene] = view.to_value(view.to_code(genes[gene]) ^ flips[gene]);
+        }
 }
 
 } // namespace evod::evolution

@@ -9,8 +9,10 @@
 #include "server/evolution/chance.h"
 #include "server/evolution/chromosome.h"
 #include "server/evolution/parameters.h"
+#include "server/evolution/rare_events.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace evod::evolution {
 
@@ -32,15 +34,19 @@ class ValueMutation {
     /// Mutates one chromosome, in this order:
     ///
     /// creep     each gene with probability mutation_chance: + mutation_step · U, U uniform in (−1, 1) or standard
-    /// normal. reset     each gene with probability reset_chance: uniform within its bounds. bounds    a gene outside
-    /// is put onto the nearer one, and counted. bit flip  each bit of each gene's BinaryView with probability
-    /// bit_flip_chance. A gene none of whose bits flips is
+    ///           normal.
+    /// reset     each gene with probability reset_chance: uniform within its bounds.
+    /// bounds    a gene outside is put onto the nearer one, and counted.
+    /// bit flip  each bit of each gene's BinaryView with probability bit_flip_chance. A gene none of whose bits flips
+    /// is
     ///           not touched; one that is touched is also rounded to a value that has a code.
     ///
     /// returns  how many genes were clamped.
     unsigned apply(Genes genes, base::RandomStream& random) const;
 
   private:
+    void flip_bits(Genes genes, base::RandomStream& random) const;
+
     GeneBounds bounds_;
     Creep creep_;
     Chance creep_chance_;
@@ -48,6 +54,7 @@ class ValueMutation {
     Chance reset_chance_;
     Chance bit_flip_chance_;
     unsigned bits_;
+    std::optional<RareEvents> rare_flips_; // of the bits of a chromosome, where flips are rare
 };
 
 } // namespace evod::evolution

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t pairs_per_piece = 512;
 constexpr std::size_t survivors_per_piece = 1024;
+constexpr std::size_t prefetched_ahead = 8;
 
 /// `share` of `count`, to the nearest, half up; at least 1.
 std::uint32_t share_of(std::uint32_t count, double share) {
@@ -22,8 +23,10 @@ std::uint32_t share_of(std::uint32_t count, double share) {
 }
 
 /// The elite, then the picks in order, of which each of the elite has used up one, if it was picked.
-std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite,
-                                            const std::vector<std::uint32_t>& picks, std::size_t population) {
+std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite, std::vector<std::uint32_t> picks,
+                                            std::size_t population) {
+    if (elite.empty())
+        return picks;
     std::vector<std::uint32_t> survivors(elite.begin(), elite.end());
     std::vector<bool> has_a_pick_to_use(population);
     for (const std::uint32_t organism : elite)
@@ -42,8 +45,14 @@ std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite
 /// The elite, then the others of the best `count` in index order.
 std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_first, std::uint32_t elite,
                                            std::uint32_t count) {
-    std::vector<std::uint32_t> survivors(best_first.begin(), best_first.begin() + count);
-    std::sort(survivors.begin() + elite, survivors.end());
+    std::vector<std::uint32_t> survivors(best_first.begin(), best_first.begin() + elite);
+    std::vector<bool> stays(best_first.size());
+    for (const std::uint32_t organism : best_first.subspan(elite, count - elite))
+        stays[organism] = true;
+    survivors.reserve(count);
+    for (std::uint32_t organism = 0; organism < stays.size(); ++organism)
+        if (stays[organism])
+            survivors.push_back(organism);
     return survivors;
 }
 
@@ -64,6 +73,8 @@ class Breeding {
         next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
             const auto place = static_cast<std::uint32_t>(i);
             const Genes genes = column(next.genes, place);
+            if (i + prefetched_ahead < survivors.size())
+                prefetch(survivors[i + prefetched_ahead]);
             std::ranges::copy(column(present_, survivors[i]), genes.begin());
             next.parents[i] = {survivors[i], survivors[i]};
             if (place < kept)
@@ -81,6 +92,10 @@ class Breeding {
         const base::RandomKey mutation_key = random_key(base::Purpose::Mutation);
         const auto organisms = static_cast<std::uint32_t>(next.genes.cols());
         next.clamped_count += counted(pairs.size(), pairs_per_piece, [&](std::size_t i) {
+            if (i + prefetched_ahead < pairs.size()) {
+                prefetch(pairs[i + prefetched_ahead].first);
+                prefetch(pairs[i + prefetched_ahead].second);
+            }
             const Parents pair = pairs[i];
             base::RandomStream crossover{crossover_key, static_cast<std::uint32_t>(i)};
             GeneMask mask = crossover_.draw(crossover);
@@ -101,6 +116,13 @@ class Breeding {
   private:
     base::RandomKey random_key(base::Purpose purpose) const {
         return {key_.seed, purpose, key_.island, key_.generation};
+    }
+
+    /// Has a chromosome fetched that is soon to be read: those of parents lie all over the memory.
+    void prefetch(std::uint32_t organism) const {
+        const ConstGenes genes = column(present_, organism);
+        __builtin_prefetch(&genes.front());
+        __builtin_prefetch(&genes.back());
     }
 
     /// Runs `work` for each index and adds up what it returns.
@@ -153,7 +175,7 @@ NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix
     EVOD_ASSERT(wanted >= 1);
     const Places places = share_places(present, wanted, parameters);
 
-    Ranking ranking{fitness};
+    Ranking ranking{fitness, executor};
     const auto elite = places.elite > 0 ? ranking.best_first().first(places.elite) : std::span<const std::uint32_t>{};
     const base::RandomKey selection_key{key.seed, base::Purpose::Selection, key.island, key.generation};
     std::vector<std::uint32_t> survivors, selected;
@@ -172,8 +194,8 @@ NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix
                 parameters, selection_key, executor);
         parents = selected;
     }
-    const std::vector<Parents> pairs =
-        pair_up(parents, (places.children + 1) / 2, {key.seed, base::Purpose::Pairing, key.island, key.generation});
+    const std::vector<Parents> pairs = pair_up(
+        parents, (places.children + 1) / 2, {key.seed, base::Purpose::Pairing, key.island, key.generation}, executor);
 
     NextGeneration next{.genes = GeneMatrix(gene_count, wanted),
                         .parents = std::vector<Parents>(wanted),

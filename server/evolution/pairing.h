@@ -3,6 +3,7 @@
 // Determinism  each round has a stream of its own.
 #pragma once
 
+#include "server/base/executor.h"
 #include "server/base/random.h"
 
 #include <cstdint>
@@ -27,6 +28,6 @@ struct Parents {
 /// key      made for Purpose::Pairing; round i draws from the stream of entity i.
 /// returns  shape (pair_count).
 std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32_t pair_count,
-                             const base::RandomKey& key);
+                             const base::RandomKey& key, base::Executor& executor);
 
 } // namespace evod::evolution

@@ -1,31 +1,50 @@
 #include "server/evolution/ranking.h"
 
-#include <array>
-#include <bit>
+#include "server/base/inline_executor.h"
+#include "server/evolution/distribution.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace evod::evolution {
 namespace {
 
-constexpr unsigned digit_bits = 8;
-constexpr unsigned digit_count = 64 / digit_bits;
-constexpr std::size_t digit_values = std::size_t{1} << digit_bits;
+constexpr std::size_t organisms_per_bucket = 4, buckets_max = 4096;
+constexpr std::size_t buckets_per_piece = 64;
 
 struct Entry {
-    std::uint64_t key; // smaller for a greater fitness
+    double fitness;
     std::uint32_t organism;
+
+    friend bool operator<(const Entry& a, const Entry& b) {
+        return a.fitness > b.fitness || (a.fitness == b.fitness && a.organism < b.organism);
+    }
 };
 
-/// The bits of a double order like the number itself once the sign bit, and for a negative number all others, are
-/// turned over; turned over once more, the greatest number comes first.
-std::uint64_t descending_key(double fitness) {
-    const auto bits = std::bit_cast<std::uint64_t>(fitness + 0.0); // −0 becomes 0
-    constexpr std::uint64_t sign = std::uint64_t{1} << 63;
-    return (bits & sign) != 0 ? bits : ~(bits | sign);
-}
+/// Cuts what lies between the greatest and the least fitness into buckets of equal width. A fitter organism is never in
+/// a later bucket, whatever rounding does: each step of the computation keeps the order.
+class Buckets {
+  public:
+    explicit Buckets(std::span<const double> fitness) {
+        const auto [least, greatest] = std::minmax_element(fitness.begin(), fitness.end());
+        half_of_greatest_ = *greatest / 2; // halves, as the whole difference may be more than a double holds
+        const auto count = std::clamp<std::size_t>(fitness.size() / organisms_per_bucket, 1, buckets_max);
+        const double per_unit = static_cast<double>(count) / (half_of_greatest_ - *least / 2);
+        if (std::isfinite(per_unit)) {
+            per_unit_ = per_unit;
+            count_ = count;
+        }
+    }
 
-std::size_t digit(std::uint64_t key, unsigned place) {
-    return key >> (place * digit_bits) & (digit_values - 1);
-}
+    std::size_t count() const { return count_; }
+    std::size_t of(double fitness) const {
+        return std::min(static_cast<std::size_t>((half_of_greatest_ - fitness / 2) * per_unit_), count_ - 1);
+    }
+
+  private:
+    double half_of_greatest_, per_unit_ = 0;
+    std::size_t count_ = 1;
+};
 
 } // namespace
 
@@ -33,30 +52,23 @@ std::span<const std::uint32_t> Ranking::best_first() {
     const std::size_t population = fitness_.size();
     if (best_first_.size() == population)
         return best_first_;
+    base::InlineExecutor own_thread;
+    base::Executor& executor = executor_ == nullptr ? own_thread : *executor_;
 
-    std::vector<Entry> entries(population), sorted(population);
-    std::array<std::array<std::uint32_t, digit_values>, digit_count> starts{};
-    for (std::size_t i = 0; i < population; ++i) {
-        entries[i] = {descending_key(fitness_[i]), static_cast<std::uint32_t>(i)};
-        for (unsigned place = 0; place < digit_count; ++place)
-            ++starts[place][digit(entries[i].key, place)];
-    }
-    for (unsigned place = 0; place < digit_count; ++place) {
-        if (starts[place][digit(entries[0].key, place)] == population)
-            continue; // all have the same digit here
-        std::uint32_t start = 0;
-        for (std::uint32_t& count : starts[place]) {
-            const std::uint32_t next = start + count;
-            count = start;
-            start = next;
-        }
-        for (const Entry& entry : entries)
-            sorted[starts[place][digit(entry.key, place)]++] = entry;
-        entries.swap(sorted);
-    }
+    const Buckets buckets{fitness_};
+    std::vector<Entry> entries(population);
+    const auto begins = distribute(
+        population, buckets.count(), executor, [&](std::size_t i) { return buckets.of(fitness_[i]); },
+        [&](std::size_t i, std::uint32_t place) {
+            entries[place] = {fitness_[i], static_cast<std::uint32_t>(i)};
+        });
     best_first_.resize(population);
-    for (std::size_t rank = 0; rank < population; ++rank)
-        best_first_[rank] = entries[rank].organism;
+    executor.parallel_for(buckets.count(), buckets_per_piece, [&](base::Range piece) {
+        for (std::size_t bucket = piece.begin; bucket < piece.end; ++bucket)
+            std::sort(entries.begin() + begins[bucket], entries.begin() + begins[bucket + 1]);
+        for (std::size_t rank = begins[piece.begin]; rank < begins[piece.end]; ++rank)
+            best_first_[rank] = entries[rank].organism;
+    });
     return best_first_;
 }
 

@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/evolution/scaling.h"
+#include "server/evolution/shuffle.h"
 #include "server/evolution/tournament.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace evod::evolution {
 namespace {
 
 constexpr std::size_t spins_per_stream = 4096;
+constexpr std::size_t pointers_per_piece = 16384;
 
 } // namespace
 
@@ -25,22 +27,29 @@ std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wante
     return picked;
 }
 
-std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random) {
+std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
+                                          base::Executor& executor) {
     const std::span<const double> ends = wheel.slot_ends();
     const double offset = random.uniform();
     std::vector<std::uint32_t> picked(wanted);
-    std::uint32_t organism = 0;
-    for (std::uint32_t pointer = 0; pointer < wanted; ++pointer) {
-        const double place = (pointer + offset) / wanted * ends.back();
-        while (organism + 1 < ends.size() && ends[organism] <= place)
-            ++organism;
-        picked[pointer] = organism;
-    }
-    random.shuffle(std::span{picked});
+    executor.parallel_for(wanted, pointers_per_piece, [&](base::Range piece) {
+        const auto place = [&](std::size_t pointer) {
+            return (static_cast<double>(pointer) + offset) / wanted * ends.back();
+        };
+        auto slot = std::upper_bound(ends.begin(), ends.end(), place(piece.begin));
+        for (std::size_t pointer = piece.begin; pointer < piece.end; ++pointer) {
+            while (slot < ends.end() && *slot <= place(pointer))
+                ++slot;
+            // Rounding can put the last pointer onto the end of the wheel.
+            picked[pointer] = static_cast<std::uint32_t>(std::min(slot, ends.end() - 1) - ends.begin());
+        }
+    });
+    shuffle(picked, random, executor);
     return picked;
 }
 
-std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random) {
+std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random,
+                                       base::Executor& executor) {
     std::vector<std::uint32_t> picked;
     if (population == 0)
         return picked;
@@ -49,6 +58,11 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
     std::iota(everyone.begin(), everyone.end(), 0u);
     while (picked.size() < wanted) {
         const auto round = static_cast<std::uint32_t>(std::min<std::size_t>(population, wanted - picked.size()));
+        if (round > shuffled_whole_max) {
+            shuffle(everyone, random, executor);
+            picked.insert(picked.end(), everyone.begin(), everyone.begin() + round);
+            continue;
+        }
         for (std::uint32_t i = 0; i < round; ++i) {
             std::swap(everyone[i], everyone[i + random.below(population - i)]);
             picked.push_back(everyone[i]);
@@ -75,7 +89,7 @@ std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Pa
     case SelectionMethod::Roulette:
         return spin_roulette(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, key, executor);
     case SelectionMethod::StochasticUniversal:
-        return spin_universal(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, random);
+        return spin_universal(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, random, executor);
     case SelectionMethod::Tournament:
         return hold_tournaments(ranking,
                                 {.size = parameters.tournament_size,
@@ -83,7 +97,7 @@ std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Pa
                                  .replacement = parameters.tournament_replacement},
                                 picks.wanted, key, executor);
     case SelectionMethod::Random:
-        return draw_unique(population, picks.wanted, random);
+        return draw_unique(population, picks.wanted, random, executor);
     case SelectionMethod::Truncation:
         return take_best(ranking, picks.pool, picks.wanted);
     }

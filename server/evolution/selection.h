@@ -3,7 +3,7 @@
 //
 // Determinism  picks are keyed one by one (tournaments) or in blocks of fixed size (roulette), or drawn from one
 // stream. Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361, for the laws of all of
-// them.
+//              them.
 #pragma once
 
 #include "server/base/executor.h"
@@ -26,12 +26,14 @@ std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wante
 /// ⌊wanted · p⌋ or ⌈wanted · p⌉ times (to within the rounding of a sum of doubles), wanted · p on average.
 /// returns  shape (wanted), in random order.
 /// Source   Baker 1987, "Reducing bias and inefficiency in the selection algorithm".
-std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random);
+std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
+                                          base::Executor& executor);
 
 /// Different organisms, each set and order of them equally likely. When more are wanted than there are, full rounds of
 /// everybody come first, each in a fresh order.
 /// returns  shape (wanted); empty for a population of 0.
-std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random);
+std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random,
+                                       base::Executor& executor);
 
 /// The best `pool` organisms in order of rank, over and over.
 /// pool     1 … population.

@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace evod::evolution {
 namespace {
 
-constexpr std::size_t tournaments_per_piece = 1024;
+// So many contestants are drawn before the first of them is looked at, as their fitness lies all over the memory.
+constexpr std::size_t contestants_at_once = 128;
+constexpr std::size_t contestants_per_piece = 4096;
 
 struct Fitter {
     std::span<const double> fitness;
@@ -87,6 +90,43 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
     }
 }
 
+/// How many of `population` ranks are better than the best of `size` different draws. Source: Vitter 1987, "An
+/// efficient algorithm for sequential random sampling", algorithm D.
+std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::RandomStream& random) {
+    if (size == 1)
+        return random.below(population);
+    const double ranks = population, draws = size, ends = ranks - draws + 1; // a skip is less than `ends`
+    while (true) {
+        // A proposal from nearly the law, ...
+        const double x = ranks * (1 - base::pow(1 - random.uniform(), 1 / draws));
+        if (x >= ends)
+            continue;
+        const double skip = std::floor(x);
+        // ... accepted by a bound that is quick to find, ...
+        const double needed = base::pow(random.uniform() * ranks / ends, 1 / (draws - 1));
+        if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1)
+            return static_cast<std::uint32_t>(skip);
+        // ... or by the law itself.
+        double product = 1, above = ranks - 1;
+        double below = draws - 1 > skip ? ranks - draws : ranks - skip - 1;
+        const double last = draws - 1 > skip ? ranks - skip : ends;
+        for (double factor = ranks - 1; factor >= last; --factor)
+            product *= above-- / below--;
+        if (ranks / (ranks - x) >= needed * base::pow(product, 1 / (draws - 1)))
+            return static_cast<std::uint32_t>(skip);
+    }
+}
+
+/// The same as draw_different_winning_ranks, in a time that does not depend on how many ranks are passed over.
+void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
+                                     base::RandomStream& random) {
+    std::uint32_t rank = 0;
+    for (std::uint32_t& winner : ranks) {
+        winner = rank + draw_skip(population - rank, size--, random);
+        rank = winner + 1;
+    }
+}
+
 /// The chance of each rank to be the best of `size` different draws, as long as it can be told from 0: the ranks above
 /// it are missed one after another.
 std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
@@ -105,8 +145,12 @@ enum class Way {
     Held,            // contestants are drawn and compared
     OrderStatistics, // with replacement
     WheelOfRanks,    // without, one winner
-    WalkDownRanks,   // without, several winners
+    WalkDownRanks,   // without, several winners, a large part of the population
+    SkipRanks,       // without, several winners, a small part of it
 };
+
+// To walk past so many ranks for each winner costs what a skip costs.
+constexpr std::uint64_t walked_ranks_max = 13;
 
 Way choose_way(std::uint32_t population, const Tournament& tournament) {
     const std::uint64_t size = tournament.size, winners = tournament.winners;
@@ -114,7 +158,11 @@ Way choose_way(std::uint32_t population, const Tournament& tournament) {
         return size <= held_contestants_max || size < 4 * winners ? Way::Held : Way::OrderStatistics;
     if (winners == 1)
         return size <= held_contestants_max ? Way::Held : Way::WheelOfRanks;
-    return size * size <= winners * population ? Way::Held : Way::WalkDownRanks;
+    if (size <= held_contestants_max)
+        return Way::Held;
+    if (population <= walked_ranks_max * size)
+        return Way::WalkDownRanks;
+    return size < 4 * winners ? Way::Held : Way::SkipRanks;
 }
 
 } // namespace
@@ -135,32 +183,57 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
 
     std::vector<std::uint32_t> picked(wanted);
     const std::size_t tournament_count = (std::size_t{wanted} + winners - 1) / winners;
-    executor.parallel_for(tournament_count, tournaments_per_piece, [&](base::Range piece) {
-        std::vector<std::uint32_t> contestants(held ? size : winners);
+    const std::size_t contestants_each = held ? size : winners;
+    const std::size_t at_once = std::max<std::size_t>(contestants_at_once / contestants_each, 1);
+    const std::size_t grain = std::max<std::size_t>(contestants_per_piece / contestants_each, 1);
+    executor.parallel_for(tournament_count, grain, [&](base::Range piece) {
+        std::vector<std::uint32_t> drawn_contestants(contestants_each * std::min(at_once, piece.end - piece.begin));
         DrawnSet drawn{held && !tournament.replacement ? size : 0};
-        for (std::size_t i = piece.begin; i < piece.end; ++i) {
-            base::RandomStream random{key, static_cast<std::uint32_t>(i)};
-            if (held) {
-                if (tournament.replacement)
-                    draw_contestants(population, contestants, random);
-                else
-                    draw_different_contestants(population, contestants, drawn, random);
-                if (winners == 1)
+        const auto contestants_of = [&](std::size_t place) {
+            return std::span{drawn_contestants}.subspan(place * contestants_each, contestants_each);
+        };
+        for (std::size_t first = piece.begin; first < piece.end; first += at_once) {
+            const std::size_t count = std::min(at_once, piece.end - first);
+            for (std::size_t i = 0; i < count; ++i) {
+                base::RandomStream random{key, static_cast<std::uint32_t>(first + i)};
+                const std::span<std::uint32_t> contestants = contestants_of(i);
+                switch (way) {
+                case Way::Held:
+                    if (tournament.replacement)
+                        draw_contestants(population, contestants, random);
+                    else
+                        draw_different_contestants(population, contestants, drawn, random);
+                    break;
+                case Way::OrderStatistics:
+                    draw_winning_ranks(population, size, contestants, random);
+                    break;
+                case Way::WheelOfRanks:
+                    contestants[0] = wheel.at(random.uniform());
+                    break;
+                case Way::WalkDownRanks:
+                    draw_different_winning_ranks(population, size, contestants, random);
+                    break;
+                case Way::SkipRanks:
+                    skip_to_different_winning_ranks(population, size, contestants, random);
+                    break;
+                }
+                for (const std::uint32_t contestant : contestants)
+                    __builtin_prefetch(held ? static_cast<const void*>(&ranking.fitness()[contestant])
+                                            : static_cast<const void*>(&best_first[contestant]));
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::span<std::uint32_t> contestants = contestants_of(i);
+                if (!held)
+                    for (std::uint32_t& rank : contestants)
+                        rank = best_first[rank];
+                else if (winners == 1)
                     contestants[0] = *std::min_element(contestants.begin(), contestants.end(), fitter);
                 else
                     std::partial_sort(contestants.begin(), contestants.begin() + winners, contestants.end(), fitter);
-            } else {
-                if (way == Way::WheelOfRanks)
-                    contestants[0] = wheel.at(random.uniform());
-                else if (tournament.replacement)
-                    draw_winning_ranks(population, size, contestants, random);
-                else
-                    draw_different_winning_ranks(population, size, contestants, random);
-                for (std::uint32_t& rank : contestants)
-                    rank = best_first[rank];
+                const std::size_t begin = (first + i) * winners;
+                std::copy_n(contestants.begin(), std::min<std::size_t>(winners, wanted - begin),
+                            picked.begin() + static_cast<std::ptrdiff_t>(begin));
             }
-            const std::size_t first = i * winners;
-            std::copy_n(contestants.begin(), std::min<std::size_t>(winners, wanted - first), picked.begin() + first);
         }
     });
     return picked;

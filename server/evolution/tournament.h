@@ -2,7 +2,7 @@
 //
 // Determinism  each tournament has a stream of its own.
 // Cost         a tournament of k contestants costs O(k), but the outcome of a large one is drawn directly, by the same
-//              law: O(winners) with replacement and for a single winner, else min(k, winners · population / k) steps.
+//              law, in O(winners).
 // Source       Goldberg & Deb 1991, "A comparative analysis of selection schemes used in genetic algorithms".
 #pragma once
 
@@ -32,8 +32,7 @@ struct Tournament {
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor);
 
-/// Tournaments of more contestants than this have their outcome drawn directly if they are with replacement or have a
-/// single winner.
+/// Tournaments of more contestants than this have their outcome drawn directly, unless most of them win.
 constexpr std::uint32_t held_contestants_max = 64;
 
 } // namespace evod::evolution

@@ -7,6 +7,7 @@
 #include "server/protocol/queries.h"
 #include "server/runtime/mailbox.h"
 #include "server/simulation/world.h"
+#include "server/simulation/world_name.h"
 
 #include <chrono>
 #include <cstddef>

@@ -3,55 +3,68 @@
 namespace evod::physics {
 namespace {
 
+/// visit(column, what a void circle has there).
 template <class F>
-void for_each_column(Bodies& bodies, F&& visit) {
-    visit(bodies.x);
-    visit(bodies.y);
-    visit(bodies.velocity_x);
-    visit(bodies.velocity_y);
-    visit(bodies.force_x);
-    visit(bodies.force_y);
-    visit(bodies.inverse_mass);
-}
-
-void add_at_rest(Bodies& bodies, Coordinate x, Coordinate y, float inverse_mass) {
-    bodies.x.push_back(x);
-    bodies.y.push_back(y);
-    bodies.velocity_x.push_back(0);
-    bodies.velocity_y.push_back(0);
-    bodies.force_x.push_back(0);
-    bodies.force_y.push_back(0);
-    bodies.inverse_mass.push_back(inverse_mass);
+void for_each_column(Circles& circles, F&& visit) {
+    visit(circles.x, elsewhere);
+    visit(circles.y, elsewhere);
+    visit(circles.velocity_x, 0.0f);
+    visit(circles.velocity_y, 0.0f);
+    visit(circles.inverse_mass, 0.0f);
+    visit(circles.id, std::uint32_t{0});
+    visit(circles.radius, 0.0f);
 }
 
 } // namespace
 
 void Circles::clear() {
-    for_each_column(*this, [](auto& column) { column.clear(); });
-    id.clear();
-    radius.clear();
+    for_each_column(*this, [](auto& column, auto) { column.clear(); });
+    size_ = 0;
 }
 
-void Circles::add(std::uint32_t new_id, Coordinate at_x, Coordinate at_y, float new_radius, float mass) {
-    add_at_rest(*this, at_x, at_y, 1 / mass);
-    id.push_back(new_id);
-    radius.push_back(new_radius);
+void Circles::resize(std::size_t size) {
+    for_each_column(*this, [&](auto& column, auto filling) {
+        column.resize(size, filling);
+        column.resize(padded(size), filling);
+    });
+    size_ = size;
 }
 
-void Circles::keep_only(const std::vector<std::uint8_t>& keep) {
-    for_each_column(*this, [&](auto& column) { keep_flagged(column, keep); });
-    keep_flagged(id, keep);
-    keep_flagged(radius, keep);
+void Circles::put(std::size_t i, const AtRest& circle) {
+    x[i] = circle.x;
+    y[i] = circle.y;
+    inverse_mass[i] = 1 / circle.mass;
+    id[i] = circle.id;
+    radius[i] = circle.radius;
+}
+
+void Circles::add(const AtRest& circle) {
+    resize(size_ + 1);
+    put(size_ - 1, circle);
+}
+
+void Circles::remove(std::size_t i) {
+    // The identity stays: it says whose place it was.
+    x[i] = y[i] = elsewhere;
+    velocity_x[i] = velocity_y[i] = 0;
+    inverse_mass[i] = radius[i] = 0;
+}
+
+void Circles::reorder(const Reordering& reordering) {
+    for_each_column(*this, [&](auto& column, auto filling) { reordering.apply(column, filling); });
+    size_ = reordering.size();
 }
 
 void Boxes::clear() {
-    for_each_column(*this, [](auto& column) { column.clear(); });
-    half_width.clear();
-    half_height.clear();
+    *this = {};
 }
 
 void Boxes::add(Coordinate at_x, Coordinate at_y, float new_half_width, float new_half_height, float new_inverse_mass) {
-    add_at_rest(*this, at_x, at_y, new_inverse_mass);
+    x.push_back(at_x);
+    y.push_back(at_y);
+    velocity_x.push_back(0);
+    velocity_y.push_back(0);
+    inverse_mass.push_back(new_inverse_mass);
     half_width.push_back(new_half_width);
     half_height.push_back(new_half_height);
 }

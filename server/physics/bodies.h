@@ -5,6 +5,9 @@
 // place. An island may be 524,288 px wide.
 #pragma once
 
+#include "server/base/column.h"
+#include "server/physics/reordering.h"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -27,10 +30,19 @@ inline double to_px(Coordinate units) {
     return static_cast<double>(units) / units_per_px;
 }
 
+/// b − a in units. Wraps around for what is_elsewhere, which is far from everything all the same.
+inline Coordinate difference(Coordinate a, Coordinate b) {
+    return static_cast<Coordinate>(static_cast<std::uint32_t>(b) - static_cast<std::uint32_t>(a));
+}
+
 /// b − a in px; exact up to 4,096 px.
 inline float distance_px(Coordinate a, Coordinate b) {
-    return static_cast<float>(b - a) * px_per_unit;
+    return static_cast<float>(difference(a, b)) * px_per_unit;
 }
+
+/// Where what is not there pretends to be: further from any place on an island than anything reaches, so that loops
+/// need not ask whether it is there.
+constexpr Coordinate elsewhere = -(1 << 30);
 
 /// An island's inside: 0 … width, 0 … height. The walls are half-planes beyond it.
 struct Area {
@@ -39,43 +51,50 @@ struct Area {
 
 /// What circles and boxes have in common; index i of every column is the same body.
 struct Bodies {
-    std::vector<Coordinate> x, y;              // centre
-    std::vector<float> velocity_x, velocity_y; // px/s
-    std::vector<float> force_x, force_y;       // kg px/s², until the end of the tick
-    std::vector<float> inverse_mass;           // 1/kg; 0 is immovable
-
-    std::size_t size() const { return x.size(); }
+    base::Column<Coordinate> x, y;              // centre
+    base::Column<float> velocity_x, velocity_y; // px/s
+    base::Column<float> inverse_mass;           // 1/kg; 0 is immovable
 };
 
-/// Circles; `id` rises with the index, and contacts are resolved in order of it.
+/// Circles, in any order; contacts are resolved in order of `id`.
+///
+/// Columns are padded(size()) long. What is beyond size(), and circles that have been removed until compact() is
+/// called, are void: immovable, without extent, and elsewhere.
 struct Circles : Bodies {
-    std::vector<std::uint32_t> id;
-    std::vector<float> radius; // px
+    base::Column<std::uint32_t> id; // below 2^31
+    base::Column<float> radius;     // px
 
+    std::size_t size() const { return size_; }
+    bool is_void(std::size_t i) const { return x[i] == elsewhere; }
     void clear();
-    /// Adds a circle at rest.
-    void add(std::uint32_t new_id, Coordinate at_x, Coordinate at_y, float new_radius, float mass);
-    /// Keeps the bodies whose flag is set, in their order. keep: shape (size).
-    void keep_only(const std::vector<std::uint8_t>& keep);
+    /// Void circles are added, or the last ones taken away.
+    void resize(std::size_t size);
+    /// A circle at rest in the place of a void one; side by side for different ones.
+    struct AtRest {
+        std::uint32_t id;
+        Coordinate x, y;
+        float radius, mass; // px, kg
+    };
+    void put(std::size_t i, const AtRest& circle);
+    /// The same, after the last one.
+    void add(const AtRest& circle);
+    /// Makes the circle void.
+    void remove(std::size_t i);
+    /// Those that are left become the circles with the indices order[0], order[1], …
+    void reorder(const Reordering& reordering);
+
+  private:
+    std::size_t size_ = 0;
 };
 
 /// Boxes; their index is their identity.
 struct Boxes : Bodies {
-    std::vector<float> half_width, half_height; // px
+    base::Column<float> half_width, half_height; // px
 
+    std::size_t size() const { return x.size(); }
     void clear();
     /// Adds a box at rest. inverse_mass: 0 for an obstacle.
     void add(Coordinate at_x, Coordinate at_y, float new_half_width, float new_half_height, float new_inverse_mass);
 };
-
-/// Keeps the elements whose flag is set, in their order.
-template <class T>
-void keep_flagged(std::vector<T>& column, const std::vector<std::uint8_t>& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < column.size(); ++i)
-        if (keep[i])
-            column[kept++] = column[i];
-    column.resize(kept);
-}
 
 } // namespace evod::physics

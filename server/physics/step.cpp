@@ -1,19 +1,19 @@
 #include "server/physics/step.h"
 
+#include "server/base/instructions.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace evod::physics {
-namespace {
 
-void accelerate_all(Bodies& bodies, const Integration& integration) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        bodies.velocity_x[i] =
-            accelerate(integration, bodies.velocity_x[i], bodies.force_x[i] * bodies.inverse_mass[i]);
-        bodies.velocity_y[i] =
-            accelerate(integration, bodies.velocity_y[i], bodies.force_y[i] * bodies.inverse_mass[i]);
-    }
+extern const MotionKernels motion_kernels_baseline, motion_kernels_avx2;
+
+const MotionKernels& motion_kernels() {
+    return base::chosen(motion_kernels_baseline, motion_kernels_avx2);
 }
+
+namespace {
 
 /// Cuts a velocity to `limit`, px/s; whether it had to.
 bool limit_speed(float& vx, float& vy, float limit) {
@@ -26,67 +26,127 @@ bool limit_speed(float& vx, float& vy, float limit) {
     return true;
 }
 
-/// extent(i)  the radius, or least half side, px.
-/// drift      what explicit Euler adds to the velocity that moves a body, or nullptr. The limit acts on both
-/// velocities.
-template <class Extent>
-void move_all(Bodies& bodies, const StepParameters& parameters, const float* drift_x, const float* drift_y,
-              Extent&& extent, StepCounts& counts) {
-    const float limit = parameters.max_speed_px_s;
-    const float tick_s = parameters.integration.tick_s;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        float &vx = bodies.velocity_x[i], &vy = bodies.velocity_y[i];
-        float moving_x = drift_x == nullptr ? vx : vx + drift_x[i];
-        float moving_y = drift_y == nullptr ? vy : vy + drift_y[i];
-        counts.speed_limited += limit_speed(vx, vy, limit);
-        limit_speed(moving_x, moving_y, limit);
-        const float way_x = moving_x * tick_s, way_y = moving_y * tick_s;
-        bodies.x[i] += to_units(way_x);
-        bodies.y[i] += to_units(way_y);
-        counts.too_fast += way_x * way_x + way_y * way_y > extent(i) * extent(i);
-        bodies.force_x[i] = 0;
-        bodies.force_y[i] = 0;
+/// Lets `wall` act on each axis of each box that can move, with its half side in units.
+template <class Wall>
+void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (boxes.inverse_mass[i] == 0)
+            continue;
+        wall(boxes.x[i], boxes.velocity_x[i], to_units(boxes.half_width[i]), area.width);
+        wall(boxes.y[i], boxes.velocity_y[i], to_units(boxes.half_height[i]), area.height);
     }
 }
 
 } // namespace
 
 StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
-                         base::Executor& executor) {
-    const bool is_explicit = parameters.integration.integrator == Integrator::ExplicitEuler;
-    if (is_explicit) {
-        drift_x_ = circles.velocity_x;
-        drift_y_ = circles.velocity_y;
-        drift_x_.insert(drift_x_.end(), boxes.velocity_x.begin(), boxes.velocity_x.end());
-        drift_y_.insert(drift_y_.end(), boxes.velocity_y.begin(), boxes.velocity_y.end());
+                         const Forces& force, base::Executor& executor) {
+    if (near_.worn(circles, boxes)) {
+        near_.sort(circles, boxes, area, executor);
+        near_.list(circles, boxes, executor);
     }
-    accelerate_all(circles, parameters.integration);
-    accelerate_all(boxes, parameters.integration);
-    if (is_explicit) {
-        for (std::size_t i = 0; i < circles.size(); ++i) {
-            drift_x_[i] -= circles.velocity_x[i];
-            drift_y_[i] -= circles.velocity_y[i];
-        }
-        for (std::size_t i = 0, j = circles.size(); i < boxes.size(); ++i, ++j) {
-            drift_x_[j] -= boxes.velocity_x[i];
-            drift_y_[j] -= boxes.velocity_y[i];
-        }
+    begin(circles, boxes, area, parameters);
+    executor.parallel_for(block_count(circles.size()), blocks_per_piece(circles.size()), [&](base::Range blocks) {
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+            accelerate(circles, block, {force.x + block * circles_per_block, force.y + block * circles_per_block});
+    });
+    collide(circles, boxes, executor);
+    executor.parallel_for(block_count(circles.size()), blocks_per_piece(circles.size()), [&](base::Range blocks) {
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+            move(circles, block);
+    });
+    return finish(boxes);
+}
+
+void Stepper::begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters) {
+    parameters_ = parameters;
+    area_ = area;
+    rules_ = {.tick_s = parameters.integration.tick_s,
+              .velocity_kept = parameters.integration.velocity_kept,
+              .restitution = parameters.restitution,
+              .max_speed = parameters.max_speed_px_s,
+              .width = area.width,
+              .height = area.height};
+    if (is_explicit()) {
+        drift_x_.resize(circles.x.size());
+        drift_y_.resize(circles.x.size());
     }
+    contacts_.begin(circles, boxes);
+    counts_of_block_.assign(block_count(circles.size()), {});
+}
 
-    bounce_off_walls(circles, boxes, area, parameters.restitution);
-    contacts_.find(circles, boxes, area, executor);
-    contacts_.resolve(circles, boxes, parameters.restitution);
+MotionColumns Stepper::columns(Circles& circles) {
+    return {.x = circles.x.data(),
+            .y = circles.y.data(),
+            .velocity_x = circles.velocity_x.data(),
+            .velocity_y = circles.velocity_y.data(),
+            .inverse_mass = circles.inverse_mass.data(),
+            .radius = circles.radius.data(),
+            .drift_x = is_explicit() ? drift_x_.data() : nullptr,
+            .drift_y = is_explicit() ? drift_y_.data() : nullptr,
+            .anchor_x = near_.anchor_x().data(),
+            .anchor_y = near_.anchor_y().data()};
+}
 
+void Stepper::accelerate(Circles& circles, std::size_t block, const Forces& force) {
+    const base::Range range = circles_of_block(circles.size(), block);
+    motion_kernels().accelerate(columns(circles), force, range.begin, range.end, rules_);
+    contacts_.find_among_circles(circles, near_, block);
+}
+
+void Stepper::collide(Circles& circles, Boxes& boxes, base::Executor& executor) {
+    box_drift_x_ = boxes.velocity_x;
+    box_drift_y_ = boxes.velocity_y;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        boxes.velocity_x[i] = physics::accelerate(parameters_.integration, boxes.velocity_x[i], 0);
+        boxes.velocity_y[i] = physics::accelerate(parameters_.integration, boxes.velocity_y[i], 0);
+        box_drift_x_[i] -= boxes.velocity_x[i];
+        box_drift_y_[i] -= boxes.velocity_y[i];
+    }
+    for_each_axis(boxes, area_, [&](Coordinate position, float& velocity, Coordinate extent, Coordinate size) {
+        if ((position <= extent && velocity < 0) || (position >= size - extent && velocity > 0))
+            velocity *= -parameters_.restitution;
+    });
+    contacts_.find_with_boxes(circles, boxes, near_);
+    contacts_.resolve(circles, boxes, parameters_.restitution, executor);
+}
+
+void Stepper::move(Circles& circles, std::size_t block) {
+    const base::Range range = circles_of_block(circles.size(), block);
+    counts_of_block_[block] = motion_kernels().move(columns(circles), range.begin, range.end, rules_);
+}
+
+StepCounts Stepper::finish(Boxes& boxes) {
     StepCounts counts;
-    const float* drift_x = is_explicit ? drift_x_.data() : nullptr;
-    const float* drift_y = is_explicit ? drift_y_.data() : nullptr;
-    move_all(
-        circles, parameters, drift_x, drift_y, [&](std::size_t i) { return circles.radius[i]; }, counts);
-    move_all(
-        boxes, parameters, is_explicit ? drift_x + circles.size() : nullptr,
-        is_explicit ? drift_y + circles.size() : nullptr,
-        [&](std::size_t i) { return std::min(boxes.half_width[i], boxes.half_height[i]); }, counts);
-    keep_inside(circles, boxes, area, parameters.restitution);
+    float strayed_square = 0;
+    for (const MoveCounts& block : counts_of_block_) {
+        counts.too_fast += block.too_fast;
+        counts.speed_limited += block.speed_limited;
+        strayed_square = std::max(strayed_square, block.strayed_square);
+    }
+    near_.circles_strayed(strayed_square);
+
+    const float limit = parameters_.max_speed_px_s, tick_s = rules_.tick_s;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        float &vx = boxes.velocity_x[i], &vy = boxes.velocity_y[i];
+        float moving_x = is_explicit() ? vx + box_drift_x_[i] : vx;
+        float moving_y = is_explicit() ? vy + box_drift_y_[i] : vy;
+        counts.speed_limited += limit_speed(vx, vy, limit);
+        limit_speed(moving_x, moving_y, limit);
+        const float way_x = moving_x * tick_s, way_y = moving_y * tick_s;
+        boxes.x[i] += to_units(way_x);
+        boxes.y[i] += to_units(way_y);
+        const float extent = std::min(boxes.half_width[i], boxes.half_height[i]);
+        counts.too_fast += way_x * way_x + way_y * way_y > extent * extent;
+    }
+    for_each_axis(boxes, area_, [&](Coordinate& position, float& velocity, Coordinate extent, Coordinate size) {
+        if (position < extent || position > size - extent) {
+            const bool below = position < extent;
+            position = below ? extent : size - extent;
+            if (below ? velocity < 0 : velocity > 0)
+                velocity *= -parameters_.restitution;
+        }
+    });
     return counts;
 }
 

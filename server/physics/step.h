@@ -1,17 +1,22 @@
 // Step: the physics of one tick, in this order:
 // accumulated forces → velocity; damping; detect and resolve collisions; limit speeds; velocity → position; keep inside
-// the walls; clear forces.
+// the walls. Forces act for one tick.
 //
 // Owner        an island; keeps its working memory warm between ticks.
+// Threads      blocks of circles are accelerated, looked at for contacts and moved side by side; whoever has more to do
+//              with a block calls the parts of the step in loops of its own.
 // Determinism  see contacts.h; everything else is per body.
 #pragma once
 
 #include "server/base/executor.h"
 #include "server/physics/bodies.h"
+#include "server/physics/broad_phase.h"
 #include "server/physics/contacts.h"
 #include "server/physics/integrators.h"
+#include "server/physics/motion_kernels.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace evod::physics {
 
@@ -28,12 +33,38 @@ struct StepCounts {
 
 class Stepper {
   public:
+    /// One tick. force: on each circle, padded as the columns are.
     StepCounts step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
-                    base::Executor& executor);
+                    const Forces& force, base::Executor& executor);
+
+    // The parts of step(), in the order in which they are called.
+
+    /// Which pairs are near; to be renewed by its sort() and list() while it is worn().
+    NearPairs& near() { return near_; }
+    const NearPairs& near() const { return near_; }
+    void begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters);
+    /// Forces → velocities, damping, bounces off walls, for one block of circles; and what touches in it. Blocks may be
+    /// done side by side.
+    /// force: of the circles of the block.
+    void accelerate(Circles& circles, std::size_t block, const Forces& force);
+    /// The same for the boxes; then resolves all contacts.
+    void collide(Circles& circles, Boxes& boxes, base::Executor& executor);
+    /// Velocities → positions for one block of circles. Blocks may be done side by side.
+    void move(Circles& circles, std::size_t block);
+    /// The same for the boxes.
+    StepCounts finish(Boxes& boxes);
 
   private:
+    MotionColumns columns(Circles& circles);
+    bool is_explicit() const { return parameters_.integration.integrator == Integrator::ExplicitEuler; }
+
+    StepParameters parameters_;
+    Area area_;
+    MotionRules rules_{};
+    NearPairs near_;
     Contacts contacts_;
-    std::vector<float> drift_x_, drift_y_; // explicit Euler: velocity at the tick's start − velocity after acceleration
+    base::Column<float> drift_x_, drift_y_, box_drift_x_, box_drift_y_; // see MotionColumns
+    std::vector<MoveCounts> counts_of_block_;
 };
 
 } // namespace evod::physics

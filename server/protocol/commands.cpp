@@ -2,6 +2,8 @@
 
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
+#include "server/simulation/laboratory.h"
+#include "server/simulation/world_name.h"
 
 #include <cmath>
 #include <utility>
@@ -27,8 +29,9 @@ bool too_many(int assignments, std::string field, Violations& violations) {
 }
 
 simulation::Command command_of(const v1::CreateWorld& request, const Draws& draws, Violations& violations) {
-    if (!is_world_name(request.name()))
-        violations.push_back({"create_world.name", std::string{world_name_allowed}, '"' + request.name() + '"'});
+    if (!simulation::is_world_name(request.name()))
+        violations.push_back(
+            {"create_world.name", std::string{simulation::world_name_allowed}, '"' + request.name() + '"'});
     simulation::CreateWorld command{.name = request.name(),
                                     .parameters = {},
                                     .seed = request.has_seed() ? base::Seed{request.seed()} : draws.seed,
@@ -202,7 +205,7 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
 }
 
 std::string lookup_name(const std::string& world) {
-    return is_world_name(world) ? world : quotable(world);
+    return simulation::is_world_name(world) ? world : quotable(world);
 }
 
 base::Refusal invalid(std::vector<base::Violation> violations) {

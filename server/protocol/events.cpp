@@ -1,17 +1,12 @@
 #include "server/protocol/events.h"
 
+#include "server/base/overloaded.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/worlds.h"
 
 namespace evod::protocol {
-namespace {
 
-template <class... F>
-struct Overloaded : F... {
-    using F::operator()...;
-};
-
-} // namespace
+using base::Overloaded;
 
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory) {
     v1::Event told;

@@ -1,7 +1,5 @@
 #include "server/protocol/refusals.h"
 
-#include "server/simulation/laboratory.h"
-
 #include <algorithm>
 #include <charconv>
 
@@ -51,14 +49,6 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
     std::replace_if(
         quoted.begin(), quoted.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
     return cut ? quoted + "…" : quoted;
-}
-
-bool is_world_name(std::string_view name) {
-    return !name.empty() && name.size() <= simulation::world_name_bytes_max &&
-           std::all_of(name.begin(), name.end(), [](char c) {
-               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-                      c == '-';
-           });
 }
 
 std::string number_text(double value) {

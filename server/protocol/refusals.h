@@ -18,10 +18,6 @@ v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal);
 /// `bytes_max` bytes the rest is "…". Valid UTF-8 stays valid.
 std::string quotable(std::string_view text, std::size_t bytes_max = 64);
 
-/// 1 to 64 of a-z A-Z 0-9 _ -
-bool is_world_name(std::string_view name);
-constexpr std::string_view world_name_allowed = "1 to 64 of a-z A-Z 0-9 _ -";
-
 /// Shortest text that reads back as the same number: "0.1", "nan".
 std::string number_text(double value);
 

@@ -6,12 +6,40 @@ namespace evod::runtime {
 namespace {
 
 void copy(const simulation::Items& items, ItemsSnapshot& to) {
-    to.x = items.x();
-    to.y = items.y();
+    to.x.resize(items.size());
+    to.y.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        to.x[i] = items.all()[i].x;
+        to.y[i] = items.all()[i].y;
+    }
+    to.due_tick.clear();
     if (items.present_count() == items.size())
-        to.due_tick.clear();
-    else
-        to.due_tick = items.due_tick();
+        return;
+    to.due_tick.resize(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i)
+        to.due_tick[i] = items.all()[i].due_tick;
+}
+
+void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
+    const std::size_t alive = island.alive_count();
+    to.id.resize(alive);
+    to.x.resize(alive);
+    to.y.resize(alive);
+    to.radius_px.resize(alive);
+    to.health.resize(alive);
+    const physics::Circles& bodies = island.bodies();
+    std::size_t k = 0;
+    const auto born = static_cast<std::uint32_t>(island.born().genes.cols());
+    for (std::uint32_t id = 0; id < born; ++id) {
+        const auto body = island.body_of(id);
+        if (!body)
+            continue;
+        to.id[k] = id;
+        to.x[k] = bodies.x[*body];
+        to.y[k] = bodies.y[*body];
+        to.radius_px[k] = bodies.radius[*body];
+        to.health[k++] = island.living().health[*body];
+    }
 }
 
 void copy(const simulation::Island& island, const simulation::Parameters& parameters, IslandSnapshot& to) {
@@ -23,19 +51,14 @@ void copy(const simulation::Island& island, const simulation::Parameters& parame
         to.height_px = parameters.island_height_px;
     }
     to.live = island.live_statistics();
-    const physics::Circles& bodies = island.bodies();
-    to.organisms.id = bodies.id;
-    to.organisms.x = bodies.x;
-    to.organisms.y = bodies.y;
-    to.organisms.radius_px = bodies.radius;
-    to.organisms.health = island.living().health;
+    copy_organisms(island, to.organisms);
     copy(island.food(), to.food);
     copy(island.poison(), to.poison);
     const physics::Boxes& boxes = island.boxes();
-    to.boxes.x = boxes.x;
-    to.boxes.y = boxes.y;
-    to.boxes.half_width_px = boxes.half_width;
-    to.boxes.half_height_px = boxes.half_height;
+    to.boxes.x.assign(boxes.x.begin(), boxes.x.end());
+    to.boxes.y.assign(boxes.y.begin(), boxes.y.end());
+    to.boxes.half_width_px.assign(boxes.half_width.begin(), boxes.half_width.end());
+    to.boxes.half_height_px.assign(boxes.half_height.begin(), boxes.half_height.end());
     to.crate_count = island.crate_count();
 }
 

@@ -1,7 +1,6 @@
 // Snapshot: an immutable picture of a world between two ticks, for those who watch it.
 //
-// Taking one is copying columns as they lie in memory; what has to be computed per entity is left to the reader's
-// thread.
+// Taking one is copying columns; what has to be computed per entity is left to the reader's thread.
 //
 // Owner        shared; the last to let go gives the memory back to the pool it came from.
 // Threads      taken by the simulation thread, read by any.

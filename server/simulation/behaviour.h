@@ -1,27 +1,27 @@
 // Behaviour: what each organism sees, and the force with which it answers.
 //
-// Threads      organisms are looked at in blocks side by side; each writes its own force.
+// The nearest food within food_radius and the nearest poison within poison_radius are seen, centre to centre. Seen
+// poison is fled, with chance min(1, impulse / certain_impulse), if it is nearer than the nearest food seen
+// (FleeRule::Always: whatever the food): a force straight away from it. Otherwise seen food is steered to: a force
+// along (food − position − velocity · lookahead). Otherwise the organism wanders in a fresh uniform direction. Where
+// the direction has no length, it is random.
+//
+// Threads      ranges of organisms are done side by side; each organism writes its own force.
 // Determinism  everything is seen at the positions of the tick's start; the draws of an organism are keyed by its id
-// and
-//              the tick, and made only where they are needed.
+//              and the tick.
 #pragma once
 
-#include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
+#include "server/simulation/organism_kernels.h"
 #include "server/simulation/parameters.h"
+#include "server/simulation/sight.h"
 
-#include <vector>
+#include <array>
 
 namespace evod::simulation {
-
-/// What was seen at a tick's start, by body index: for feeding, which need not look where nothing can be reached.
-struct Sight {
-    std::vector<physics::Coordinate> x, y;             // where the organism was
-    std::vector<float> food_distance, poison_distance; // px; that nothing of the kind was nearer than
-};
 
 struct BehaviourRules {
     FleeRule flee_rule;
@@ -30,15 +30,17 @@ struct BehaviourRules {
     float force_per_unit;  // kg px/s² per gene unit
 };
 
-/// Perception and choice of every living organism; adds its force to its body.
-///
-/// The nearest food within food_radius and the nearest poison within poison_radius are seen, centre to centre. Seen
-/// poison is fled, with chance min(1, impulse / certain_impulse), if it is nearer than the nearest food seen
-/// (FleeRule::Always: whatever the food): a force straight away from it. Otherwise seen food is steered to: a force
-/// along (food − position − velocity · lookahead). Otherwise the organism wanders in a fresh uniform direction. Where
-/// the direction has no length, it is random.
-void perceive_and_choose(const Living& living, const Items& food, const Items& poison, const BehaviourRules& rules,
-                         const base::RandomKey& key, std::uint32_t tick, physics::Circles& bodies, Sight& sight,
-                         base::Executor& executor);
+/// What kernels take. Valid until columns grow or are reordered.
+OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight& sight, const Items& food,
+                                 const Items& poison);
+
+/// What the organisms of one block answer with, kg px/s².
+struct ChosenForces {
+    std::array<float, physics::circles_per_block> x, y;
+};
+
+/// The loss of health that a tick costs, and the choice of the organisms of a block, whose views are good.
+void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
+                     std::uint32_t tick, base::Range block, ChosenForces& forces);
 
 } // namespace evod::simulation

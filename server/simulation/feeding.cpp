@@ -1,46 +1,54 @@
 #include "server/simulation/feeding.h"
 
-#include <algorithm>
-#include <cmath>
+#include <bit>
 #include <tuple>
 
 namespace evod::simulation {
 
-const std::vector<Meal>& Feeding::meals(const physics::Circles& bodies, const Items& items, const Sight& sight,
-                                        const std::vector<float>& seen_distance, base::Executor& executor) {
-    constexpr std::size_t bodies_per_block = 1024;
-    constexpr float margin_px = 0.05f; // far more than the rounding of any distance here
-    const std::size_t n = bodies.size();
-    touches_of_block_.resize((n + bodies_per_block - 1) / bodies_per_block);
-    executor.parallel_for(n, bodies_per_block, [&](base::Range range) {
-        for (std::size_t begin = range.begin; begin < range.end; begin += bodies_per_block) {
-            std::vector<Touch>& touches = touches_of_block_[begin / bodies_per_block];
-            touches.clear();
-            for (std::size_t i = begin; i < std::min(begin + bodies_per_block, range.end); ++i) {
-                const float reach = bodies.radius[i] + items.radius_px();
-                // Items rest: what was further away than the reach and the way since cannot be touched.
-                const float way_x = physics::distance_px(sight.x[i], bodies.x[i]);
-                const float way_y = physics::distance_px(sight.y[i], bodies.y[i]);
-                if (seen_distance[i] > reach + std::sqrt(way_x * way_x + way_y * way_y) + margin_px)
-                    continue;
-                items.for_each_within(bodies.x[i], bodies.y[i], reach, [&](std::uint32_t item, float square) {
-                    touches.push_back({item, square, bodies.id[i], static_cast<std::uint32_t>(i)});
-                });
-            }
-        }
-    });
+void Feeding::begin(std::size_t blocks) {
+    constexpr std::size_t usually_enough = 32;
+    const std::size_t before = touches_of_block_.size();
+    touches_of_block_.resize(blocks);
+    for (std::size_t block = before; block < blocks; ++block)
+        touches_of_block_[block].reserve(usually_enough);
+    first_of_item_.reserve(4 * blocks * usually_enough);
+}
 
-    touches_.clear();
+void Feeding::find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
+                           const Items& items) {
+    std::vector<Touch>& touches = touches_of_block_[block];
+    touches.clear();
+    for (const std::uint32_t i : at_items)
+        items.prefetch(bodies.x[i], bodies.y[i]);
+    for (const std::uint32_t i : at_items)
+        items.for_each_within(bodies.x[i], bodies.y[i], bodies.radius[i] + items.radius_px(),
+                              [&](std::uint32_t item, std::uint32_t place, float square) {
+                                  touches.push_back({item, place, square, bodies.id[i], i, true});
+                              });
+}
+
+std::size_t Feeding::award() {
+    std::size_t count = 0;
     for (const std::vector<Touch>& touches : touches_of_block_)
-        touches_.insert(touches_.end(), touches.begin(), touches.end());
-    std::sort(touches_.begin(), touches_.end(), [](const Touch& a, const Touch& b) {
-        return std::tie(a.item, a.square, a.id) < std::tie(b.item, b.square, b.id);
-    });
-    meals_.clear();
-    for (const Touch& touch : touches_)
-        if (meals_.empty() || meals_.back().item != touch.item)
-            meals_.push_back({touch.item, touch.body});
-    return meals_;
+        count += touches.size();
+    const std::size_t slots = std::bit_ceil(2 * count);
+    first_of_item_.assign(slots, nullptr);
+    for (std::vector<Touch>& touches : touches_of_block_)
+        for (Touch& touch : touches) {
+            std::size_t slot = touch.item * 0x9e37'79b9u & (slots - 1);
+            while (first_of_item_[slot] != nullptr && first_of_item_[slot]->item != touch.item)
+                slot = (slot + 1) & (slots - 1);
+            Touch*& first = first_of_item_[slot];
+            if (first == nullptr) {
+                first = &touch;
+                continue;
+            }
+            --count;
+            const bool nearer = std::tie(touch.square, touch.id) < std::tie(first->square, first->id);
+            (nearer ? first : &touch)->gets_it = false;
+            first = nearer ? &touch : first;
+        }
+    return count;
 }
 
 } // namespace evod::simulation

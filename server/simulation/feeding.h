@@ -1,42 +1,45 @@
-// Feeding: who touches which items after the tick's move, and who gets each.
+// Feeding: who touches which items of one kind after the tick's move, and who gets each.
 //
-// Threads      organisms are looked at in blocks side by side; what each block found is put together in order.
+// Threads      blocks of bodies are looked at side by side.
 // Determinism  an item goes to its nearest toucher, of equally near ones to the lowest id, whatever the order of
-// search.
+//              search.
 #pragma once
 
-#include "server/base/executor.h"
 #include "server/physics/bodies.h"
-#include "server/simulation/behaviour.h"
 #include "server/simulation/items.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace evod::simulation {
 
-/// An item and the body that gets it.
-struct Meal {
-    std::uint32_t item, body;
+/// A body that touches an item.
+struct Touch {
+    std::uint32_t item, place; // where the item is, as Items tell
+    float square;              // of the distance, px²
+    std::uint32_t id, body;
+    bool gets_it; // once award() has been called; of all who touch an item, one does
 };
 
 class Feeding {
   public:
-    /// Who gets which of the items touched now, in rising order of item. Changes nothing.
-    ///
-    /// seen_distance  of `sight`, for this kind of item: px; no item was nearer than that at the start of the tick.
-    const std::vector<Meal>& meals(const physics::Circles& bodies, const Items& items, const Sight& sight,
-                                   const std::vector<float>& seen_distance, base::Executor& executor);
+    /// Before the blocks are looked at, which makes each forget what it had. blocks: how many there will be.
+    void begin(std::size_t blocks);
+
+    /// What some bodies touch; blocks may be done side by side. `at_items` holds every body of the block that touches
+    /// an item.
+    void find_touches(std::size_t block, std::span<const std::uint32_t> at_items, const physics::Circles& bodies,
+                      const Items& items);
+
+    /// Decides who gets what, of all blocks. Returns the number of items touched.
+    std::size_t award();
+
+    std::span<const Touch> touches(std::size_t block) const { return touches_of_block_[block]; }
 
   private:
-    struct Touch {
-        std::uint32_t item;
-        float square; // of the distance, px²
-        std::uint32_t id, body;
-    };
     std::vector<std::vector<Touch>> touches_of_block_; // kept warm between ticks
-    std::vector<Touch> touches_;
-    std::vector<Meal> meals_;
+    std::vector<Touch*> first_of_item_;                // open addressing, by item
 };
 
 } // namespace evod::simulation

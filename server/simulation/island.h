@@ -4,8 +4,12 @@
 // positions at the start of the tick → forces, damping, collisions, positions (physics/step.h) → feeding at the new
 // positions → deaths → hash.
 //
+// Organisms lie in memory as they lie on the island, strip by strip, so that neighbours share cache lines; as they move
+// they are put in order again now and then. The dead leave void places until then.
+//
 // Owner        World. Islands share nothing, so a world advances them side by side.
-// Determinism  decisions go by ids; the order of arrays is no part of the state.
+// Threads      a tick is two loops over blocks of organisms, with what concerns single ones between them and after
+// them. Determinism  decisions go by ids; the order of arrays is no part of the state.
 #pragma once
 
 #include "server/base/executor.h"
@@ -20,6 +24,8 @@
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
 #include "server/simulation/parameters.h"
+#include "server/simulation/placement.h"
+#include "server/simulation/sight.h"
 #include "server/simulation/statistics.h"
 
 #include <optional>
@@ -40,7 +46,8 @@ class Island {
     Island(base::Seed seed, std::uint32_t index) : seed_{seed}, index_{index} {}
 
     /// Replaces everything: fresh organisms grown from `bred`, food, poison, obstacles and crates.
-    void begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred);
+    void begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred,
+                          base::Executor& executor);
 
     /// tick  of the generation, 1 for its first.
     void advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
@@ -57,9 +64,12 @@ class Island {
     /// Of everything on the island, as of the last tick.
     base::StateHash hash() const { return hash_; }
 
-    const Living& living() const { return living_; }
-    const physics::Circles& bodies() const { return bodies_; } // of the living, ids rising
-    const physics::Boxes& boxes() const { return boxes_; }     // crates, then obstacles
+    std::uint32_t alive_count() const { return alive_count_; }
+    const Living& living() const { return living_; } // by body
+    const physics::Circles& bodies() const {
+        return bodies_;
+    }                                                      // of the living, in any order; those of the dead are void
+    const physics::Boxes& boxes() const { return boxes_; } // crates, then obstacles
     std::uint32_t crate_count() const { return crate_count_; }
     const Items& food() const { return food_; }
     const Items& poison() const { return poison_; }
@@ -71,10 +81,29 @@ class Island {
     LiveStatistics live_statistics() const;
 
   private:
-    void place(const Parameters& parameters, std::uint64_t generation);
-    void feed(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
-    void bury_the_dead(std::uint32_t tick);
-    void update_hash(base::Executor& executor);
+    void place(const Parameters& parameters, std::uint64_t generation, base::Executor& executor);
+    void renew_near_pairs(base::Executor& executor);
+    void reorder(base::Executor& executor);
+    void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
+    void move(std::size_t block);
+    void feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    base::StateHash hash_of_organism(std::size_t body) const;
+    base::StateHash hash_of_boxes() const;
+    OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
+
+    /// What came of a tick in a block of organisms.
+    struct Block {
+        base::StateHash hash;             // of the living
+        std::vector<std::uint32_t> dying; // bodies without health, before meals
+        base::StateHash food_hash_change, poison_hash_change;
+        std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
+    };
+    void resize_blocks(std::size_t count);
+    void feed_and_bury_in_block(const Parameters& parameters, std::uint32_t tick, std::size_t index);
+    template <class Change>
+    void change_health(Block& block, std::uint32_t body, Change&& change);
+    bool is_dying(std::uint32_t body) const;
+    void bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfDeath cause);
 
     base::Seed seed_;
     std::uint32_t index_;
@@ -86,17 +115,22 @@ class Island {
     Living living_;
     physics::Circles bodies_;
     physics::Boxes boxes_;
-    physics::Boxes obstacles_; // those of boxes_ that do not move: where no item may lie
+    BoxGrid obstacles_; // those of boxes_ that do not move: where no item may lie
     std::uint32_t crate_count_ = 0;
     Items food_, poison_;
     Sight sight_;
-    Feeding feeding_;
+    Feeding food_feeding_, poison_feeding_;
     Fate fate_;
     IslandCounts counts_;
-    base::StateHash born_hash_; // of the chromosomes, which do not change during a generation
+    std::uint32_t alive_count_ = 0;
+    base::Column<std::uint32_t> body_of_; // by id: its index, or a number that none has for the dead
+    base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
+    base::StateHash organisms_hash_;      // of the living
     base::StateHash hash_;
-    std::vector<base::StateHash> hash_of_block_; // working memory, kept warm
-    std::vector<std::uint8_t> keep_;
+
+    std::vector<Block> blocks_; // kept warm between ticks
+    base::Column<std::uint32_t> spare_column_;
+    std::uint32_t renewals_ = 0; // of the near pairs, in this generation
 };
 
 } // namespace evod::simulation

@@ -1,207 +1,282 @@
 #include "server/simulation/items.h"
 
 #include "server/base/assert.h"
-#include "server/simulation/placement.h"
+#include "server/base/commutative.h"
+#include "server/base/instructions.h"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
 #include <utility>
 
 namespace evod::simulation {
 
 using physics::Coordinate;
 
+extern const ItemsKernels items_kernels_baseline, items_kernels_avx2;
+
+const ItemsKernels& items_kernels() {
+    return base::chosen(items_kernels_baseline, items_kernels_avx2);
+}
+
+namespace {
+
+constexpr std::uint32_t items_per_block = 4096;
+constexpr std::size_t prefetched_ahead = 8; // items
+
+constexpr ItemBucket empty_bucket() {
+    ItemBucket bucket{};
+    for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot)
+        bucket.x[slot] = bucket.y[slot] = physics::elsewhere;
+    return bucket;
+}
+
+} // namespace
+
 void Items::begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
-                             const physics::Area& area, const physics::Boxes& obstacles) {
+                             const physics::Area& area, const BoxGrid& obstacles, base::Executor& executor) {
+    const base::RandomKey key{seed, rules.placement, island, generation};
+    begin(rules, {seed, rules.respawn_purpose, island, generation}, area, executor, [&](std::uint32_t item) {
+        base::RandomStream random{key, item};
+        return random_place(random, area, rules.radius_px, obstacles);
+    });
+}
+
+void Items::begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
+                     base::Executor& executor) {
+    EVOD_ASSERT(places.size() == rules.count);
+    begin(rules, {seed, rules.respawn_purpose, 0, 1}, area, executor, [&](std::uint32_t item) { return places[item]; });
+}
+
+template <class PlaceOf>
+void Items::begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
+                  base::Executor& executor, PlaceOf&& place_of) {
     rules_ = rules;
     area_ = area;
-    respawn_key_ = base::RandomKey{seed, rules.respawn_purpose, island, generation};
-    x_.assign(rules.count, 0);
-    y_.assign(rules.count, 0);
-    due_tick_.assign(rules.count, 0);
+    respawn_key_ = respawn_key;
+    all_.resize(rules.count);
     due_.clear();
     due_begin_ = 0;
-    present_count_ = 0;
-    hash_ = {};
+    changes_.clear();
     choose_cells(rules.count);
-    const base::RandomKey key{seed, rules.placement, island, generation};
-    for (std::uint32_t item = 0; item < rules.count; ++item)
-        settle(item, base::RandomStream{key, item}, obstacles);
+
+    std::vector<base::StateHash> hash_of_block((rules.count + items_per_block - 1) / items_per_block);
+    executor.parallel_for(rules.count, items_per_block, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            const auto item = static_cast<std::uint32_t>(i);
+            const Place place = place_of(item);
+            all_[item] = {place.x, place.y, 0};
+            hash_of_block[range.begin / items_per_block] += hash_of(item);
+        }
+    });
+    hash_ = {};
+    for (const base::StateHash& hash : hash_of_block)
+        hash_ += hash;
+    insert_all(executor);
+    present_count_ = rules.count;
 }
 
 void Items::choose_cells(std::uint32_t count) {
-    // About three items to a cell, so that few buckets overflow and a query meets few empty ones.
-    const double share = 3 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
-    shift_ = 12;
-    while (shift_ < 30 &&
-           static_cast<double>(1u << (shift_ + 1)) * static_cast<double>(1u << (shift_ + 1)) <= 2 * share)
-        ++shift_;
-    columns_ = (static_cast<std::uint32_t>(area_.width) >> shift_) + 1;
-    rows_ = (static_cast<std::uint32_t>(area_.height) >> shift_) + 1;
-    places_.assign(std::size_t{rows_} * columns_, Places{});
-    contents_.assign(places_.size(), Contents{});
+    // About four items to a cell: few buckets overflow, and a query within the cell's side looks at four of them.
+    const double share = 4 * static_cast<double>(area_.width) * area_.height / static_cast<double>(std::max(count, 1u));
+    side_ = static_cast<std::int64_t>(std::clamp(std::sqrt(share), 4096.0, 1073741824.0));
+    scale_ = (std::uint64_t{1} << ItemGrid::scale_bits) / static_cast<std::uint64_t>(side_);
+    const auto cells = [this](Coordinate size) {
+        return static_cast<std::uint32_t>(static_cast<std::uint64_t>(size) * scale_ >> ItemGrid::scale_bits) + 1;
+    };
+    columns_ = cells(area_.width);
+    rows_ = cells(area_.height);
+    const std::size_t cell_count = std::size_t{rows_} * columns_;
+    // Room for what does not fit: items are spread evenly, so a tick will not need more but where obstacles crowd them.
+    const std::size_t room = cell_count + cell_count / 16 + 16;
+    buckets_.reserve(room + 1);
+    items_.reserve(room);
+    next_.reserve(room);
+    counts_.reserve(room);
+    buckets_.assign(cell_count + 1, empty_bucket());
+    items_.assign(cell_count, {});
+    next_.assign(cell_count, none);
+    counts_.assign(cell_count, 0);
     spare_.clear();
+    spare_.reserve(room - cell_count);
+    // So many come and go in a tick, or are away, at most but where nearly all are eaten at once.
+    const std::size_t events = count / 16 + 64;
+    changes_.reserve(2 * events);
+    due_.reserve(events);
+    arrivals_.reserve(events);
 }
 
-std::uint32_t Items::cell_of(Coordinate x, Coordinate y) const {
-    return (static_cast<std::uint32_t>(y) >> shift_) * columns_ + (static_cast<std::uint32_t>(x) >> shift_);
+ItemGrid Items::grid() const {
+    return {.buckets = buckets_.data() + 1,
+            .items = reinterpret_cast<const std::uint32_t(*)[slots]>(items_.data()),
+            .next = next_.data(),
+            .rows = rows_,
+            .columns = columns_,
+            .side = side_,
+            .scale = scale_};
 }
 
-void Items::settle(std::uint32_t item, base::RandomStream random, const physics::Boxes& obstacles) {
-    const Place place = random_place(random, area_, rules_.radius_px, obstacles);
-    x_[item] = place.x;
-    y_[item] = place.y;
-    due_tick_[item] = 0;
-    insert(item);
-    ++present_count_;
-    hash_ += hash_of(item);
+void Items::insert_all(base::Executor& executor) {
+    // Whoever comes first gets the first slot; what finds no slot waits until all are done.
+    std::vector<std::vector<std::uint32_t>> waiting((all_.size() + items_per_block - 1) / items_per_block);
+    executor.parallel_for(all_.size(), items_per_block, [&](base::Range range) {
+        std::vector<std::uint32_t>& no_slot = waiting[range.begin / items_per_block];
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (i + prefetched_ahead < range.end) {
+                const std::uint32_t cell = cell_of(static_cast<std::uint32_t>(i + prefetched_ahead));
+                __builtin_prefetch(&bucket(cell), 1);
+                __builtin_prefetch(&items_[cell], 1);
+            }
+            const auto item = static_cast<std::uint32_t>(i);
+            const std::uint32_t cell = cell_of(item);
+            if (base::look_at(counts_[cell]) >= slots) {
+                no_slot.push_back(item);
+                continue;
+            }
+            const std::uint32_t slot = base::fetch_add<true>(counts_[cell], std::uint8_t{1});
+            if (slot >= slots) {
+                base::fetch_add<true>(counts_[cell], std::uint8_t{255}); // − 1
+                no_slot.push_back(item);
+                continue;
+            }
+            bucket(cell).x[slot] = all_[item].x;
+            bucket(cell).y[slot] = all_[item].y;
+            items_[cell][slot] = item;
+        }
+    });
+    for (const std::vector<std::uint32_t>& no_slot : waiting)
+        for (const std::uint32_t item : no_slot)
+            insert(item, cell_of(item));
 }
 
-void Items::insert(std::uint32_t item) {
-    std::uint32_t b = cell_of(x_[item], y_[item]);
-    while (contents_[b].count == slots) {
-        if (contents_[b].next == none) {
+void Items::insert(std::uint32_t item, std::uint32_t cell) {
+    std::uint32_t b = cell;
+    while (counts_[b] == slots) {
+        if (next_[b] == none) {
             std::uint32_t added;
             if (spare_.empty()) {
-                added = static_cast<std::uint32_t>(places_.size());
-                places_.emplace_back();
-                contents_.emplace_back();
+                added = static_cast<std::uint32_t>(next_.size());
+                buckets_.push_back(empty_bucket());
+                items_.push_back({});
+                next_.push_back(none);
+                counts_.push_back(0);
             } else {
                 added = spare_.back();
                 spare_.pop_back();
             }
-            contents_[b].next = added;
+            next_[b] = added;
         }
-        b = contents_[b].next;
+        b = next_[b];
     }
-    const std::uint32_t slot = contents_[b].count++;
-    places_[b].x[slot] = x_[item];
-    places_[b].y[slot] = y_[item];
-    contents_[b].item[slot] = item;
+    const std::uint32_t slot = counts_[b]++;
+    bucket(b).x[slot] = all_[item].x;
+    bucket(b).y[slot] = all_[item].y;
+    items_[b][slot] = item;
 }
 
-void Items::remove(std::uint32_t item) {
-    // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
-    std::uint32_t last = cell_of(x_[item], y_[item]), before_last = none;
-    std::uint32_t holder = none, slot = 0;
-    while (true) {
-        const Contents& bucket = contents_[last];
-        if (holder == none) {
-            const auto end_of_items = bucket.item.begin() + bucket.count;
-            const auto found = std::find(bucket.item.begin(), end_of_items, item);
-            if (found != end_of_items) {
-                holder = last;
-                slot = static_cast<std::uint32_t>(found - bucket.item.begin());
-            }
-        }
-        if (bucket.next == none)
+void Items::take_out(std::uint32_t item, std::uint32_t place) {
+    // Others that have been taken out may have moved it.
+    std::uint32_t holder = place / slots, slot = place % slots;
+    const std::uint32_t cell = holder < std::size_t{rows_} * columns_ ? holder : cell_of(item);
+    if (items_[holder][slot] != item || slot >= counts_[holder])
+        for (holder = cell;; holder = next_[holder]) {
+            EVOD_ASSERT(holder != none);
+            const auto end_of_items = items_[holder].begin() + counts_[holder];
+            const auto found = std::find(items_[holder].begin(), end_of_items, item);
+            if (found == end_of_items)
+                continue;
+            slot = static_cast<std::uint32_t>(found - items_[holder].begin());
             break;
-        before_last = std::exchange(last, bucket.next);
-    }
-    EVOD_ASSERT(holder != none);
-    const std::uint32_t end = --contents_[last].count;
-    places_[holder].x[slot] = places_[last].x[end];
-    places_[holder].y[slot] = places_[last].y[end];
-    contents_[holder].item[slot] = contents_[last].item[end];
-    places_[last].x[end] = places_[last].y[end] = far_away;
-    contents_[last].item[end] = none;
+        }
+    changes_.push_back({bucket(holder).x[slot], bucket(holder).y[slot], false});
+    if (rules_.respawn)
+        due_.push_back({all_[item].due_tick, item});
+    --present_count_;
+
+    // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
+    std::uint32_t last = cell, before_last = none;
+    while (next_[last] != none)
+        before_last = std::exchange(last, next_[last]);
+    const std::uint32_t end = --counts_[last];
+    bucket(holder).x[slot] = bucket(last).x[end];
+    bucket(holder).y[slot] = bucket(last).y[end];
+    items_[holder][slot] = items_[last][end];
+    bucket(last).x[end] = bucket(last).y[end] = physics::elsewhere;
     if (end == 0 && before_last != none) {
-        contents_[before_last].next = none;
+        next_[before_last] = none;
         spare_.push_back(last);
     }
 }
 
-void Items::consume(std::uint32_t item, std::uint32_t tick) {
+base::StateHash Items::set_due(std::uint32_t item, std::uint32_t tick) {
     EVOD_ASSERT(present(item));
-    hash_ -= hash_of(item);
-    remove(item);
-    --present_count_;
-    due_tick_[item] = rules_.respawn ? tick + rules_.respawn_ticks : none;
-    if (rules_.respawn)
-        due_.push_back({due_tick_[item], item});
-    hash_ += hash_of(item);
+    base::StateHash change;
+    change -= hash_of(item);
+    all_[item].due_tick = rules_.respawn ? tick + rules_.respawn_ticks : none;
+    change += hash_of(item);
+    return change;
 }
 
-void Items::reappear(std::uint32_t tick, const physics::Boxes& obstacles) {
-    while (due_begin_ < due_.size() && due_[due_begin_].tick <= tick) {
-        const std::uint32_t item = due_[due_begin_++].item;
-        hash_ -= hash_of(item);
-        settle(item, base::RandomStream{respawn_key_, item, tick}, obstacles);
+void Items::consume(std::uint32_t item, std::uint32_t tick) {
+    add_to_hash(set_due(item, tick));
+    take_out(item, cell_of(item) * slots);
+}
+
+void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor) {
+    std::size_t due_end = due_begin_;
+    while (due_end < due_.size() && due_[due_end].tick <= tick)
+        ++due_end;
+    if (due_end == due_begin_)
+        return;
+    // Places and hashes side by side, then into the buckets one by one.
+    constexpr std::size_t grain = 256;
+    const std::size_t count = due_end - due_begin_;
+    arrivals_.resize(count);
+    hash_of_piece_.assign((count + grain - 1) / grain, {});
+    executor.parallel_for(count, grain, [&](base::Range range) {
+        for (std::size_t k = range.begin; k < range.end; ++k)
+            prefetch_item(due_[due_begin_ + k].item);
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+            const std::uint32_t item = due_[due_begin_ + k].item;
+            base::StateHash& hash = hash_of_piece_[k / grain];
+            hash -= hash_of(item);
+            base::RandomStream random{respawn_key_, item, tick};
+            const Place place = random_place(random, area_, rules_.radius_px, obstacles);
+            all_[item] = {place.x, place.y, 0};
+            hash += hash_of(item);
+            arrivals_[k] = {item, cell_of(item)};
+        }
+    });
+    for (const base::StateHash& hash : hash_of_piece_)
+        hash_ += hash;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k + prefetched_ahead < count) {
+            const std::uint32_t cell = arrivals_[k + prefetched_ahead].cell;
+            __builtin_prefetch(&bucket(cell), 1);
+            __builtin_prefetch(&items_[cell], 1);
+            __builtin_prefetch(&counts_[cell], 1);
+        }
+        const auto [item, cell] = arrivals_[k];
+        insert(item, cell);
+        changes_.push_back({all_[item].x, all_[item].y, true});
     }
-    if (due_begin_ > 64 && due_begin_ * 2 > due_.size()) {
+    present_count_ += static_cast<std::uint32_t>(count);
+
+    due_begin_ = due_end;
+    if (due_begin_ == due_.size()) {
+        due_.clear();
+        due_begin_ = 0;
+    } else if (due_begin_ > 64 && due_begin_ * 2 > due_.size()) {
         due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(due_begin_));
         due_begin_ = 0;
     }
 }
 
-// The query is where most of a tick goes. Four slots are looked at at a time, by the compiler's vector types, and in
-// units rather than px, which are a power of two apart: a lane computes what a loop over single slots would, so neither
-// the width nor the unit changes a bit. A tick of 10,000 organisms takes 175 ns an organism so, and 260 ns with that
-// loop.
-namespace {
-
-constexpr std::uint32_t lanes = 4;
-using Floats = float __attribute__((vector_size(4 * lanes)));
-using Words = std::uint32_t __attribute__((vector_size(4 * lanes)));
-using Integers = std::int32_t __attribute__((vector_size(4 * lanes)));
-
-/// to − from for four; wraps around for slots that are far away.
-inline Floats distances(Coordinate from, const Coordinate* to) {
-    Words there;
-    __builtin_memcpy(&there, to, sizeof there);
-    return __builtin_convertvector((Integers)(there - static_cast<std::uint32_t>(from)), Floats);
-}
-
-inline bool any(Integers mask) {
-    using Halves = std::int64_t __attribute__((vector_size(4 * lanes)));
-    const auto halves = (Halves)mask;
-    return (halves[0] | halves[1]) != 0;
-}
-
-} // namespace
-
-Items::Nearest Items::nearest(Coordinate x, Coordinate y, float radius) const {
-    constexpr float px = physics::units_per_px;
-    std::uint32_t best_item = none, best_bucket = 0, best_slot = 0;
-    float best_square = radius * radius * (px * px);
-    for_each_bucket(x, y, radius, [&](std::uint32_t b) {
-        const Places& places = places_[b];
-        alignas(Floats) float squares[slots];
-        Integers near{};
-        for (std::uint32_t first = 0; first < slots; first += lanes) {
-            const Floats dx = distances(x, &places.x[first]), dy = distances(y, &places.y[first]);
-            const Floats square = dx * dx + dy * dy;
-            __builtin_memcpy(&squares[first], &square, sizeof square);
-            near |= square <= best_square;
-        }
-        if (!any(near))
-            return;
-        for (std::uint32_t slot = 0; slot < slots; ++slot) {
-            if (squares[slot] > best_square)
-                continue;
-            const std::uint32_t item = contents_[b].item[slot];
-            if (squares[slot] < best_square || item < best_item) {
-                best_item = item;
-                best_square = squares[slot];
-                best_bucket = b;
-                best_slot = slot;
-            }
-        }
-    });
-    if (best_item == none)
-        return {.item = none, .square = radius * radius, .dx = 0, .dy = 0};
-    return {.item = best_item,
-            .square = best_square / (px * px),
-            .dx = physics::distance_px(x, places_[best_bucket].x[best_slot]),
-            .dy = physics::distance_px(y, places_[best_bucket].y[best_slot])};
-}
-
 base::StateHash Items::hash_of(std::uint32_t item) const {
     base::EntityHash hash{rules_.kind, item};
     if (present(item))
-        hash.add(x_[item], y_[item]);
+        hash.add(all_[item].x, all_[item].y);
     else
-        hash.add(std::uint64_t{due_tick_[item]});
+        hash.add(std::uint64_t{all_[item].due_tick});
     return hash.finish();
 }
 

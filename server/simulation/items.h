@@ -1,21 +1,25 @@
-// Items: the food, or the poison, of an island; they rest where they are, are eaten, and reappear.
+// Items: the food or the poison of an island, in a uniform grid of buckets, eight items to a bucket, updated in place
+// as items come and go.
 //
-// Those that are there lie in a uniform grid of buckets, eight items to a bucket, updated in place as items come and
-// go.
-//
-// Threads      consume() and reappear() by one thread; queries by any number while nothing changes.
+// Threads      set_due() side by side for different items; consume(), take_out() and reappear() by one caller at a
+// time;
+//              queries by any number while nothing changes.
 // Determinism  where an item reappears depends on (seed, island, generation, item, tick) alone; queries answer by
 //              distance, then id, never by the order in a bucket.
 #pragma once
 
+#include "server/base/column.h"
+#include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/base/state_hash.h"
 #include "server/physics/bodies.h"
+#include "server/simulation/items_kernels.h"
+#include "server/simulation/placement.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
+#include <span>
 #include <vector>
 
 namespace evod::simulation {
@@ -32,121 +36,146 @@ struct ItemRules {
 
 class Items {
   public:
-    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    static constexpr std::uint32_t none = no_item;
 
     /// Fresh items at uniform random places clear of walls and obstacles.
     void begin_generation(const ItemRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
-                          const physics::Area& area, const physics::Boxes& obstacles);
+                          const physics::Area& area, const BoxGrid& obstacles, base::Executor& executor);
+
+    /// The same at the given places, shape (rules.count), with the respawn draws of island 0, generation 1.
+    void begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
+                  base::Executor& executor);
 
     /// Puts back what is due at the beginning of `tick`.
-    void reappear(std::uint32_t tick, const physics::Boxes& obstacles);
+    void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
 
     /// Takes away an item that is there, during `tick`.
     void consume(std::uint32_t item, std::uint32_t tick);
 
-    struct Nearest {
-        std::uint32_t item = none;
-        float square = 0;     // of the distance, px²
-        float dx = 0, dy = 0; // to the item, px
-    };
-    /// The nearest item whose centre is at most `radius` px from (x, y); of equally near ones the lowest id.
-    Nearest nearest(physics::Coordinate x, physics::Coordinate y, float radius) const;
+    // consume() in two parts, for many items.
+    /// From when on the item is there again; side by side for different items. Returns by how much the hash changes.
+    base::StateHash set_due(std::uint32_t item, std::uint32_t tick);
+    /// Takes it out, one item after another. place: as of when nothing had been taken out.
+    void take_out(std::uint32_t item, std::uint32_t place);
+    void add_to_hash(const base::StateHash& change) { hash_ += change; }
+    /// Asks for the memory that take_out() needs.
+    void prefetch_place(std::uint32_t place) const {
+        __builtin_prefetch(&bucket(place / slots), 1);
+        __builtin_prefetch(&items_[place / slots], 1);
+        __builtin_prefetch(&counts_[place / slots], 1);
+        __builtin_prefetch(&next_[place / slots]);
+    }
+    /// Asks for the memory that set_due() needs.
+    void prefetch_item(std::uint32_t item) const { __builtin_prefetch(&all_[item], 1); }
 
-    /// Calls found(item, square of the distance) for every item whose centre is at most `radius` px from (x, y).
-    template <class Found>
-    void for_each_within(physics::Coordinate x, physics::Coordinate y, float radius, Found&& found) const {
-        const float reach = radius * radius;
-        for_each_bucket(x, y, radius, [&](std::uint32_t b) {
-            const Places& places = places_[b];
-            for (std::uint32_t slot = 0; slot < contents_[b].count; ++slot) {
-                const float dx = physics::distance_px(x, places.x[slot]), dy = physics::distance_px(y, places.y[slot]);
-                const float square = dx * dx + dy * dy;
-                if (square <= reach)
-                    found(contents_[b].item[slot], square);
-            }
-        });
+    /// Asks for the memory that a look at (x, y) needs.
+    void prefetch(physics::Coordinate x, physics::Coordinate y) const {
+        __builtin_prefetch(&bucket(row_at(y) * columns_ + column_at(x)));
     }
 
-    std::uint32_t size() const { return static_cast<std::uint32_t>(x_.size()); } // there or not
+    /// The nearest item whose centre is at most `radius` px from (x, y), and how far the others are.
+    TwoNearest two_nearest(physics::Coordinate x, physics::Coordinate y, float radius) const {
+        TwoNearest found;
+        const ItemQuery query{x, y, radius};
+        items_kernels().two_nearest(grid(), &query, &found, 1);
+        return found;
+    }
+    /// The item at a TwoNearest::place.
+    std::uint32_t item_at(std::uint32_t place) const {
+        return place == none ? none : items_[place / slots][place % slots];
+    }
+    /// For many queries: what items_kernels() take. Valid until an item comes.
+    ItemGrid grid() const;
+
+    /// Calls found(item, its place, square of the distance) for every item whose centre is at most `radius` px from (x,
+    /// y).
+    template <class Found>
+    void for_each_within(physics::Coordinate x, physics::Coordinate y, float radius, Found&& found) const {
+        const float within = radius * radius;
+        const auto reach = static_cast<std::int64_t>(radius * static_cast<float>(physics::units_per_px)) + 1;
+        const std::uint32_t right = column_at(x + reach), bottom = row_at(y + reach);
+        for (std::uint32_t row = row_at(y - reach); row <= bottom; ++row)
+            for (std::uint32_t column = column_at(x - reach); column <= right; ++column)
+                for (std::uint32_t b = row * columns_ + column; b != none;) {
+                    // Nothing but the places is read of most buckets.
+                    const ItemBucket& places = bucket(b);
+                    for (std::uint32_t slot = 0; slot < slots && places.x[slot] != physics::elsewhere; ++slot) {
+                        const float dx = physics::distance_px(x, places.x[slot]),
+                                    dy = physics::distance_px(y, places.y[slot]);
+                        const float square = dx * dx + dy * dy;
+                        if (square <= within)
+                            found(items_[b][slot], b * slots + slot, square);
+                    }
+                    b = places.x[slots - 1] == physics::elsewhere ? none : next_[b];
+                }
+    }
+
+    /// What has come and gone since forget_changes(), in order.
+    struct Change {
+        physics::Coordinate x, y;
+        bool came;
+    };
+    const std::vector<Change>& changes() const { return changes_; }
+    void forget_changes() { changes_.clear(); }
+
+    std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // there or not
     std::uint32_t present_count() const { return present_count_; }
-    bool present(std::uint32_t item) const { return due_tick_[item] == 0; }
-    const std::vector<std::uint32_t>& due_tick() const { return due_tick_; } // by id; 0: there
-    const std::vector<physics::Coordinate>& x() const { return x_; }         // by id; of one that is away, where it was
-    const std::vector<physics::Coordinate>& y() const { return y_; }
+    bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
+    struct Item {
+        physics::Coordinate x, y; // of one that is away, where it was
+        std::uint32_t due_tick;   // 0: there; else the tick at whose beginning it reappears
+    };
+    const base::Column<Item>& all() const { return all_; } // by id
     float radius_px() const { return rules_.radius_px; }
     /// Of all items; kept up to date as they come and go.
     base::StateHash hash() const { return hash_; }
 
   private:
-    static constexpr std::uint32_t slots = 8;
-    // Where empty slots pretend to be: further from any place on an island than any radius reaches, so that a query can
-    // look at all eight slots at once.
-    static constexpr physics::Coordinate far_away = -(1 << 30);
-    // A bucket in two parts, so that what every query reads lies close: one cache line a bucket, neighbours side by
-    // side.
-    struct alignas(64) Places {
-        std::array<physics::Coordinate, slots> x, y;
+    static constexpr std::uint32_t slots = ItemBucket::slots;
 
-        Places() {
-            x.fill(far_away);
-            y.fill(far_away);
-        }
-    };
-    struct Contents {
-        std::array<std::uint32_t, slots> item;
-        std::uint32_t count = 0;
-        std::uint32_t next = none; // bucket of the same cell that took what did not fit
-
-        Contents() { item.fill(none); }
-    };
-
+    template <class PlaceOf>
+    void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
+               base::Executor& executor, PlaceOf&& place_of);
     void choose_cells(std::uint32_t count);
-    std::uint32_t cell_of(physics::Coordinate x, physics::Coordinate y) const;
-    void insert(std::uint32_t item);
-    void remove(std::uint32_t item);
-    void settle(std::uint32_t item, base::RandomStream random, const physics::Boxes& obstacles);
+    std::uint32_t column_at(std::int64_t x) const { return index_at(x, columns_); } // clamped into the grid
+    std::uint32_t row_at(std::int64_t y) const { return index_at(y, rows_); }
+    std::uint32_t index_at(std::int64_t position, std::uint32_t count) const {
+        const auto inside = static_cast<std::uint64_t>(std::clamp<std::int64_t>(position, 0, 0x7fff'ffff));
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(inside * scale_ >> ItemGrid::scale_bits, count - 1));
+    }
+    ItemBucket& bucket(std::uint32_t b) { return buckets_[std::size_t{b} + 1]; }
+    const ItemBucket& bucket(std::uint32_t b) const { return buckets_[std::size_t{b} + 1]; }
+    void insert_all(base::Executor& executor);
+    void insert(std::uint32_t item, std::uint32_t cell);
+    std::uint32_t cell_of(std::uint32_t item) const {
+        return row_at(all_[item].y) * columns_ + column_at(all_[item].x);
+    }
     base::StateHash hash_of(std::uint32_t item) const;
-
-    struct CellRange {
-        std::uint32_t left, right, top, bottom; // all included
-    };
-    CellRange cells_within(physics::Coordinate x, physics::Coordinate y, float radius) const {
-        // Islands and radii are small enough that neither sum leaves 32 bits (bodies.h).
-        const auto reach = static_cast<physics::Coordinate>(radius * static_cast<float>(physics::units_per_px)) + 1;
-        const auto cell = [this](physics::Coordinate position) {
-            return static_cast<std::uint32_t>(std::max(position, 0)) >> shift_;
-        };
-        return {cell(x - reach), std::min(cell(x + reach), columns_ - 1), cell(y - reach),
-                std::min(cell(y + reach), rows_ - 1)};
-    }
-
-    template <class Visit>
-    void for_each_bucket(physics::Coordinate x, physics::Coordinate y, float radius, Visit&& visit) const {
-        const CellRange cells = cells_within(x, y, radius);
-        for (std::uint32_t row = cells.top; row <= cells.bottom; ++row)
-            for (std::uint32_t column = cells.left; column <= cells.right; ++column)
-                for (std::uint32_t b = row * columns_ + column; b != none;) {
-                    visit(b);
-                    // A look at the places, which are at hand, saves one at the contents of most buckets.
-                    b = places_[b].x[slots - 1] == far_away ? none : contents_[b].next;
-                }
-    }
 
     ItemRules rules_{};
     physics::Area area_;
     base::RandomKey respawn_key_{base::Seed{}, base::Purpose::FoodRespawn, 0, 0};
-    std::vector<physics::Coordinate> x_, y_;
-    std::vector<std::uint32_t> due_tick_; // 0: there; else the tick at whose beginning it reappears
+    base::Column<Item> all_;
     struct Due {
         std::uint32_t tick, item;
     };
     std::vector<Due> due_; // in order of tick, from due_begin_
     std::size_t due_begin_ = 0;
-    unsigned shift_ = 0; // a cell's side is 2^shift_ units
+    std::int64_t side_ = 1; // as in ItemGrid
+    std::uint64_t scale_ = 0;
     std::uint32_t rows_ = 0, columns_ = 0;
-    std::vector<Places> places_;       // buckets: one per cell, then those that took what did not fit
-    std::vector<Contents> contents_;   // of the same buckets
-    std::vector<std::uint32_t> spare_; // of the latter, those that are empty
+    // Buckets as in ItemGrid, after an empty one. What every query reads lies close together, apart from the rest.
+    base::Column<ItemBucket> buckets_;
+    base::Column<std::array<std::uint32_t, slots>> items_;
+    base::Column<std::uint32_t> next_;
+    base::Column<std::uint8_t> counts_;
+    std::vector<std::uint32_t> spare_; // buckets beyond those of cells that are empty
+    struct Arrival {
+        std::uint32_t item, cell;
+    };
+    std::vector<Arrival> arrivals_; // working memory
+    std::vector<base::StateHash> hash_of_piece_;
+    std::vector<Change> changes_;
     std::uint32_t present_count_ = 0;
     base::StateHash hash_;
 };

@@ -20,7 +20,6 @@
 namespace evod::simulation {
 
 constexpr std::size_t worlds_max = 64;
-constexpr std::size_t world_name_bytes_max = 64;
 
 enum class RunState { Waiting, Running, Paused, Terminated };
 

@@ -6,16 +6,15 @@
 namespace evod::simulation {
 namespace {
 
+/// visit(column, what a void organism has there).
 template <class F>
 void for_each_column(Living& living, F&& visit) {
-    visit(living.health);
-    visit(living.loss_per_tick);
-    visit(living.normal_speed);
-    visit(living.impulse);
-    visit(living.food_radius);
-    visit(living.poison_radius);
-    visit(living.health_cap);
-    visit(living.poisoned_tick);
+    visit(living.health, -std::numeric_limits<float>::infinity());
+    visit(living.loss_per_tick, 0.0f);
+    visit(living.normal_speed, 0.0f);
+    visit(living.impulse, 0.0f);
+    visit(living.food_radius, 0.0f);
+    visit(living.poison_radius, 0.0f);
 }
 
 /// Health lost in a tick: the rate times 1 + the costs of the genes, never below 0.
@@ -33,24 +32,32 @@ float loss_per_tick(const evolution::Chromosome& genes, const Parameters& p) {
 } // namespace
 
 void Living::clear() {
-    for_each_column(*this, [](auto& column) { column.clear(); });
+    for_each_column(*this, [](auto& column, float) { column.clear(); });
 }
 
-void Living::add(const evolution::Chromosome& genes, const Parameters& p) {
-    health.push_back(genes(evolution::BaseHealth));
-    loss_per_tick.push_back(simulation::loss_per_tick(genes, p));
-    normal_speed.push_back(genes(evolution::NormalSpeed));
-    impulse.push_back(genes(evolution::Impulse));
-    food_radius.push_back(genes(evolution::FoodRadius));
-    poison_radius.push_back(genes(evolution::PoisonRadius));
-    health_cap.push_back(p.health_cap_per_size > 0
-                             ? static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize)
-                             : std::numeric_limits<float>::infinity());
-    poisoned_tick.push_back(0);
+void Living::resize(std::size_t size) {
+    for_each_column(*this, [&](auto& column, float filling) {
+        column.resize(size, filling);
+        column.resize(physics::padded(size), filling);
+    });
 }
 
-void Living::keep_only(const std::vector<std::uint8_t>& keep) {
-    for_each_column(*this, [&](auto& column) { physics::keep_flagged(column, keep); });
+void Living::put(std::size_t body, const evolution::Chromosome& genes, const Parameters& p) {
+    health[body] = genes(evolution::BaseHealth);
+    loss_per_tick[body] = simulation::loss_per_tick(genes, p);
+    normal_speed[body] = genes(evolution::NormalSpeed);
+    impulse[body] = genes(evolution::Impulse);
+    food_radius[body] = genes(evolution::FoodRadius);
+    poison_radius[body] = genes(evolution::PoisonRadius);
+}
+
+void Living::reorder(const physics::Reordering& reordering) {
+    for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
+}
+
+float health_cap(const evolution::Chromosome& genes, const Parameters& p) {
+    return p.health_cap_per_size > 0 ? static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize)
+                                     : std::numeric_limits<float>::infinity();
 }
 
 BodyShape body_shape(float body_size_gene, const Parameters& p) {

@@ -1,6 +1,7 @@
 // Living: the organisms that are alive, as columns; and what became of all that were born.
 #pragma once
 
+#include "server/base/column.h"
 #include "server/evolution/chromosome.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/parameters.h"
@@ -12,21 +13,24 @@ namespace evod::simulation {
 
 enum class CauseOfDeath : std::uint8_t { Alive, Starved, Poisoned };
 
-/// Index i of every column is the organism with body i; its id is its birth order.
+/// Index i of every column is the organism with body i; its id is that body's. Columns are as long as those of the
+/// bodies, void ones included.
 struct Living {
-    std::vector<float> health;
-    std::vector<float> loss_per_tick;              // health that living costs
-    std::vector<float> normal_speed, impulse;      // gene units
-    std::vector<float> food_radius, poison_radius; // px; how far it sees
-    std::vector<float> health_cap;                 // at a meal; infinite for none
-    std::vector<std::uint32_t> poisoned_tick;      // of the generation, in which it last ate poison; 0 for never
+    base::Column<float> health;                     // −infinity for what is void
+    base::Column<float> loss_per_tick;              // health that living costs
+    base::Column<float> normal_speed, impulse;      // gene units
+    base::Column<float> food_radius, poison_radius; // px; how far it sees
 
-    std::size_t size() const { return health.size(); }
     void clear();
-    void add(const evolution::Chromosome& genes, const Parameters& parameters);
-    /// Keeps the organisms whose flag is set, in their order. keep: shape (size).
-    void keep_only(const std::vector<std::uint8_t>& keep);
+    /// As physics::Circles::resize and put.
+    void resize(std::size_t size);
+    void put(std::size_t body, const evolution::Chromosome& genes, const Parameters& parameters);
+    /// Those that are left, as physics::Circles::reorder.
+    void reorder(const physics::Reordering& reordering);
 };
+
+/// Health that a meal cannot bring an organism above; infinite for none.
+float health_cap(const evolution::Chromosome& genes, const Parameters& parameters);
 
 /// Radius and mass of the body grown from a chromosome, px and kg.
 struct BodyShape {

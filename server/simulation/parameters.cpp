@@ -1,6 +1,7 @@
 #include "server/simulation/parameters.h"
 
 #include "server/base/elementary.h"
+#include "server/base/overloaded.h"
 
 #include <algorithm>
 #include <charconv>
@@ -14,6 +15,7 @@ namespace evod::simulation {
 namespace {
 
 using base::Effect;
+using base::Overloaded;
 
 // clang-format off
 #define EVOD_REAL_LINE(name, value, least, greatest, unit, effect, help)                                               \
@@ -37,13 +39,6 @@ std::vector<ParameterDescription> make_registry() {
     return {EVOD_SIMULATION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)
                 EVOD_EVOLUTION_PARAMETERS(EVOD_REAL_LINE, EVOD_COUNT_LINE, EVOD_FLAG_LINE, EVOD_CHOICE_LINE)};
 }
-
-template <class... F>
-struct Overloaded : F... {
-    using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>; // clang 14 does not find it by itself
 
 std::string number_text(double value) {
     char text[32];

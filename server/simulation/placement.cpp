@@ -4,6 +4,7 @@
 #include "server/physics/shapes.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace evod::simulation {
 namespace {
@@ -25,83 +26,83 @@ Place uniform_place(base::RandomStream& random, Coordinate margin, const physics
     return {x, uniform_coordinate(random, margin, area.height)};
 }
 
-bool circle_is_clear(Place place, float radius, const Boxes& boxes) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (physics::box_circle(physics::distance_px(boxes.x[i], place.x), physics::distance_px(boxes.y[i], place.y),
-                                {boxes.half_width[i], boxes.half_height[i]}, radius)
-                .touching)
-            return false;
-    return true;
+/// How far from a place, along either axis, the centres of things may lie that touch one of `half_size_px` there. A few
+/// units more than that, as tests of shapes round.
+Coordinate reach_of(float half_size_px, float widest_px) {
+    return physics::to_units(half_size_px + widest_px) + 2;
 }
 
-bool box_is_clear(Place place, float half_size, const Boxes& boxes) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (physics::box_box(physics::distance_px(boxes.x[i], place.x), physics::distance_px(boxes.y[i], place.y),
-                             {boxes.half_width[i], boxes.half_height[i]}, {half_size, half_size})
-                .touching)
-            return false;
-    return true;
-}
-
-/// Circles already placed, in lists per square cell at least as wide as the widest circle.
+/// Circles already placed; the grid keeps their radii.
 class PlacedCircles {
   public:
-    PlacedCircles(const std::vector<float>& radius, const physics::Area& area) : radius_{radius} {
-        const float widest = radius.empty() ? 0 : 2 * *std::max_element(radius.begin(), radius.end());
-        const double share = static_cast<double>(area.width) * area.height /
-                             static_cast<double>(std::max<std::size_t>(radius.size(), 1));
-        while (shift_ < 30 &&
-               (static_cast<double>(1u << shift_) < static_cast<double>(widest) * physics::units_per_px ||
-                static_cast<double>(1u << shift_) * static_cast<double>(1u << shift_) * 4 < share))
-            ++shift_;
-        columns_ = (area.width >> shift_) + 1;
-        rows_ = (area.height >> shift_) + 1;
-        head_.assign(static_cast<std::size_t>(rows_) * static_cast<std::size_t>(columns_), none);
-        next_.assign(radius.size(), none);
-        places_.reserve(radius.size());
-    }
+    PlacedCircles(const std::vector<float>& radius, const physics::Area& area)
+        : grid_{area, radius.size()}
+        , widest_px_{radius.empty() ? 0 : *std::max_element(radius.begin(), radius.end())} {}
+
+    void prefetch(Place place, float radius) const { grid_.prefetch(place, reach_of(radius, widest_px_)); }
 
     bool clear(Place place, float radius) const {
-        const Coordinate column = place.x >> shift_, row = place.y >> shift_;
-        for (Coordinate r = std::max(row - 1, 0); r <= std::min(row + 1, rows_ - 1); ++r)
-            for (Coordinate c = std::max(column - 1, 0); c <= std::min(column + 1, columns_ - 1); ++c)
-                for (std::uint32_t i = head_[cell(r, c)]; i != none; i = next_[i])
-                    if (physics::circle_circle(physics::distance_px(places_[i].x, place.x),
-                                               physics::distance_px(places_[i].y, place.y), radius_[i], radius)
-                            .touching)
-                        return false;
-        return true;
+        return grid_.empty() ||
+               !grid_.any_near(place, reach_of(radius, widest_px_), [&](Place other, float other_radius) {
+                   // physics::circle_circle without depth and normal, for which nobody asks here.
+                   const float dx = physics::distance_px(other.x, place.x), dy = physics::distance_px(other.y, place.y);
+                   const float touch = other_radius + radius;
+                   return dx * dx + dy * dy <= touch * touch;
+               });
     }
 
-    void add(Place place) {
-        std::uint32_t& head = head_[cell(place.y >> shift_, place.x >> shift_)];
-        next_[places_.size()] = head;
-        head = static_cast<std::uint32_t>(places_.size());
-        places_.push_back(place);
-    }
-
-    std::vector<Place> take() { return std::move(places_); }
+    void add(Place place, float radius) { grid_.add(place, radius); }
 
   private:
-    static constexpr std::uint32_t none = ~0u;
-    std::size_t cell(Coordinate row, Coordinate column) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-    }
+    PlaceGrid<float> grid_;
+    float widest_px_;
+};
 
-    const std::vector<float>& radius_;
-    unsigned shift_ = 12;
-    Coordinate rows_ = 0, columns_ = 0;
-    std::vector<std::uint32_t> head_, next_;
-    std::vector<Place> places_;
+// So many circles look for a place side by side, each clear of those before the batch, that few of them get into each
+// other's way. Batches are no part of the law.
+constexpr std::size_t batch_circles_min = 2048, batches = 64;
+constexpr std::size_t circles_per_piece = 256;
+constexpr std::size_t prefetched_ahead = 8;
+
+/// An organism's attempts, as far as they have been made.
+struct Attempts {
+    base::RandomStream random;
+    Place last{};
 };
 
 } // namespace
 
-Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const Boxes& boxes) {
+BoxGrid::BoxGrid(const physics::Area& area, const Boxes& boxes) : BoxGrid{area, boxes.size()} {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        add({boxes.x[i], boxes.y[i]}, boxes.half_width[i], boxes.half_height[i]);
+}
+
+void BoxGrid::add(Place place, float half_width_px, float half_height_px) {
+    grid_.add(place, {half_width_px, half_height_px});
+    widest_px_ = std::max({widest_px_, half_width_px, half_height_px});
+}
+
+bool BoxGrid::clear_of_circle(Place place, float radius_px) const {
+    return grid_.empty() || !grid_.any_near(place, reach_of(radius_px, widest_px_), [&](Place box, HalfSize half) {
+        return physics::box_circle(physics::distance_px(box.x, place.x), physics::distance_px(box.y, place.y),
+                                   {half.width_px, half.height_px}, radius_px)
+            .touching;
+    });
+}
+
+bool BoxGrid::clear_of_box(Place place, float half_size_px) const {
+    return grid_.empty() || !grid_.any_near(place, reach_of(half_size_px, widest_px_), [&](Place box, HalfSize half) {
+        return physics::box_box(physics::distance_px(box.x, place.x), physics::distance_px(box.y, place.y),
+                                {half.width_px, half.height_px}, {half_size_px, half_size_px})
+            .touching;
+    });
+}
+
+Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes) {
     const Coordinate margin = physics::to_units(radius_px);
     for (int attempt = 0; attempt < tries_max; ++attempt) {
         const Place place = uniform_place(random, margin, area);
-        if (circle_is_clear(place, radius_px, boxes))
+        if (boxes.clear_of_circle(place, radius_px))
             return place;
     }
     EVOD_ASSERT(false && "room for an item");
@@ -110,11 +111,13 @@ Place random_place(base::RandomStream& random, const physics::Area& area, float 
 PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t island, std::uint64_t generation,
                         const physics::Area& area) {
     PlacedBoxes placed;
+    BoxGrid grid{area, std::size_t{rules.obstacle_count} + rules.crate_count};
     const base::RandomKey obstacle_key{seed, base::Purpose::ObstaclePlacement, island, 0};
     for (std::uint32_t i = 0; i < rules.obstacle_count; ++i) {
         base::RandomStream random{obstacle_key, i};
         const Place place = uniform_place(random, physics::to_units(rules.obstacle_half_size_px), area);
         placed.obstacles.add(place.x, place.y, rules.obstacle_half_size_px, rules.obstacle_half_size_px, 0);
+        grid.add(place, rules.obstacle_half_size_px, rules.obstacle_half_size_px);
     }
     const base::RandomKey crate_key{seed, base::Purpose::CratePlacement, island, generation};
     const float half = rules.crate_half_size_px;
@@ -123,9 +126,11 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
         bool done = false;
         for (int attempt = 0; attempt < tries_max && !done; ++attempt) {
             const Place place = uniform_place(random, physics::to_units(half), area);
-            done = box_is_clear(place, half, placed.obstacles) && box_is_clear(place, half, placed.crates);
-            if (done)
+            done = grid.clear_of_box(place, half);
+            if (done) {
                 placed.crates.add(place.x, place.y, half, half, 1 / rules.crate_mass_kg);
+                grid.add(place, half, half);
+            }
         }
         EVOD_ASSERT(done && "room for a crate");
     }
@@ -133,22 +138,52 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 }
 
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
-                                 std::uint64_t generation, const physics::Area& area, const Boxes& boxes) {
+                                 std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,
+                                 base::Executor& executor) {
+    const std::size_t count = radius_px.size();
     const base::RandomKey key{seed, base::Purpose::OrganismPlacement, island, generation};
     PlacedCircles placed{radius_px, area};
-    for (std::uint32_t id = 0; id < radius_px.size(); ++id) {
-        base::RandomStream random{key, id};
-        const Coordinate margin = physics::to_units(radius_px[id]);
-        bool done = false;
-        for (int attempt = 0; attempt < tries_max && !done; ++attempt) {
-            const Place place = uniform_place(random, margin, area);
-            done = placed.clear(place, radius_px[id]) && circle_is_clear(place, radius_px[id], boxes);
-            if (done)
-                placed.add(place);
+    std::vector<Place> places(count);
+    const std::size_t batch_size = std::max(batch_circles_min, count / batches);
+    std::vector<Attempts> attempts(std::min(batch_size, count), Attempts{{key, 0}});
+    const auto make_attempt = [&](Attempts& of, std::size_t id) {
+        of.last = uniform_place(of.random, physics::to_units(radius_px[id]), area);
+    };
+    const auto succeeds = [&](const Attempts& of, std::size_t id) {
+        return placed.clear(of.last, radius_px[id]) && boxes.clear_of_circle(of.last, radius_px[id]);
+    };
+
+    for (std::size_t first = 0; first < count; first += batch_size) {
+        const std::size_t batch = std::min(batch_size, count - first);
+        // What was placed stays there: an attempt that fails now would fail later too.
+        executor.parallel_for(batch, circles_per_piece, [&](base::Range piece) {
+            std::vector<std::size_t> looking(piece.end - piece.begin);
+            std::iota(looking.begin(), looking.end(), piece.begin);
+            for (const std::size_t i : looking)
+                attempts[i] = {{key, static_cast<std::uint32_t>(first + i)}};
+            for (int round = 0; !looking.empty(); ++round) {
+                EVOD_ASSERT(round < tries_max && "room for an organism");
+                for (const std::size_t i : looking) {
+                    make_attempt(attempts[i], first + i);
+                    placed.prefetch(attempts[i].last, radius_px[first + i]);
+                }
+                std::erase_if(looking, [&](std::size_t i) { return succeeds(attempts[i], first + i); });
+            }
+        });
+        // Those of the batch that stand in a later one's way are all that is left to mind.
+        for (std::size_t i = 0; i < batch; ++i) {
+            const std::size_t id = first + i;
+            if (i + prefetched_ahead < batch)
+                placed.prefetch(attempts[i + prefetched_ahead].last, radius_px[id + prefetched_ahead]);
+            for (int tries = 0; !succeeds(attempts[i], id); ++tries) {
+                EVOD_ASSERT(tries < tries_max && "room for an organism");
+                make_attempt(attempts[i], id);
+            }
+            places[id] = attempts[i].last;
+            placed.add(places[id], radius_px[id]);
         }
-        EVOD_ASSERT(done && "room for an organism");
     }
-    return placed.take();
+    return places;
 }
 
 } // namespace evod::simulation

@@ -1,23 +1,43 @@
 // Placement: uniform random places on an island that are clear of what must not be overlapped.
 //
 // Determinism  a place depends on the stream handed over and on what is already there; organisms are placed in order of
-//              id, each clear of those before it.
+//              id, each at the first of its attempts that is clear of those before it, however many threads look.
 #pragma once
 
+#include "server/base/executor.h"
 #include "server/base/random.h"
 #include "server/physics/bodies.h"
+#include "server/simulation/place_grid.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace evod::simulation {
 
-struct Place {
-    physics::Coordinate x, y;
+/// Boxes, to be asked whether a place is clear of them; costs the same for one box and for a thousand.
+class BoxGrid {
+  public:
+    /// No boxes.
+    BoxGrid() = default;
+    BoxGrid(const physics::Area& area, std::size_t expected_count) : grid_{area, expected_count} {}
+    /// Those of `boxes`, where they are now.
+    BoxGrid(const physics::Area& area, const physics::Boxes& boxes);
+
+    void add(Place place, float half_width_px, float half_height_px);
+
+    bool clear_of_circle(Place place, float radius_px) const;
+    bool clear_of_box(Place place, float half_size_px) const;
+
+  private:
+    struct HalfSize {
+        float width_px, height_px;
+    };
+    PlaceGrid<HalfSize> grid_;
+    float widest_px_ = 0; // greatest half width or half height
 };
 
 /// A uniform random place for a circle, inside the walls and clear of `boxes`.
-Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const physics::Boxes& boxes);
+Place random_place(base::RandomStream& random, const physics::Area& area, float radius_px, const BoxGrid& boxes);
 
 /// Adds obstacles, then crates clear of obstacles and of each other. The obstacles of a run stay where they are from
 /// generation to generation; crates start afresh.
@@ -37,6 +57,7 @@ PlacedBoxes place_boxes(const BoxRules& rules, base::Seed seed, std::uint32_t is
 /// radius_px  shape (count). Room must have been checked: together at most 0.4 of the area (parameters.h, validate).
 /// returns    shape (count).
 std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed seed, std::uint32_t island,
-                                 std::uint64_t generation, const physics::Area& area, const physics::Boxes& boxes);
+                                 std::uint64_t generation, const physics::Area& area, const BoxGrid& boxes,
+                                 base::Executor& executor);
 
 } // namespace evod::simulation

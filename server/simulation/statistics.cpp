@@ -9,26 +9,99 @@
 namespace evod::simulation {
 namespace {
 
-GeneStatistics gene_statistics(const evolution::GeneMatrix& genes, Eigen::Index gene) {
-    const Eigen::Index n = genes.cols();
-    GeneStatistics s;
-    s.min = s.max = static_cast<double>(genes(gene, 0));
-    double sum = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto value = static_cast<double>(genes(gene, i));
-        sum += value;
-        s.min = std::min(s.min, value);
-        s.max = std::max(s.max, value);
+constexpr std::size_t organisms_per_block = 8192;
+
+/// Sums of the fitness and of each gene; first of the values, then of the squares of their differences from the mean.
+struct Sums {
+    double fitness = 0;
+    std::array<double, evolution::gene_count> genes{};
+
+    Sums& operator+=(const Sums& other) {
+        fitness += other.fitness;
+        for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+            genes[gene] += other.genes[gene];
+        return *this;
     }
-    s.mean = sum / static_cast<double>(n);
-    double squares = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const double difference = static_cast<double>(genes(gene, i)) - s.mean;
-        squares += difference * difference;
+    Sums over(std::size_t count) const {
+        const auto n = static_cast<double>(count);
+        Sums means{.fitness = fitness / n, .genes = {}};
+        for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+            means.genes[gene] = genes[gene] / n;
+        return means;
     }
-    s.deviation = std::sqrt(squares / static_cast<double>(n));
-    return s;
-}
+};
+
+struct Extremes {
+    std::uint32_t best_organism;
+    double worst;
+    std::array<float, evolution::gene_count> gene_min, gene_max;
+};
+
+/// One population, gone through block by block.
+struct Population {
+    std::span<const double> fitness;
+    const evolution::GeneMatrix& genes;
+    base::Executor& executor;
+
+    /// What `of_block(range)` says of each block, in order.
+    template <class Result, class OfBlock>
+    std::vector<Result> each_block(const OfBlock& of_block) const {
+        std::vector<Result> results((fitness.size() + organisms_per_block - 1) / organisms_per_block);
+        executor.parallel_for(fitness.size(), organisms_per_block,
+                              [&](base::Range block) { results[block.begin / organisms_per_block] = of_block(block); });
+        return results;
+    }
+
+    /// Σ (value − centre)^power, power 1 or 2.
+    template <unsigned power>
+    Sums sums(const Sums& centre) const {
+        const auto raised = [](double difference) { return power == 1 ? difference : difference * difference; };
+        Sums total;
+        const auto blocks = each_block<Sums>([&](base::Range block) {
+            Sums sum;
+            for (std::size_t i = block.begin; i < block.end; ++i) {
+                sum.fitness += raised(fitness[i] - centre.fitness);
+                const float* chromosome = genes.data() + i * evolution::gene_count;
+                for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+                    sum.genes[gene] += raised(static_cast<double>(chromosome[gene]) - centre.genes[gene]);
+            }
+            return sum;
+        });
+        for (const Sums& sum : blocks)
+            total += sum;
+        return total;
+    }
+
+    Extremes extremes() const {
+        const auto blocks = each_block<Extremes>([&](base::Range block) {
+            const float* first = genes.data() + block.begin * evolution::gene_count;
+            Extremes e{static_cast<std::uint32_t>(block.begin), fitness[block.begin], {}, {}};
+            std::copy_n(first, evolution::gene_count, e.gene_min.begin());
+            e.gene_max = e.gene_min;
+            for (std::size_t i = block.begin; i < block.end; ++i, first += evolution::gene_count) {
+                if (fitness[i] > fitness[e.best_organism])
+                    e.best_organism = static_cast<std::uint32_t>(i);
+                e.worst = std::min(e.worst, fitness[i]);
+                for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+                    e.gene_min[gene] = std::min(e.gene_min[gene], first[gene]);
+                    e.gene_max[gene] = std::max(e.gene_max[gene], first[gene]);
+                }
+            }
+            return e;
+        });
+        Extremes all = blocks.front();
+        for (const Extremes& e : blocks) {
+            if (fitness[e.best_organism] > fitness[all.best_organism])
+                all.best_organism = e.best_organism; // the first of equals stays
+            all.worst = std::min(all.worst, e.worst);
+            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+                all.gene_min[gene] = std::min(all.gene_min[gene], e.gene_min[gene]);
+                all.gene_max[gene] = std::max(all.gene_max[gene], e.gene_max[gene]);
+            }
+        }
+        return all;
+    }
+};
 
 double median(std::span<const double> values) {
     std::vector<double> sorted(values.begin(), values.end());
@@ -42,29 +115,28 @@ double median(std::span<const double> values) {
 } // namespace
 
 GenerationStatistics generation_statistics(const Island& island, const Parameters& parameters,
-                                           std::span<const double> fitness) {
+                                           std::span<const double> fitness, base::Executor& executor) {
     GenerationStatistics s;
     s.island = island.index();
     s.organism_count = static_cast<std::uint32_t>(fitness.size());
 
-    const auto n = static_cast<double>(fitness.size());
-    double sum = 0;
-    for (const double value : fitness)
-        sum += value;
-    s.fitness_mean = sum / n;
-    double squares = 0;
-    for (const double value : fitness)
-        squares += (value - s.fitness_mean) * (value - s.fitness_mean);
-    s.fitness_deviation = std::sqrt(squares / n);
-    const auto best = std::max_element(fitness.begin(), fitness.end()); // the first of equals
-    s.best_organism = static_cast<std::uint32_t>(best - fitness.begin());
-    s.fitness_best = *best;
-    s.fitness_worst = *std::min_element(fitness.begin(), fitness.end());
+    const Population population{fitness, island.born().genes, executor};
+    const Sums mean = population.sums<1>({}).over(fitness.size());
+    const Sums variance = population.sums<2>(mean).over(fitness.size());
+    const Extremes extremes = population.extremes();
+    s.best_organism = extremes.best_organism;
+    s.fitness_best = fitness[extremes.best_organism];
+    s.fitness_mean = mean.fitness;
     s.fitness_median = median(fitness);
+    s.fitness_worst = extremes.worst;
+    s.fitness_deviation = std::sqrt(variance.fitness);
 
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
-        s.genes[gene] = gene_statistics(island.born().genes, gene);
+        s.genes[gene] = {.mean = mean.genes[gene],
+                         .deviation = std::sqrt(variance.genes[gene]),
+                         .min = static_cast<double>(extremes.gene_min[gene]),
+                         .max = static_cast<double>(extremes.gene_max[gene])};
         const auto width = static_cast<double>(bounds.max(gene) - bounds.min(gene));
         s.diversity += width > 0 ? s.genes[gene].deviation / width / evolution::gene_count : 0;
     }

@@ -1,6 +1,9 @@
 // Statistics: what a generation came to on an island, and how an island is doing now.
+//
+// Determinism  sums are taken by id, over blocks of fixed size, whose sums are added in order.
 #pragma once
 
+#include "server/base/executor.h"
 #include "server/evolution/chromosome.h"
 
 #include <array>
@@ -35,7 +38,7 @@ struct Parameters;
 
 /// What the generation that has just ended came to. fitness: shape (organisms), by id.
 GenerationStatistics generation_statistics(const Island& island, const Parameters& parameters,
-                                           std::span<const double> fitness);
+                                           std::span<const double> fitness, base::Executor& executor);
 
 struct LiveStatistics {
     std::uint32_t organism_count = 0, alive_count = 0; // born, living

@@ -1,6 +1,7 @@
 #include "server/simulation/world.h"
 
 #include "server/base/assert.h"
+#include "server/base/inline_executor.h"
 #include "server/evolution/migration.h"
 
 #include <algorithm>
@@ -33,12 +34,15 @@ void World::begin_run() {
         born.genes = evolution::initial_population(p.population_size, p, seed_, island);
         first.push_back(std::move(born));
     }
-    begin_generation(std::move(first));
+    base::InlineExecutor executor; // a run is begun between two ticks, where none is at hand
+    begin_generation(std::move(first), executor);
 }
 
-void World::begin_generation(std::vector<evolution::NextGeneration> bred) {
-    for (std::size_t i = 0; i < islands_.size(); ++i)
-        islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]));
+void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
+    });
     update_hash();
 }
 
@@ -53,7 +57,7 @@ evolution::Outcome World::outcome() const {
 std::uint64_t World::alive_count() const {
     std::uint64_t alive = 0;
     for (const Island& island : islands_)
-        alive += island.living().size();
+        alive += island.alive_count();
     return alive;
 }
 
@@ -63,35 +67,40 @@ void World::turn_over(base::Executor& executor) {
     parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextGeneration);
     const Parameters& p = parameters_.active;
 
-    std::vector<evolution::GeneMatrix> genes;
-    for (const Island& island : islands_)
-        genes.push_back(island.born().genes);
-    migrate(genes);
+    std::vector<evolution::GeneMatrix> migrated;
+    const std::vector<const evolution::GeneMatrix*> genes = parents(migrated);
     std::vector<evolution::NextGeneration> bred(islands_.size());
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
             bred[i] = evolution::next_generation(
-                fitness_[i], genes[i], p, p.population_size,
+                fitness_[i], *genes[i], p, p.population_size,
                 {.seed = seed_, .island = static_cast<std::uint32_t>(i), .generation = moment_.generation}, executor);
     });
 
     ++moment_.generation;
     moment_.generation_tick = 0;
     generation_over_ = false;
-    begin_generation(std::move(bred));
+    begin_generation(std::move(bred), executor);
 }
 
-void World::migrate(std::vector<evolution::GeneMatrix>& genes) {
+std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::GeneMatrix>& migrated) {
     const Parameters& p = parameters_.active;
+    std::vector<const evolution::GeneMatrix*> genes;
+    for (const Island& island : islands_)
+        genes.push_back(&island.born().genes);
     if (!evolution::migration_due(moment_.generation, p))
-        return;
+        return genes;
     std::vector<std::span<const double>> fitness(fitness_.begin(), fitness_.end());
     const auto migrants = evolution::choose_migrants(fitness, p, seed_, moment_.generation);
     if (migrants.empty())
-        return;
+        return genes;
     std::vector<evolution::IslandPopulation> populations;
-    for (std::size_t i = 0; i < islands_.size(); ++i)
-        populations.push_back({&genes[i], fitness_[i]});
+    for (const evolution::GeneMatrix* born : genes)
+        migrated.push_back(*born);
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        genes[i] = &migrated[i];
+        populations.push_back({&migrated[i], fitness_[i]});
+    }
     evolution::migrate(migrants, populations);
 
     MigrationHappened happened{.generation = moment_.generation, .edges = {}};
@@ -102,6 +111,7 @@ void World::migrate(std::vector<evolution::GeneMatrix>& genes) {
         ++edges.back().migrant_count;
     }
     events_.push_back(std::move(happened));
+    return genes;
 }
 
 void World::advance_tick(base::Executor& executor) {
@@ -122,14 +132,14 @@ void World::advance_tick(base::Executor& executor) {
     died_out_.assign(islands_.size(), 0);
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (islands_[i].living().size() == 0)
+            if (islands_[i].alive_count() == 0)
                 continue; // an island that has died out waits
             islands_[i].advance_tick(p, tick, executor);
-            died_out_[i] = islands_[i].living().size() == 0;
+            died_out_[i] = islands_[i].alive_count() == 0;
         }
     });
     for (std::uint32_t i = 0; i < islands_.size(); ++i) {
-        alive += islands_[i].living().size();
+        alive += islands_[i].alive_count();
         if (died_out_[i])
             events_.push_back(Extinction{.island = i, .generation = moment_.generation});
     }
@@ -146,7 +156,7 @@ void World::end_generation(base::Executor& executor) {
     double best = 0;
     for (const Island& island : islands_) {
         fitness_.push_back(island.fitness(p, static_cast<std::uint32_t>(moment_.generation_tick), executor));
-        GenerationStatistics s = generation_statistics(island, p, fitness_.back());
+        GenerationStatistics s = generation_statistics(island, p, fitness_.back(), executor);
         s.generation = moment_.generation;
         s.end_tick = moment_.tick;
         s.simulated_s = static_cast<double>(moment_.generation_tick) * p.tick_s;

@@ -74,9 +74,10 @@ class World {
 
   private:
     void begin_run();
-    void begin_generation(std::vector<evolution::NextGeneration> bred);
+    void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
     void end_generation(base::Executor& executor);
-    void migrate(std::vector<evolution::GeneMatrix>& genes);
+    /// What breeds: the chromosomes of the generation that is over, or, where migrants came, `migrated`.
+    std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     void update_hash();
 
     base::Seed seed_;

@@ -80,7 +80,7 @@ TEST_P(AnyScenario, DoesNotDependOnWhoLooksOn) {
                 seen += island.fitness(world.parameters().active, now, other_executor).size();
                 seen += island.body_of(3).value_or(0);
                 if (world.has_bodies())
-                    seen += island.food().nearest(99, 99, 200).item;
+                    seen += island.food().two_nearest(99, 99, 200).place;
             }
         ASSERT_EQ(watched.world().hash(), alone.world().hash()) << "states part at tick " << tick;
     }

@@ -77,6 +77,15 @@ const std::vector<Scenario>& all() {
          150,
          {}},
 
+        {"twenty_thousand", // one island is cut into pieces: every loop of a tick, meals, deaths and the order in
+                            // memory
+         R"({"population_size": 20000, "scale_with_population": true, "reference_population": 50, "generation_s": 0.75,
+             "item_radius_px": 20, "food_count": 100, "poison_harm": 100, "base_health_min": 20, "crate_count": 40,
+             "health_loss_per_s": 60})",
+         base::Seed{52},
+         75,
+         {}},
+
         {"far_corner", // coordinates near the greatest there are
          R"({"island_width_px": 500000, "island_height_px": 500000, "population_size": 400, "food_count": 3000,
              "poison_count": 3000, "generation_s": 2})",

@@ -3,6 +3,7 @@
 #include "proto/wire/framing.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
+#include "server/simulation/world_name.h"
 
 #include <cstdlib>
 
@@ -18,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (command) {
             // What the core is given must be right in itself.
             if (const auto* create = std::get_if<simulation::CreateWorld>(&*command))
-                if (!protocol::is_world_name(create->name) || !simulation::validate(create->parameters).empty())
+                if (!simulation::is_world_name(create->name) || !simulation::validate(create->parameters).empty())
                     std::abort();
             if (const auto* set = std::get_if<simulation::SetParameters>(&*command))
                 (void)simulation::assign({}, set->assignments);

@@ -124,7 +124,7 @@ class Commands(WithServer):
         self.assertEqual(len(events), 3)
 
     def test_it_describes_and_completes(self):
-        self.assertIn("0.1.0", self.evoctl("describe"))
+        self.assertIn("0.2.0", self.evoctl("describe"))
         self.assertIn("_evoctl", self.evoctl("complete", "bash"))
         script = f'source <("{EVOCTL}" complete bash); COMP_WORDS=(evoctl --server {self.address} set mutation_ch);' \
                  'COMP_CWORD=4; COMP_LINE="${COMP_WORDS[*]}"; COMP_POINT=${#COMP_LINE}; _evoctl; echo "${COMPREPLY[@]}"'

@@ -113,5 +113,32 @@ TEST(RandomStream, ShuffleGivesEveryOrderEquallyOften) {
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
+TEST(Pair, IsPhilox2x32WithTenRounds) {
+    // Known answers of the generator's authors for counter and key of zeros, of ones, and of digits of π.
+    const auto out = [](std::uint32_t c0, std::uint32_t c1, std::uint32_t key) {
+        const auto words = r123::Philox2x32{}({{c0, c1}}, {{key}});
+        return std::array<std::uint32_t, 2>{words[0], words[1]};
+    };
+    EXPECT_EQ(out(0, 0, 0), (std::array<std::uint32_t, 2>{0xff1dae59, 0x6cd10df2}));
+    EXPECT_EQ(out(0xffffffff, 0xffffffff, 0xffffffff), (std::array<std::uint32_t, 2>{0x2c3f628b, 0xab4fd7ad}));
+    EXPECT_EQ(out(0x243f6a88, 0x85a308d3, 0x13198a2e), (std::array<std::uint32_t, 2>{0xdd7ce038, 0xf62a4c12}));
+    const RandomKey key{Seed{5}, Purpose::Behaviour, 1, 2};
+    for (std::uint32_t entity = 0; entity < 50; ++entity)
+        EXPECT_EQ(key.pair(entity, 9), out(entity, key.pair_counter(9), key.pair_key()));
+}
+
+TEST(Pair, FillsCellsEquallyOverEntitiesAndTicks) {
+    const RandomKey key{Seed{6}, Purpose::Behaviour, 1, 2};
+    std::array<std::uint64_t, 256> first{}, second{};
+    for (std::uint32_t entity = 0; entity < 500; ++entity)
+        for (std::uint32_t tick = 1; tick <= 200; ++tick) {
+            const auto words = key.pair(entity, tick);
+            ++first[words[0] >> 24];
+            ++second[words[1] >> 24];
+        }
+    EXPECT_GT(support::p_value_of_equal_cells(first), 1e-6);
+    EXPECT_GT(support::p_value_of_equal_cells(second), 1e-6);
+}
+
 } // namespace
 } // namespace evod::base

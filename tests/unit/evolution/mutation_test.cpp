@@ -92,6 +92,31 @@ TEST(Creep, GaussianStepsHaveTheStepAsStandardDeviation) {
     EXPECT_GT(support::p_value_of_equal_cells(cells), alpha);
 }
 
+TEST(Creep, GaussianStepsReachFarOut) {
+    // Law: normal, standard deviation 1. Chi-square over the steps beyond 3, 3.3, 3.44 (where the ziggurat's lowest
+    // layer ends), 3.6, 4 and 4.5, and between, both signs apart: 13 degrees of freedom.
+    Parameters parameters = still();
+    parameters.creep = Creep::Gaussian;
+    parameters.mutation_chance = 1;
+    parameters.mutation_step = 100;
+    const double ends[] = {-4.5, -4, -3.6, -3.442619855899, -3.3, -3, 0, 3, 3.3, 3.442619855899, 3.6, 4, 4.5};
+    std::vector<std::uint64_t> counts(std::size(ends) + 1);
+    mutants(parameters, middle, 1'000'000, 217, [&](const Values& genes, unsigned) {
+        for (const float gene : genes)
+            ++counts[static_cast<std::size_t>(std::upper_bound(std::begin(ends), std::end(ends), (gene - 512) / 100) -
+                                              std::begin(ends))];
+    });
+    const boost::math::normal normal;
+    std::vector<double> law;
+    double below = 0;
+    for (const double end : ends) {
+        law.push_back(boost::math::cdf(normal, end) - below);
+        below += law.back();
+    }
+    law.push_back(1 - below);
+    EXPECT_GT(p_value_of_law(counts, law), alpha);
+}
+
 TEST(Creep, GaussianStepsOfDifferentGenesAreIndependent) {
     // Law: each of the 4 quarters of the normal law, in each of the 6 genes, alike: 4^6 cells. Chi-square, 4095 degrees
     // of freedom.

@@ -18,6 +18,12 @@ std::vector<std::uint32_t> numbered(std::uint32_t count) {
     return parents;
 }
 
+std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32_t pair_count,
+                             const base::RandomKey& key) {
+    base::InlineExecutor executor;
+    return evolution::pair_up(parents, pair_count, key, executor);
+}
+
 TEST(Pairing, EveryParentMatesBeforeAnyoneMatesTwice) {
     for (std::uint32_t count = 2; count <= 9; ++count) {
         const std::uint32_t round = (count + 1) / 2;

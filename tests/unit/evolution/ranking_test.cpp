@@ -1,11 +1,13 @@
 #include "server/evolution/ranking.h"
 
+#include "tests/support/thread_executor.h"
 #include "tests/unit/evolution/draws.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -49,6 +51,27 @@ TEST(Ranking, IsAStableSortOfManyWithTies) {
     std::stable_sort(expected.begin(), expected.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return fitness[a] > fitness[b]; });
     EXPECT_EQ(best_first(fitness), expected);
+    for (const std::size_t threads : {2, 3, 8, 13}) {
+        support::ThreadExecutor executor{threads};
+        Ranking ranking{fitness, executor};
+        EXPECT_TRUE(std::ranges::equal(ranking.best_first(), expected));
+    }
+}
+
+TEST(Ranking, OrdersManyWhateverTheSpreadOfTheirFitness) {
+    base::RandomStream random = stream_of(122);
+    constexpr double huge = std::numeric_limits<double>::max(), tiny = std::numeric_limits<double>::denorm_min();
+    for (const double outlier : {0.0, 1e300, -huge, huge})
+        for (const double unit : {tiny, 1e-300, 1.0, huge / 4}) {
+            std::vector<double> fitness(3000);
+            for (double& value : fitness)
+                value = (random.below(2000) - 1000.0) * 0x1p-10 * unit;
+            fitness[1234] = outlier;
+            std::vector<std::uint32_t> expected(fitness.size());
+            std::iota(expected.begin(), expected.end(), 0u);
+            std::ranges::stable_sort(expected, std::greater{}, [&](std::uint32_t i) { return fitness[i]; });
+            ASSERT_EQ(best_first(fitness), expected) << outlier << " among " << unit;
+        }
 }
 
 } // namespace

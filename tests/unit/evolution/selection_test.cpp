@@ -13,6 +13,16 @@
 namespace evod::evolution {
 namespace {
 
+std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random) {
+    base::InlineExecutor executor;
+    return evolution::spin_universal(wheel, wanted, random, executor);
+}
+
+std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random) {
+    base::InlineExecutor executor;
+    return evolution::draw_unique(population, wanted, random, executor);
+}
+
 const std::vector<double> ten_to_one = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
 constexpr double huge = std::numeric_limits<double>::max();
 constexpr double tiny = std::numeric_limits<double>::denorm_min();

@@ -94,7 +94,8 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
                  {40, {.size = 80, .winners = 3, .replacement = true}},
                  {100, {.size = 65, .winners = 1, .replacement = false}},
                  {1000, {.size = 70, .winners = 1, .replacement = false}},
-                 {40, {.size = 15, .winners = 3, .replacement = false}}};
+                 {100, {.size = 65, .winners = 3, .replacement = false}},
+                 {1000, {.size = 70, .winners = 3, .replacement = false}}};
     for (const auto& [population, tournament] : cases)
         for (std::uint32_t place = 0; place < tournament.winners; ++place) {
             const auto ranks = ranks_of_winners(population, tournament, place, 300'000, 163);
@@ -120,9 +121,9 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
 
 TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {
     base::InlineExecutor executor;
-    std::vector<double> fitness(12);
+    std::vector<double> fitness(2000);
     std::iota(fitness.begin(), fitness.end(), 0.0);
-    for (const std::uint32_t size : {4u, 11u}) { // held, and drawn directly
+    for (const std::uint32_t size : {4u, 70u, 1999u}) { // held, skipped to, walked to
         Ranking ranking{fitness};
         const auto picked =
             hold_tournaments(ranking, {.size = size, .winners = 3, .replacement = false}, 3000, key_of(164), executor);

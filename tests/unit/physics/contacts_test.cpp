@@ -70,7 +70,7 @@ TEST(Resolving, MovesApartInProportionToInverseMass) {
     base::InlineExecutor executor;
     contacts.find(scene.circles, scene.boxes, scene.area, executor);
     ASSERT_EQ(contacts.size(), 1u);
-    contacts.resolve(scene.circles, scene.boxes, 0.8f);
+    contacts.resolve(scene.circles, scene.boxes, 0.8f, executor);
     EXPECT_EQ(scene.circles.x[0], to_units(997.0));
     EXPECT_EQ(scene.circles.x[1], to_units(1007.0));
 }
@@ -83,6 +83,36 @@ TEST(Resolving, PartsCirclesAtEqualCentresAlongX) {
     EXPECT_EQ(scene.circles.x[0], to_units(995.0));
     EXPECT_EQ(scene.circles.x[1], to_units(1005.0));
     EXPECT_EQ(scene.circles.y[0], to_units(1000.0));
+}
+
+TEST(Resolving, PartsCirclesAtEqualCentresByTheirIdsWhoeverWasListedFirst) {
+    for (const bool lower_comes_from_the_right : {false, true}) {
+        Scene scene;
+        scene.parameters.restitution = 0;
+        scene.add_circle(lower_comes_from_the_right ? 1040 : 960, 1000, 5, 1);
+        scene.add_circle(lower_comes_from_the_right ? 960 : 1040, 1000, 5, 1);
+        scene.step(); // lists the pair
+        scene.circles.x[0] = scene.circles.x[1] = to_units(1000.0);
+        scene.step();
+        EXPECT_EQ(scene.circles.x[0], to_units(995.0));
+        EXPECT_EQ(scene.circles.x[1], to_units(1005.0));
+    }
+}
+
+TEST(Contacts, AreNotCountedBetweenTheRemoved) {
+    Scene scene;
+    for (int i = 0; i < 8; ++i)
+        scene.add_circle(1000 + 3 * i, 1000, 5, 1);
+    NearPairs near;
+    base::InlineExecutor executor;
+    near.sort(scene.circles, scene.boxes, scene.area, executor);
+    near.list(scene.circles, scene.boxes, executor);
+    for (std::size_t i = 0; i < 8; ++i)
+        scene.circles.remove(i);
+    Contacts contacts;
+    contacts.begin(scene.circles, scene.boxes);
+    contacts.find_among_circles(scene.circles, near, 0);
+    EXPECT_EQ(contacts.size(), 0u);
 }
 
 TEST(Resolving, OneGroupIsNotInfluencedByAnother) {

@@ -24,7 +24,7 @@ class ConstantForce : public testing::TestWithParam<Fall> {
         scene.add_circle(start, start, 5, 2);
         const long ticks = std::lround(2.4 / GetParam().tick_s);
         for (long tick = 0; tick < ticks; ++tick) {
-            scene.circles.force_x[0] = static_cast<float>(2 * 2 * px_per_metre); // 2 kg at 2 m/s²
+            scene.push(0, static_cast<float>(2 * 2 * px_per_metre), 0); // 2 kg at 2 m/s²
             scene.step();
         }
         EXPECT_EQ(scene.circles.y[0], to_units(start));
@@ -60,7 +60,7 @@ TEST(BackwardEuler, TakesDampingImplicitly) {
     scene.add_circle(100'000, 100'000, 5, 1, 300);
     double velocity = 300, way = 0;
     for (int tick = 0; tick < 120; ++tick) {
-        scene.circles.force_x[0] = static_cast<float>(acceleration);
+        scene.push(0, static_cast<float>(acceleration), 0);
         scene.step();
         velocity = (velocity + acceleration * tick_s) / (1 + rate * tick_s);
         way += velocity * tick_s;
@@ -75,7 +75,7 @@ TEST(ExplicitEuler, MovesWithTheStartingVelocityPlusTheImpulsesOfTheTick) {
     scene.parameters.restitution = 1;
     scene.add_circle(1000, 1000, 5, 1, 10);
     scene.add_circle(1010, 1000, 5, 1); // touching, with depth 0
-    scene.circles.force_x[0] = 50;      // 5 px/s in the tick
+    scene.push(0, 50, 0);               // 5 px/s in the tick
     scene.step();
     // The bodies approach with 15 px/s and swap velocities: impulses of −15 and +15.
     EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 0);
@@ -89,7 +89,7 @@ TEST(ExplicitEuler, MovesWithTheStartingVelocityAlsoAtTheGreatestSpeed) {
     scene.parameters.integration = integration(Integrator::ExplicitEuler, 0.1, 0);
     scene.parameters.max_speed_px_s = 600;
     scene.add_circle(1000, 1000, 5, 1, 600);
-    scene.circles.force_x[0] = 1000; // 100 px/s in the tick, cut off again
+    scene.push(0, 1000, 0); // 100 px/s in the tick, cut off again
     scene.step();
     EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 600);
     EXPECT_EQ(scene.circles.x[0], to_units(1060.0));
@@ -106,7 +106,7 @@ TEST_P(AnyIntegrator, NeverMovesABodyFurtherThanTheGreatestSpeedAllows) {
     scene.add_circle(250'000, 250'000, 5, 0.0001f);
     for (int tick = 0; tick < 20; ++tick) {
         const Coordinate before = scene.circles.x[0];
-        scene.circles.force_x[0] = tick % 2 == 0 ? 1e7f : -1e7f;
+        scene.push(0, tick % 2 == 0 ? 1e7f : -1e7f, 0);
         scene.step();
         ASSERT_LE(std::abs(to_px(scene.circles.x[0]) - to_px(before)), 5001);
     }

@@ -5,8 +5,10 @@
 #include "server/base/random.h"
 #include "server/physics/step.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <ostream>
+#include <vector>
 
 namespace evod::physics {
 
@@ -17,12 +19,24 @@ struct Scene {
     StepParameters parameters{
         .integration = {Integrator::SymplecticEuler, 1.0f / 60, 1}, .restitution = 0.8f, .max_speed_px_s = 100'000};
     Stepper stepper;
-    StepCounts counts; // of all steps so far
+    StepCounts counts;                   // of all steps so far
+    std::vector<float> force_x, force_y; // on each circle in the next step
+
+    void push(std::size_t circle, float x, float y) {
+        force_x.resize(circles.x.size(), 0);
+        force_y.resize(circles.x.size(), 0);
+        force_x[circle] += x;
+        force_y[circle] += y;
+    }
 
     void add_circle(double x, double y, float radius, float mass, float velocity_x = 0, float velocity_y = 0) {
-        circles.add(static_cast<std::uint32_t>(circles.size()), to_units(x), to_units(y), radius, mass);
-        circles.velocity_x.back() = velocity_x;
-        circles.velocity_y.back() = velocity_y;
+        circles.add({.id = static_cast<std::uint32_t>(circles.size()),
+                     .x = to_units(x),
+                     .y = to_units(y),
+                     .radius = radius,
+                     .mass = mass});
+        circles.velocity_x[circles.size() - 1] = velocity_x;
+        circles.velocity_y[circles.size() - 1] = velocity_y;
     }
     void add_box(double x, double y, float half_width, float half_height, float inverse_mass, float velocity_x = 0,
                  float velocity_y = 0) {
@@ -35,7 +49,12 @@ struct Scene {
         step(executor);
     }
     void step(base::Executor& executor) {
-        const StepCounts now = stepper.step(circles, boxes, area, parameters, executor);
+        force_x.resize(circles.x.size(), 0);
+        force_y.resize(circles.x.size(), 0);
+        const StepCounts now =
+            stepper.step(circles, boxes, area, parameters, {force_x.data(), force_y.data()}, executor);
+        std::fill(force_x.begin(), force_x.end(), 0.0f);
+        std::fill(force_y.begin(), force_y.end(), 0.0f);
         counts.too_fast += now.too_fast;
         counts.speed_limited += now.speed_limited;
     }

@@ -12,7 +12,7 @@ struct Totals {
 };
 
 void add_totals(const Bodies& bodies, Totals& totals) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t i = 0; i < bodies.x.size(); ++i) {
         if (bodies.inverse_mass[i] == 0)
             continue;
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
@@ -64,7 +64,7 @@ TEST(Collisions, ConserveMomentumAndNeverAddKineticEnergy) {
         found.find(scene.circles, scene.boxes, scene.area, executor);
         contacts += found.size();
         const Totals before = totals(scene);
-        found.resolve(scene.circles, scene.boxes, 0.8f);
+        found.resolve(scene.circles, scene.boxes, 0.8f, executor);
         const Totals after = totals(scene);
         // A float has 24 bits: an impulse rounds a velocity by 6e-8 of it.
         ASSERT_NEAR(after.momentum_x, before.momentum_x, before.momentum_size * 1e-6) << "tick " << tick;
@@ -111,8 +111,8 @@ TEST_P(DenseCrowd, StaysInsideTheWallsAtHighSpeeds) {
     base::RandomStream random = scene_stream(15);
     for (int tick = 0; tick < 1000; ++tick) {
         for (std::size_t i = 0; i < scene.circles.size(); ++i) {
-            scene.circles.force_x[i] += uniform_float(random, -1e5, 1e5);
-            scene.circles.force_y[i] += uniform_float(random, -1e5, 1e5);
+            const float x = uniform_float(random, -1e5, 1e5);
+            scene.push(i, x, uniform_float(random, -1e5, 1e5));
         }
         scene.step();
         for (std::size_t i = 0; i < scene.circles.size(); ++i) {
@@ -169,10 +169,10 @@ TEST(Step, CountsBodiesThatMoveMoreThanTheirRadius) {
     EXPECT_EQ(scene.counts.too_fast, 2u);
 }
 
-TEST(Step, ClearsForces) {
+TEST(Step, LetsForcesActForOneTick) {
     Scene scene;
     scene.add_circle(1000, 1000, 5, 1);
-    scene.circles.force_x[0] = 60;
+    scene.push(0, 60, 0);
     scene.step();
     scene.step();
     EXPECT_FLOAT_EQ(scene.circles.velocity_x[0], 1);
@@ -180,7 +180,7 @@ TEST(Step, ClearsForces) {
 
 TEST(Step, NeverMovesAnObstacle) {
     Scene scene = crowd(300, 0.4, 0, 5, 500, 16);
-    const std::vector<Coordinate> x = scene.boxes.x, y = scene.boxes.y;
+    const auto x = scene.boxes.x, y = scene.boxes.y;
     for (int tick = 0; tick < 300; ++tick)
         scene.step();
     EXPECT_EQ(scene.boxes.x, x);
@@ -215,8 +215,9 @@ TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
     base::RandomStream random = scene_stream(18);
     for (int tick = 0; tick < 120; ++tick) {
         for (std::size_t i = 0; i < near.circles.size(); ++i) {
-            near.circles.force_x[i] = far.circles.force_x[i] = uniform_float(random, -300, 300);
-            near.circles.force_y[i] = far.circles.force_y[i] = uniform_float(random, -300, 300);
+            const float x = uniform_float(random, -300, 300), y = uniform_float(random, -300, 300);
+            near.push(i, x, y);
+            far.push(i, x, y);
         }
         near.step();
         far.step();

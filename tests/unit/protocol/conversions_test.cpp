@@ -324,13 +324,5 @@ TEST(Refusals, AreNotLongerThanAnybodyReads) {
     EXPECT_EQ(status.violations(0).got(), "nothing");
 }
 
-TEST(Names, AreChecked) {
-    for (const char* good : {"a", "A-z_09", "default"})
-        EXPECT_TRUE(is_world_name(good)) << good;
-    for (const std::string& bad :
-         {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}})
-        EXPECT_FALSE(is_world_name(bad)) << bad;
-}
-
 } // namespace
 } // namespace evod::protocol

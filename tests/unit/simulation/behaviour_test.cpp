@@ -20,7 +20,7 @@ constexpr double alpha = 1e-6; // share of seeds for which a correct build would
 /// them.
 class OneOrganism : public testing::Test {
   protected:
-    static Items item_at_most_one(bool there, base::Purpose purpose) {
+    Items item_at_most_one(bool there, base::Purpose purpose) {
         Items items;
         items.begin_generation({.placement = purpose,
                                 .respawn_purpose = purpose,
@@ -29,7 +29,7 @@ class OneOrganism : public testing::Test {
                                 .radius_px = 4,
                                 .respawn = true,
                                 .respawn_ticks = 1},
-                               base::Seed{1}, 0, 1, {to_units(100.0), to_units(100.0)}, {});
+                               base::Seed{1}, 0, 1, {to_units(100.0), to_units(100.0)}, {}, executor);
         return items;
     }
     void SetUp() override {
@@ -38,24 +38,30 @@ class OneOrganism : public testing::Test {
         none = item_at_most_one(false, base::Purpose::FoodPlacement);
         evolution::Chromosome genes;
         genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and flees without fail
-        living.add(genes, Parameters{});
-        bodies.add(0, to_units(50.0), to_units(50.0), 10, 1);
+        bodies.add({.id = 0, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
+        living.resize(1);
+        living.put(0, genes, Parameters{});
         rules = {.flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 2};
     }
     void put_beside(const Items& items, double dx, double dy) { // item − organism
-        bodies.x[0] = items.x()[0] - to_units(dx);
-        bodies.y[0] = items.y()[0] - to_units(dy);
+        bodies.x[0] = items.all()[0].x - to_units(dx);
+        bodies.y[0] = items.all()[0].y - to_units(dy);
     }
     struct Force {
         float x, y;
     };
     Force choose(const Items& foods, const Items& poisons, std::uint32_t tick = 1) {
-        bodies.force_x[0] = bodies.force_y[0] = 0;
-        perceive_and_choose(living, foods, poisons, rules, key, tick, bodies, sight, executor);
-        return {bodies.force_x[0], bodies.force_y[0]};
+        look_and_choose(foods, poisons, tick);
+        return {forces.x[0], forces.y[0]};
     }
-    float dx_to(const Items& items) const { return physics::distance_px(bodies.x[0], items.x()[0]); }
-    float dy_to(const Items& items) const { return physics::distance_px(bodies.y[0], items.y()[0]); }
+    void look_and_choose(const Items& foods, const Items& poisons, std::uint32_t tick) {
+        const base::Range all{0, bodies.size()};
+        sight.begin(bodies, living, foods, poisons);
+        sight.look(bodies, living, foods, poisons, all);
+        live_and_choose(organism_columns(bodies, living, sight, foods, poisons), rules, key, tick, all, forces);
+    }
+    float dx_to(const Items& items) const { return physics::distance_px(bodies.x[0], items.all()[0].x); }
+    float dy_to(const Items& items) const { return physics::distance_px(bodies.y[0], items.all()[0].y); }
     void expect_along(Force force, float x, float y, float size) {
         const float length = std::sqrt(x * x + y * y);
         EXPECT_NEAR(force.x, x / length * size, size * 1e-5f);
@@ -66,6 +72,7 @@ class OneOrganism : public testing::Test {
     Living living;
     physics::Circles bodies;
     BehaviourRules rules{};
+    ChosenForces forces;
     Sight sight;
     base::RandomKey key{base::Seed{2}, base::Purpose::Behaviour, 0, 1};
     base::InlineExecutor executor;
@@ -81,22 +88,12 @@ TEST_F(OneOrganism, SteersToSeenFoodAgainstItsOwnVelocity) {
     expect_along(choose(food, none), 20, 10, 180);
 }
 
-TEST_F(OneOrganism, AddsToTheForceThatIsThere) {
-    put_beside(food, 20, 0);
-    living.impulse[0] = 90;
-    rules.lookahead_s = 0;
-    bodies.force_x[0] = 5;
-    perceive_and_choose(living, food, none, rules, key, 1, bodies, sight, executor);
-    EXPECT_FLOAT_EQ(bodies.force_x[0], 185);
-}
-
 TEST_F(OneOrganism, SeesAtExactlyItsRadiusAndNotBeyond) {
     living.impulse[0] = 90;
     put_beside(food, 3, 4);
     rules.lookahead_s = 0;
     living.food_radius[0] = 5;
     expect_along(choose(food, none), 3, 4, 180);
-    EXPECT_EQ(sight.food_distance[0], 5);
     living.food_radius[0] = 4.999f;
     const Force wandering = choose(food, none);
     EXPECT_NEAR(std::hypot(wandering.x, wandering.y), 100, 1e-3) << "normal_speed times force_per_unit";
@@ -209,19 +206,24 @@ TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
     for (std::uint32_t id = 1; id < 40; ++id) {
         evolution::Chromosome genes;
         genes << 50, 100, 100, 100, 0, 0;
-        living.add(genes, Parameters{});
-        bodies.add(id, to_units(50.0), to_units(50.0), 10, 1);
+        bodies.add({.id = id, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
+        living.resize(id + 1);
+        living.put(id, genes, Parameters{});
     }
     choose(none, none, 9);
-    const std::vector<float> before = bodies.force_x;
-    std::vector<std::uint8_t> keep(40, 1);
-    keep[0] = keep[7] = keep[20] = 0;
-    bodies.keep_only(keep);
-    living.keep_only(keep);
-    std::fill(bodies.force_x.begin(), bodies.force_x.end(), 0.0f);
+    const ChosenForces before = forces;
+    std::vector<std::uint32_t> order;
+    base::Column<std::uint32_t> spare;
+    for (std::uint32_t i = 40; i-- > 0;)
+        if (i != 0 && i != 7 && i != 20)
+            order.push_back(i);
+    const physics::Reordering reordering{order, spare, executor};
+    bodies.reorder(reordering);
+    living.reorder(reordering);
+    ASSERT_EQ(bodies.size(), 37u);
     choose(none, none, 9);
     for (std::size_t i = 1; i < bodies.size(); ++i)
-        EXPECT_EQ(bodies.force_x[i], before[bodies.id[i]]);
+        EXPECT_EQ(forces.x[i], before.x[bodies.id[i]]);
 }
 
 } // namespace

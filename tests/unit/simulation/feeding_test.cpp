@@ -1,18 +1,20 @@
-#include "server/simulation/feeding.h"
-
-#include "server/base/inline_executor.h"
-#include "server/base/random.h"
-#include "server/physics/step.h"
+#include "tests/unit/simulation/meadow.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <ostream>
 #include <set>
 #include <utility>
 #include <vector>
 
 namespace evod::simulation {
 namespace {
+
+base::InlineExecutor executor; // has no state
 
 using physics::to_units;
 
@@ -25,22 +27,30 @@ Items items_of(std::uint32_t count, base::Purpose placement, physics::Area area,
                             .radius_px = radius,
                             .respawn = true,
                             .respawn_ticks = 1},
-                           base::Seed{1}, 0, 1, area, {});
+                           base::Seed{1}, 0, 1, area, {}, executor);
     return items;
 }
 
-/// As if nobody knew what had been seen: everyone is looked at.
-struct Blind {
-    Sight sight;
-    std::vector<float> distance;
-    explicit Blind(const physics::Circles& bodies) : sight{bodies.x, bodies.y, {}, {}}, distance(bodies.size(), 0) {}
-};
+/// As if everybody might touch something.
+using Meal = Meadow::Meal;
+
+std::vector<Meal> awarded(Feeding& feeding) {
+    const std::size_t count = feeding.award();
+    std::vector<Meal> meals;
+    for (const Touch& touch : feeding.touches(0))
+        if (touch.gets_it)
+            meals.push_back({touch.item, touch.body});
+    EXPECT_EQ(meals.size(), count);
+    return meals;
+}
 
 std::vector<Meal> meals_of(const physics::Circles& bodies, const Items& items) {
+    std::vector<std::uint32_t> all(bodies.size());
+    std::iota(all.begin(), all.end(), 0u);
     Feeding feeding;
-    base::InlineExecutor executor;
-    const Blind blind{bodies};
-    return feeding.meals(bodies, items, blind.sight, blind.distance, executor);
+    feeding.begin(1);
+    feeding.find_touches(0, all, bodies, items);
+    return awarded(feeding);
 }
 
 std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Items& items) {
@@ -52,8 +62,8 @@ std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Item
         std::size_t eater = bodies.size();
         for (std::size_t i = 0; i < bodies.size();
              ++i) { // ids rise with the index, so the first of equals has the lower
-            const float dx = physics::distance_px(bodies.x[i], items.x()[item]);
-            const float dy = physics::distance_px(bodies.y[i], items.y()[item]);
+            const float dx = physics::distance_px(bodies.x[i], items.all()[item].x);
+            const float dy = physics::distance_px(bodies.y[i], items.all()[item].y);
             const float reach = bodies.radius[i] + items.radius_px(), square = dx * dx + dy * dy;
             if (square <= reach * reach && (eater == bodies.size() || square < best)) {
                 best = square;
@@ -66,8 +76,9 @@ std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Item
     return meals;
 }
 
-void expect_equal(const std::vector<Meal>& meals, const std::vector<Meal>& expected, const char* what, int tick) {
+void expect_equal(std::vector<Meal> meals, const std::vector<Meal>& expected, const char* what, int tick) {
     ASSERT_EQ(meals.size(), expected.size()) << what << ", tick " << tick;
+    std::sort(meals.begin(), meals.end(), [](const Meal& a, const Meal& b) { return a.item < b.item; });
     for (std::size_t i = 0; i < meals.size(); ++i) {
         ASSERT_EQ(meals[i].item, expected[i].item) << what << ", tick " << tick;
         ASSERT_EQ(meals[i].body, expected[i].body) << what << ", tick " << tick;
@@ -80,7 +91,11 @@ TEST(Feeding, GivesAnItemToItsNearestToucherAndOfEquallyNearOnesToTheLowestId) {
         physics::Circles bodies;
         std::uint32_t id = 5;
         for (const auto& [dx, dy] : offsets)
-            bodies.add(id++, items.x()[0] + to_units(dx), items.y()[0] + to_units(dy), 10, 1);
+            bodies.add({.id = id++,
+                        .x = items.all()[0].x + to_units(dx),
+                        .y = items.all()[0].y + to_units(dy),
+                        .radius = 10,
+                        .mass = 1});
         return meals_of(bodies, items);
     };
     EXPECT_TRUE(meal({{14.01, 0}}).empty());
@@ -92,7 +107,7 @@ TEST(Feeding, GivesAnItemToItsNearestToucherAndOfEquallyNearOnesToTheLowestId) {
 TEST(Feeding, LetsOneOrganismEatSeveral) {
     const Items items = items_of(30, base::Purpose::FoodPlacement, {to_units(20.0), to_units(20.0)});
     physics::Circles bodies;
-    bodies.add(0, to_units(10.0), to_units(10.0), 15, 1);
+    bodies.add({.id = 0, .x = to_units(10.0), .y = to_units(10.0), .radius = 15, .mass = 1});
     const std::vector<Meal> meals = meals_of(bodies, items);
     ASSERT_EQ(meals.size(), 30u);
     std::set<std::uint32_t> eaten;
@@ -101,64 +116,114 @@ TEST(Feeding, LetsOneOrganismEatSeveral) {
     EXPECT_EQ(eaten.size(), 30u);
 }
 
-struct Speeds {
-    float max_speed, force;
-    float item_radius;
-};
-class ARunningIsland : public testing::TestWithParam<Speeds> {};
-
-TEST_P(ARunningIsland, NeverMissesAMealForWhatWasSeen) {
-    // Organisms with the longest and the shortest sight, slow and fast; food and poison against trying all, each tick.
-    const physics::Area area{to_units(900.0), to_units(700.0)};
-    Items food = items_of(150, base::Purpose::FoodPlacement, area, GetParam().item_radius);
-    Items poison = items_of(150, base::Purpose::PoisonPlacement, area, GetParam().item_radius);
-    base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
-    Living living;
-    physics::Circles bodies;
-    for (std::uint32_t id = 0; id < 120; ++id) {
-        evolution::Chromosome genes;
-        const auto gene = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
-        genes << gene(20, 250), gene(20, 250), gene(10, 200), 100, gene(0, 200), gene(0, 200);
-        living.add(genes, Parameters{});
-        const BodyShape shape = body_shape(genes(evolution::BodySize), Parameters{});
-        bodies.add(id, to_units(random.uniform(20, 880)), to_units(random.uniform(20, 680)), shape.radius_px,
-                   shape.mass_kg);
+/// Whom each body takes for nearest, against trying all items: the same within its radius, and no other is nearer than
+/// it believes.
+void expect_nearest_are_known(const ViewColumns& view, const physics::Circles& bodies, const Items& items,
+                              std::uint32_t tick) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const auto square_to = [&](physics::Coordinate x, physics::Coordinate y) {
+            const float dx = physics::distance_px(bodies.x[i], x), dy = physics::distance_px(bodies.y[i], y);
+            return dx * dx + dy * dy;
+        };
+        const float known = square_to(view.x[i], view.y[i]);
+        float least = std::numeric_limits<float>::infinity();
+        std::uint32_t nearest = Items::none;
+        for (std::uint32_t item = 0; item < items.size(); ++item)
+            if (items.present(item) && square_to(items.all()[item].x, items.all()[item].y) < least) {
+                least = square_to(items.all()[item].x, items.all()[item].y);
+                nearest = item;
+            }
+        if (least > view.radius[i] * view.radius[i]) {
+            ASSERT_GT(known, view.radius[i] * view.radius[i])
+                << "sees what is not there: body " << i << ", tick " << tick;
+            continue;
+        }
+        ASSERT_EQ(view.x[i], items.all()[nearest].x) << "body " << i << ", tick " << tick;
+        ASSERT_EQ(view.y[i], items.all()[nearest].y) << "body " << i << ", tick " << tick;
+        for (std::uint32_t item = 0; item < items.size(); ++item)
+            if (items.present(item) && item != nearest && view.others[i] > 0) {
+                ASSERT_GE(square_to(items.all()[item].x, items.all()[item].y), view.others[i] * view.others[i])
+                    << "body " << i << ", tick " << tick;
+            }
     }
-    physics::Boxes boxes;
-    physics::Stepper stepper;
-    const physics::StepParameters step{.integration =
-                                           physics::integration(physics::Integrator::SymplecticEuler, 1.0 / 60, 0.06),
-                                       .restitution = 0.8f,
-                                       .max_speed_px_s = GetParam().max_speed};
-    const BehaviourRules rules{
-        .flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = GetParam().force};
-    const base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
-    base::InlineExecutor executor;
-    Sight sight;
-    Feeding feeding;
-    std::size_t eaten = 0;
-    for (std::uint32_t tick = 1; tick <= 600; ++tick) {
-        food.reappear(tick, boxes);
-        poison.reappear(tick, boxes);
-        perceive_and_choose(living, food, poison, rules, key, tick, bodies, sight, executor);
-        stepper.step(bodies, boxes, area, step, executor);
-        const std::vector<Meal> meals = feeding.meals(bodies, food, sight, sight.food_distance, executor);
-        expect_equal(meals, meals_by_trying_all(bodies, food), "food", static_cast<int>(tick));
-        const std::vector<Meal> poisoned = feeding.meals(bodies, poison, sight, sight.poison_distance, executor);
-        expect_equal(poisoned, meals_by_trying_all(bodies, poison), "poison", static_cast<int>(tick));
-        if (HasFatalFailure())
-            return;
-        for (const Meal& meal : meals)
-            food.consume(meal.item, tick);
-        for (const Meal& meal : poisoned)
-            poison.consume(meal.item, tick);
-        eaten += meals.size() + poisoned.size();
-    }
-    EXPECT_GT(eaten, 300u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Speeds, ARunningIsland,
-                         testing::Values(Speeds{600, 1, 4}, Speeds{100'000, 200, 4}, Speeds{600, 20, 30}));
+struct Conditions {
+    const char* name;
+    double width, height; // px
+    std::uint32_t organisms, foods, poisons;
+    double sight;           // px; greatest
+    double crowd_side;      // px; where the organisms are at first
+    float max_speed, force; // px/s; kg px/s² a gene unit
+    float item_radius;      // px
+};
+void PrintTo(const Conditions& conditions, std::ostream* out) {
+    *out << conditions.name;
+}
+
+class AMeadow : public testing::TestWithParam<Conditions> {};
+
+TEST_P(AMeadow, SeesAndFeedsAsLookingAtEverythingInEveryTickWould) {
+    const Conditions& c = GetParam();
+    Meadow meadow;
+    meadow.area = {to_units(c.width), to_units(c.height)};
+    meadow.step.max_speed_px_s = c.max_speed;
+    meadow.rules.force_per_unit = c.force;
+    base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    for (std::uint32_t id = 0; id < c.organisms; ++id) {
+        evolution::Chromosome genes;
+        const auto gene = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
+        genes << gene(20, 250), gene(20, 250), gene(10, 200), 100, gene(0, c.sight), gene(0, c.sight);
+        const physics::Coordinate x = to_units(random.uniform(20, std::min(c.width, c.crowd_side) - 20));
+        meadow.add_organism(x, to_units(random.uniform(20, std::min(c.height, c.crowd_side) - 20)), genes);
+    }
+    const auto places = [&](std::uint32_t count) {
+        std::vector<Place> all(count);
+        for (Place& place : all) {
+            place.x = to_units(random.uniform(c.item_radius, c.width - c.item_radius));
+            place.y = to_units(random.uniform(c.item_radius, c.height - c.item_radius));
+        }
+        return all;
+    };
+    const std::vector<Place> foods = places(c.foods);
+    meadow.put_items(foods, places(c.poisons), c.item_radius, true);
+    meadow.begin();
+    std::size_t eaten = 0, looked = 0;
+    for (std::uint32_t tick = 1; tick <= 400; ++tick) {
+        meadow.perceive();
+        const OrganismColumns columns = meadow.columns();
+        expect_nearest_are_known(columns.food, meadow.bodies, meadow.food, tick);
+        expect_nearest_are_known(columns.poison, meadow.bodies, meadow.poison, tick);
+        if (HasFatalFailure())
+            return;
+        meadow.act();
+        looked += static_cast<std::size_t>(std::count_if(
+            columns.food.others, columns.food.others + meadow.bodies.size(), [](float others) { return others < 0; }));
+        expect_equal(meadow.meals(meadow.food_feeding), meals_by_trying_all(meadow.bodies, meadow.food), "food",
+                     static_cast<int>(tick));
+        expect_equal(meadow.meals(meadow.poison_feeding), meals_by_trying_all(meadow.bodies, meadow.poison), "poison",
+                     static_cast<int>(tick));
+        if (HasFatalFailure())
+            return;
+        eaten += meadow.meals(meadow.food_feeding).size() + meadow.meals(meadow.poison_feeding).size();
+        meadow.eat();
+    }
+    EXPECT_GT(eaten, 100u);
+    EXPECT_GT(looked, 100u);
+    EXPECT_LT(looked, std::size_t{400} * c.organisms) << "nobody has to look in every tick";
+}
+
+INSTANTIATE_TEST_SUITE_P(Conditions, AMeadow,
+                         testing::Values(Conditions{"even", 900, 700, 120, 150, 150, 200, 900, 600, 1, 4},
+                                         Conditions{"fast", 900, 700, 120, 150, 150, 200, 900, 100'000, 200, 4},
+                                         Conditions{"large_items", 900, 700, 120, 150, 150, 200, 900, 600, 20, 30},
+                                         Conditions{"far_sighted", 3000, 3000, 100, 200, 150, 1000, 3000, 600, 3, 4},
+                                         Conditions{"crowd_in_a_corner", 6000, 6000, 150, 4000, 1000, 300, 300, 600, 5,
+                                                    10},
+                                         Conditions{"long_and_thin", 20'000, 60, 150, 400, 200, 150, 20'000, 600, 2, 4},
+                                         Conditions{"items_everywhere", 700, 700, 10, 9000, 300, 250, 700, 600, 2, 4},
+                                         Conditions{"hardly_an_item", 5000, 5000, 100, 40, 2, 500, 5000, 600, 20, 60}),
+                         testing::PrintToStringParamName());
 
 } // namespace
 } // namespace evod::simulation

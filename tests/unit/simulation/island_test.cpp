@@ -32,7 +32,7 @@ class SmallIsland : public testing::Test {
         born.genes = evolution::GeneMatrix(evolution::gene_count, static_cast<Eigen::Index>(chromosomes.size()));
         for (std::size_t i = 0; i < chromosomes.size(); ++i)
             born.genes.col(static_cast<Eigen::Index>(i)) = chromosomes[i];
-        island.begin_generation(parameters, 1, std::move(born));
+        island.begin_generation(parameters, 1, std::move(born), executor);
     }
     void tick() { island.advance_tick(parameters, ++now, executor); }
     float health(std::uint32_t id) { return island.living().health[island.body_of(id).value()]; }
@@ -48,7 +48,7 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     begin({genes_of(0, 0, 50, 20, 0, 0), genes_of(0, 0, 50, 30, 0, 0)});
     tick();
     EXPECT_FLOAT_EQ(health(0), 19.9f);
-    while (island.living().size() == 2)
+    while (island.alive_count() == 2)
         tick();
     EXPECT_NEAR(now, 200, 1) << "6 health/s: 20 last 200 ticks, to the rounding of floats";
     const std::uint32_t died = now;
@@ -56,7 +56,7 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     EXPECT_EQ(island.fate().lived_ticks[0], died);
     EXPECT_EQ(island.counts().starved_count, 1u);
     EXPECT_FALSE(island.body_of(0).has_value());
-    EXPECT_EQ(island.body_of(1), 0u);
+    EXPECT_EQ(island.bodies().id[island.body_of(1).value()], 1u);
     while (now < 250)
         tick();
     EXPECT_NEAR(fitness()[0], died / 60.0, 1e-9) << "the health of the dead is 0, their seconds count";
@@ -69,7 +69,7 @@ TEST_F(SmallIsland, CountsPoisonAsTheCauseOnlyInTheTickInWhichItKills) {
     parameters.poison_harm = 1e4;
     begin({genes_of(0, 0, 100, 100, 0, 0)});
     tick();
-    EXPECT_EQ(island.living().size(), 0u);
+    EXPECT_EQ(island.alive_count(), 0u);
     EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Poisoned);
     EXPECT_EQ(island.fate().lived_ticks[0], 1u);
     EXPECT_GT(island.fate().poison_eaten[0], 0u);
@@ -82,7 +82,7 @@ TEST_F(SmallIsland, StarvesWhenHungerTakesTheLastHealthLongAfterPoison) {
     parameters.respawn = false;
     parameters.poison_harm = 0.01;
     begin({genes_of(0, 0, 100, 5, 0, 0)});
-    while (island.living().size() > 0)
+    while (island.alive_count() > 0)
         tick();
     EXPECT_GT(island.fate().poison_eaten[0], 0u);
     EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
@@ -93,7 +93,7 @@ TEST_F(SmallIsland, LivesIfFoodInTheTickInWhichHealthRunsOutBringsTheSumAboveNot
     parameters.health_cap_per_size = 0;
     begin({genes_of(0, 0, 100, 0.05f, 0, 0)}); // less than a tick costs
     tick();
-    ASSERT_EQ(island.living().size(), 1u);
+    ASSERT_EQ(island.alive_count(), 1u);
     const std::uint32_t meals = island.fate().food_eaten[0];
     EXPECT_GT(meals, 1u);
     EXPECT_NEAR(health(0), 0.05f - 0.1f + 25 * static_cast<float>(meals), 1e-3);
@@ -105,7 +105,7 @@ TEST_F(SmallIsland, DiesIfTheSumOfATickIsNotAboveNothing) {
     parameters.poison_harm = 10;
     begin({genes_of(0, 0, 100, 20, 0, 0)});
     tick();
-    EXPECT_EQ(island.living().size(), 0u);
+    EXPECT_EQ(island.alive_count(), 0u);
     EXPECT_GT(island.fate().food_eaten[0], 0u);
 }
 
@@ -130,7 +130,8 @@ TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
     p.poison_radius_cost = 0.3;
     const auto loss = [&](const evolution::Chromosome& genes) {
         Living living;
-        living.add(genes, p);
+        living.resize(1);
+        living.put(0, genes, p);
         return living.loss_per_tick.front();
     };
     EXPECT_FLOAT_EQ(loss(genes_of(100, 100, 100, 100, 100, 100)), 0.1f);
@@ -150,7 +151,7 @@ TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
         tick();
         ASSERT_GT(island.counts().food_eaten, 0u);
         for (std::uint32_t item = 0; item < island.food().size(); ++item)
-            ASSERT_TRUE(island.food().present(item) || island.food().due_tick()[item] == 1 + std::max(ticks, 1u))
+            ASSERT_TRUE(island.food().present(item) || island.food().all()[item].due_tick == 1 + std::max(ticks, 1u))
                 << "respawn_s " << parameters.respawn_s;
     }
     parameters.respawn = false;
@@ -181,11 +182,14 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
             sum += base::EntityHash{5, id}.add(g[0], g[1]).add(g[2], g[3]).add(g[4], g[5]).finish();
         }
         for (std::size_t i = island.bodies().size(); i-- > 0;) // in any order
-            sum += base::EntityHash{1, island.bodies().id[i]}
-                       .add(island.bodies().x[i], island.bodies().y[i])
-                       .add(island.bodies().velocity_x[i], island.bodies().velocity_y[i])
-                       .add(std::uint64_t{std::bit_cast<std::uint32_t>(island.living().health[i])})
-                       .finish();
+            if (!island.bodies().is_void(i))
+                sum += base::hash_of({.kind = 1,
+                                      .id = island.bodies().id[i],
+                                      .a = static_cast<std::uint32_t>(island.bodies().x[i]),
+                                      .b = static_cast<std::uint32_t>(island.bodies().y[i]),
+                                      .c = std::bit_cast<std::uint32_t>(island.bodies().velocity_x[i]),
+                                      .d = std::bit_cast<std::uint32_t>(island.bodies().velocity_y[i]),
+                                      .e = std::bit_cast<std::uint32_t>(island.living().health[i])});
         for (std::uint32_t i = 0; i < island.crate_count(); ++i)
             sum += base::EntityHash{4, i}
                        .add(island.boxes().x[i], island.boxes().y[i])
@@ -195,9 +199,9 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
             for (std::uint32_t item = 0; item < items.size(); ++item) {
                 base::EntityHash hash{kind, item};
                 if (items.present(item))
-                    hash.add(items.x()[item], items.y()[item]);
+                    hash.add(items.all()[item].x, items.all()[item].y);
                 else
-                    hash.add(std::uint64_t{items.due_tick()[item]});
+                    hash.add(std::uint64_t{items.all()[item].due_tick});
                 sum += hash.finish();
             }
         };
@@ -205,7 +209,7 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
         add_items(island.poison(), 3);
         return sum;
     };
-    while (island.living().size() > 0) { // deaths included
+    while (island.alive_count() > 0) { // deaths included
         tick();
         ASSERT_EQ(island.hash(), recomputed()) << "tick " << now;
     }
@@ -218,18 +222,27 @@ TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
         chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
     begin(chromosomes);
     tick();
-    EXPECT_EQ(island.bodies().id, (std::vector<std::uint32_t>{1, 2, 4, 5, 7}));
-    EXPECT_EQ(island.body_of(4), 2u);
+    EXPECT_EQ(island.alive_count(), 5u);
+    for (const std::uint32_t alive : {1u, 2u, 4u, 5u, 7u}) {
+        ASSERT_TRUE(island.body_of(alive).has_value());
+        EXPECT_EQ(island.bodies().id[*island.body_of(alive)], alive);
+        EXPECT_FALSE(island.bodies().is_void(*island.body_of(alive)));
+    }
+    tick(); // when the dead have left their places
+    tick();
+    EXPECT_EQ(island.bodies().id[island.body_of(4).value()], 4u);
     for (const std::uint32_t dead : {0u, 3u, 6u, 8u, 1000u})
         EXPECT_FALSE(island.body_of(dead).has_value());
 }
 
 TEST_F(SmallIsland, StartsAtRestWithTheSizesOfItsGenes) {
     begin({genes_of(0, 0, 80, 50, 0, 0), genes_of(0, 0, 160, 50, 0, 0)});
-    EXPECT_EQ(island.bodies().radius, (std::vector<float>{8, 16}));
+    ASSERT_EQ(island.bodies().size(), 2u);
+    EXPECT_EQ(island.bodies().radius[0], 8);
+    EXPECT_EQ(island.bodies().radius[1], 16);
     EXPECT_FLOAT_EQ(island.bodies().inverse_mass[0], 1 / 0.8f);
     EXPECT_FLOAT_EQ(island.bodies().inverse_mass[1], 1 / 1.6f);
-    EXPECT_EQ(island.bodies().velocity_x, (std::vector<float>{0, 0}));
+    EXPECT_EQ(island.bodies().velocity_x[1], 0);
 }
 
 TEST(GeneSum, IsTheSumOfTheGenes) {

@@ -1,5 +1,6 @@
 #include "server/simulation/items.h"
 
+#include "server/base/inline_executor.h"
 #include "server/physics/shapes.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,8 @@
 
 namespace evod::simulation {
 namespace {
+
+base::InlineExecutor executor; // has no state
 
 using physics::Area;
 using physics::Boxes;
@@ -29,7 +32,7 @@ ItemRules rules(std::uint32_t count, std::uint32_t respawn_ticks = 1, bool respa
 
 Items some_items(std::uint32_t count, Area area, const Boxes& obstacles = {}, std::uint64_t seed = 1) {
     Items items;
-    items.begin_generation(rules(count), base::Seed{seed}, 0, 1, area, obstacles);
+    items.begin_generation(rules(count), base::Seed{seed}, 0, 1, area, BoxGrid{area, obstacles}, executor);
     return items;
 }
 
@@ -37,8 +40,12 @@ base::RandomStream stream(std::uint64_t seed) {
     return {base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};
 }
 
+std::uint32_t nearest_of(const Items& items, Coordinate x, Coordinate y, float radius) {
+    return items.item_at(items.two_nearest(x, y, radius).place);
+}
+
 float square_to(const Items& items, std::uint32_t item, Coordinate x, Coordinate y) {
-    const float dx = physics::distance_px(x, items.x()[item]), dy = physics::distance_px(y, items.y()[item]);
+    const float dx = physics::distance_px(x, items.all()[item].x), dy = physics::distance_px(y, items.all()[item].y);
     return dx * dx + dy * dy;
 }
 
@@ -49,6 +56,14 @@ std::uint32_t nearest_by_trying_all(const Items& items, Coordinate x, Coordinate
             (best == Items::none || square_to(items, item, x, y) < square_to(items, best, x, y)))
             best = item;
     return best;
+}
+
+float others_square_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius, std::uint32_t nearest) {
+    float least = radius * radius;
+    for (std::uint32_t item = 0; item < items.size(); ++item)
+        if (items.present(item) && item != nearest)
+            least = std::min(least, square_to(items, item, x, y));
+    return least;
 }
 
 using Found = std::vector<std::pair<std::uint32_t, float>>;
@@ -63,7 +78,8 @@ Found within_by_trying_all(const Items& items, Coordinate x, Coordinate y, float
 
 Found within(const Items& items, Coordinate x, Coordinate y, float radius) {
     Found found;
-    items.for_each_within(x, y, radius, [&](std::uint32_t item, float square) { found.emplace_back(item, square); });
+    items.for_each_within(x, y, radius,
+                          [&](std::uint32_t item, std::uint32_t, float square) { found.emplace_back(item, square); });
     std::sort(found.begin(), found.end());
     return found;
 }
@@ -74,13 +90,15 @@ void expect_queries_agree(const Items& items, const Area& area, base::RandomStre
         const auto place = [&](Coordinate size) { return to_units(random.uniform(-10, physics::to_px(size) + 10)); };
         const Coordinate x = place(area.width), y = place(area.height);
         const auto radius = static_cast<float>(random.chance(0.2) ? random.uniform(0, 10'000) : random.uniform(0, 200));
-        const Items::Nearest nearest = items.nearest(x, y, radius);
-        ASSERT_EQ(nearest.item, nearest_by_trying_all(items, x, y, radius));
-        if (nearest.item != Items::none) {
-            ASSERT_EQ(nearest.square, square_to(items, nearest.item, x, y));
-            ASSERT_EQ(nearest.dx, physics::distance_px(x, items.x()[nearest.item]));
-            ASSERT_EQ(nearest.dy, physics::distance_px(y, items.y()[nearest.item]));
+        const TwoNearest nearest = items.two_nearest(x, y, radius);
+        const std::uint32_t item = items.item_at(nearest.place);
+        ASSERT_EQ(item, nearest_by_trying_all(items, x, y, radius));
+        if (item != Items::none) {
+            ASSERT_EQ(nearest.square, square_to(items, item, x, y));
+            ASSERT_EQ(nearest.x, items.all()[item].x);
+            ASSERT_EQ(nearest.y, items.all()[item].y);
         }
+        ASSERT_EQ(nearest.others_square, others_square_by_trying_all(items, x, y, radius, item));
         ASSERT_EQ(within(items, x, y, radius), within_by_trying_all(items, x, y, radius));
     }
 }
@@ -90,7 +108,7 @@ base::StateHash recomputed_hash(const Items& items, const std::vector<std::uint3
     for (std::uint32_t item = 0; item < items.size(); ++item) {
         base::EntityHash entity{2, item};
         if (due[item] == 0)
-            entity.add(items.x()[item], items.y()[item]);
+            entity.add(items.all()[item].x, items.all()[item].y);
         else
             entity.add(std::uint64_t{due[item]});
         hash += entity.finish();
@@ -115,14 +133,14 @@ TEST(Items, AreFoundWhenThousandsShareACell) {
     obstacles.add(to_units(1000.0), to_units(1030.0), 1000, 970, 0);
     Items items = some_items(4000, area, obstacles);
     for (std::uint32_t item = 0; item < items.size(); ++item) {
-        ASSERT_LT(items.x()[item], to_units(40.0));
-        ASSERT_LT(items.y()[item], to_units(60.0));
+        ASSERT_LT(items.all()[item].x, to_units(40.0));
+        ASSERT_LT(items.all()[item].y, to_units(60.0));
     }
     base::RandomStream random = stream(2);
     const Area corner{to_units(60.0), to_units(80.0)};
     expect_queries_agree(items, corner, random, 50);
     for (std::uint32_t tick = 1; tick <= 40; ++tick) { // and while they come and go
-        items.reappear(tick, obstacles);
+        items.reappear(tick, BoxGrid{area, obstacles}, executor);
         for (int eaten = 0; eaten < 150; ++eaten)
             if (const std::uint32_t item = random.below(items.size()); items.present(item))
                 items.consume(item, tick);
@@ -137,16 +155,17 @@ TEST(Items, AtExactlyTheRadiusAreFoundAndOfEquallyNearOnesTheLowestIdIsNearest) 
     for (int i = 0; i < 4000; ++i) {
         const std::uint32_t a = random.below(400), b = random.below(400);
         // A place just as far from both, on the whole units there are.
-        const Coordinate x = items.x()[a] / 2 + items.x()[b] / 2, y = items.y()[a] / 2 + items.y()[b] / 2;
+        const Coordinate x = items.all()[a].x / 2 + items.all()[b].x / 2,
+                         y = items.all()[a].y / 2 + items.all()[b].y / 2;
         const float square = square_to(items, a, x, y);
         ties += a != b && square == square_to(items, b, x, y);
         const float radius = std::sqrt(square);
-        ASSERT_EQ(items.nearest(x, y, radius).item, nearest_by_trying_all(items, x, y, radius));
+        ASSERT_EQ(nearest_of(items, x, y, radius), nearest_by_trying_all(items, x, y, radius));
         ASSERT_EQ(within(items, x, y, radius), within_by_trying_all(items, x, y, radius));
     }
     EXPECT_GT(ties, 200);
 
-    const Coordinate x = items.x()[7] - to_units(3.0), y = items.y()[7] - to_units(4.0);
+    const Coordinate x = items.all()[7].x - to_units(3.0), y = items.all()[7].y - to_units(4.0);
     EXPECT_FALSE(within(items, x, y, 5).empty());
     EXPECT_TRUE(std::ranges::any_of(within(items, x, y, 5), [](const auto& found) { return found.first == 7; }));
     EXPECT_FALSE(std::ranges::any_of(within(items, x, y, 4.9999f), [](const auto& found) { return found.first == 7; }));
@@ -155,26 +174,26 @@ TEST(Items, AtExactlyTheRadiusAreFoundAndOfEquallyNearOnesTheLowestIdIsNearest) 
 TEST(Items, OfTheSamePlaceGoByTheLowestId) {
     // An island with one place for an item: all lie on it.
     Items items = some_items(50, {to_units(8.0), to_units(8.0)});
-    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 0).item, 0u);
+    EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 0), 0u);
     items.consume(0, 1);
-    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 0).item, 1u);
+    EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 0), 1u);
     items.consume(2, 1);
     items.consume(1, 1);
-    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 1).item, 3u);
-    items.reappear(2, {});
-    EXPECT_EQ(items.nearest(to_units(4.0), to_units(4.0), 1).item, 0u);
+    EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 1), 3u);
+    items.reappear(2, {}, executor);
+    EXPECT_EQ(nearest_of(items, to_units(4.0), to_units(4.0), 1), 0u);
 }
 
 TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
     for (const std::uint32_t respawn_ticks : {1u, 2u, 17u, 100u}) {
         const Area area{to_units(600.0), to_units(400.0)};
         Items items;
-        items.begin_generation(rules(300, respawn_ticks), base::Seed{4}, 0, 1, area, {});
+        items.begin_generation(rules(300, respawn_ticks), base::Seed{4}, 0, 1, area, {}, executor);
         std::vector<std::uint32_t> due(300, 0);
         ASSERT_EQ(items.hash(), recomputed_hash(items, due));
         base::RandomStream random = stream(respawn_ticks);
         for (std::uint32_t tick = 1; tick <= 400; ++tick) {
-            items.reappear(tick, {});
+            items.reappear(tick, {}, executor);
             for (std::uint32_t& when : due)
                 when = when <= tick ? 0 : when;
             for (int eaten = 0; eaten < 3; ++eaten)
@@ -197,10 +216,10 @@ TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
 
 TEST(Items, ThatDoNotReappearStayAway) {
     Items items;
-    items.begin_generation(rules(20, 1, false), base::Seed{5}, 0, 1, {to_units(500.0), to_units(500.0)}, {});
+    items.begin_generation(rules(20, 1, false), base::Seed{5}, 0, 1, {to_units(500.0), to_units(500.0)}, {}, executor);
     items.consume(3, 1);
     for (std::uint32_t tick = 2; tick < 1000; ++tick)
-        items.reappear(tick, {});
+        items.reappear(tick, {}, executor);
     EXPECT_FALSE(items.present(3));
     EXPECT_EQ(items.present_count(), 19u);
 }
@@ -214,33 +233,34 @@ TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
     Items items = some_items(500, area, obstacles);
     const auto expect_clear = [&] {
         for (std::uint32_t item = 0; item < items.size(); ++item) {
-            ASSERT_GE(items.x()[item], to_units(4.0));
-            ASSERT_LE(items.x()[item], area.width - to_units(4.0));
-            ASSERT_GE(items.y()[item], to_units(4.0));
-            ASSERT_LE(items.y()[item], area.height - to_units(4.0));
+            ASSERT_GE(items.all()[item].x, to_units(4.0));
+            ASSERT_LE(items.all()[item].x, area.width - to_units(4.0));
+            ASSERT_GE(items.all()[item].y, to_units(4.0));
+            ASSERT_LE(items.all()[item].y, area.height - to_units(4.0));
             for (std::size_t box = 0; box < obstacles.size(); ++box)
-                ASSERT_FALSE(physics::box_circle(physics::distance_px(obstacles.x[box], items.x()[item]),
-                                                 physics::distance_px(obstacles.y[box], items.y()[item]), {25, 15}, 4)
+                ASSERT_FALSE(physics::box_circle(physics::distance_px(obstacles.x[box], items.all()[item].x),
+                                                 physics::distance_px(obstacles.y[box], items.all()[item].y), {25, 15},
+                                                 4)
                                  .touching);
         }
     };
     expect_clear();
     for (std::uint32_t item = 0; item < items.size(); ++item)
         items.consume(item, 1);
-    EXPECT_EQ(items.nearest(to_units(200.0), to_units(150.0), 1000).item, Items::none);
-    items.reappear(2, obstacles);
+    EXPECT_EQ(nearest_of(items, to_units(200.0), to_units(150.0), 1000), Items::none);
+    items.reappear(2, BoxGrid{area, obstacles}, executor);
     EXPECT_EQ(items.present_count(), 500u);
     expect_clear();
 }
 
 TEST(Items, ReappearElsewhere) {
     Items items = some_items(100, {to_units(1000.0), to_units(1000.0)});
-    const std::vector<Coordinate> x = items.x();
+    const auto before = items.all();
     for (std::uint32_t item = 0; item < items.size(); ++item)
         items.consume(item, 5);
-    items.reappear(6, {});
+    items.reappear(6, {}, executor);
     for (std::uint32_t item = 0; item < items.size(); ++item)
-        EXPECT_NE(items.x()[item], x[item]);
+        EXPECT_NE(items.all()[item].x, before[item].x);
 }
 
 } // namespace

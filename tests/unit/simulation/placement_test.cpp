@@ -1,11 +1,18 @@
 #include "server/simulation/placement.h"
 
+#include "server/base/inline_executor.h"
 #include "server/physics/shapes.h"
 #include "tests/support/chi_square.h"
+#include "tests/support/thread_executor.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace evod::simulation {
@@ -25,7 +32,7 @@ TEST(RandomPlace, IsUniformWithinTheWallsByItsRadius) {
     std::array<std::uint64_t, 100> cells{};
     for (std::uint32_t i = 0; i < 50'000; ++i) {
         base::RandomStream random{key, i};
-        const Place place = random_place(random, area, 10, {});
+        const Place place = random_place(random, area, 10, BoxGrid{});
         const double x = (physics::to_px(place.x) - 10) / 280, y = (physics::to_px(place.y) - 10) / 180;
         ASSERT_TRUE(x >= 0 && x <= 1 && y >= 0 && y <= 1);
         ++cells[static_cast<std::size_t>(std::min(y * 10, 9.0)) * 10 + static_cast<std::size_t>(std::min(x * 10, 9.0))];
@@ -39,7 +46,7 @@ TEST(RandomPlace, ReachesBothEndsOfWhatTheWallsLeave) {
     std::array<std::uint64_t, 4> seen{};
     for (std::uint32_t i = 0; i < 4000; ++i) {
         base::RandomStream random{key, i};
-        const Place place = random_place(random, area, 10, {});
+        const Place place = random_place(random, area, 10, BoxGrid{});
         ++seen.at(static_cast<std::size_t>(place.x - to_units(10.0)));
         ASSERT_EQ(place.y, to_units(10.0));
     }
@@ -54,7 +61,7 @@ TEST(RandomPlace, IsUniformOverWhatTheBoxesLeave) {
     std::array<std::uint64_t, 4> quarters{};
     for (std::uint32_t i = 0; i < 20'000; ++i) {
         base::RandomStream random{key, i};
-        const Place place = random_place(random, area, 10, boxes);
+        const Place place = random_place(random, area, 10, BoxGrid{area, boxes});
         ASSERT_FALSE(physics::box_circle(physics::distance_px(boxes.x[0], place.x),
                                          physics::distance_px(boxes.y[0], place.y), {40, 40}, 10)
                          .touching);
@@ -83,7 +90,8 @@ TEST(PlaceCircles, ClearOfWallsBoxesAndEachOtherInACrowd) {
     base::RandomStream random{base::RandomKey{base::Seed{5}, base::Purpose::ScenarioTest, 0, 0}, 0};
     for (int i = 0; i < 250; ++i)
         radius.push_back(static_cast<float>(random.uniform(2, 16)));
-    const std::vector<Place> places = place_circles(radius, base::Seed{6}, 0, 1, area, all);
+    base::InlineExecutor executor;
+    const std::vector<Place> places = place_circles(radius, base::Seed{6}, 0, 1, area, BoxGrid{area, all}, executor);
     ASSERT_EQ(places.size(), radius.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
         ASSERT_GE(places[i].x, to_units(radius[i]));
@@ -100,10 +108,153 @@ TEST(PlaceCircles, ClearOfWallsBoxesAndEachOtherInACrowd) {
     }
 }
 
+bool clear_of_all(Place place, float radius, const Boxes& boxes) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (physics::box_circle(physics::distance_px(boxes.x[i], place.x), physics::distance_px(boxes.y[i], place.y),
+                                {boxes.half_width[i], boxes.half_height[i]}, radius)
+                .touching)
+            return false;
+    return true;
+}
+
+/// The law, literally: one organism after another, each at the first of its attempts that is clear of everything.
+std::vector<Place> place_one_by_one(const std::vector<float>& radius, base::Seed seed, const Area& area,
+                                    const Boxes& boxes) {
+    const base::RandomKey key{seed, base::Purpose::OrganismPlacement, 2, 3};
+    std::vector<Place> places;
+    for (std::uint32_t id = 0; id < radius.size(); ++id) {
+        base::RandomStream random{key, id};
+        const Coordinate margin = to_units(radius[id]);
+        const auto coordinate = [&](Coordinate size) {
+            return margin + static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(size - 2 * margin) + 1));
+        };
+        bool clear = false;
+        Place place{};
+        while (!clear) {
+            place.x = coordinate(area.width);
+            place.y = coordinate(area.height);
+            clear = clear_of_all(place, radius[id], boxes);
+            for (std::size_t other = 0; other < places.size() && clear; ++other)
+                clear = !circles_touch(places[other], radius[other], place, radius[id]);
+        }
+        places.push_back(place);
+    }
+    return places;
+}
+
+/// An island of which circles of the radii given, and a few boxes, cover two fifths.
+struct Crowd {
+    std::vector<float> radius;
+    Area area;
+    Boxes boxes;
+
+    Crowd(std::size_t count, float least, float greatest) {
+        base::RandomStream random{base::RandomKey{base::Seed{10}, base::Purpose::ScenarioTest, 0, 0}, 0};
+        double covered = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            radius.push_back(static_cast<float>(random.uniform(least, greatest)));
+            covered += std::numbers::pi * static_cast<double>(radius.back()) * static_cast<double>(radius.back());
+        }
+        // As the room for a centre ends before the walls, there is more of it where walls matter.
+        const double side = std::sqrt(covered / 0.4) + 2 * static_cast<double>(greatest);
+        area = {to_units(1.25 * side), to_units(0.8 * side)};
+        const auto half = static_cast<float>(side / 100);
+        for (int i = 0; i < 10; ++i)
+            boxes.add(static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.width))),
+                      static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.height))), half, half / 2,
+                      0);
+    }
+};
+
+bool operator==(const Place& a, const Place& b) {
+    return a.x == b.x && a.y == b.y;
+}
+
+class PlaceCirclesOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(PlaceCirclesOnAnyThreadCount, PutsThemWherePuttingThemOneByOneWould) {
+    support::ThreadExecutor executor{GetParam()};
+    for (const auto& [least, greatest] : {std::pair{20.0f, 20.0f}, {1.0f, 30.0f}})
+        for (const std::size_t count : {1u, 50u, 6000u}) {
+            const Crowd crowd{count, least, greatest};
+            const auto places = place_circles(crowd.radius, base::Seed{11}, 2, 3, crowd.area,
+                                              BoxGrid{crowd.area, crowd.boxes}, executor);
+            const auto expected = place_one_by_one(crowd.radius, base::Seed{11}, crowd.area, crowd.boxes);
+            for (std::size_t i = 0; i < count; ++i)
+                ASSERT_TRUE(places[i] == expected[i]) << i << " of " << count;
+        }
+}
+INSTANTIATE_TEST_SUITE_P(Threads, PlaceCirclesOnAnyThreadCount, testing::Values(1, 2, 3, 8, 13));
+
+TEST(PlaceCircles, ManyAreClearOfEachOtherWhereTheyCoverTwoFifthsOfTheIsland) {
+    const Crowd crowd{40'000, 4, 24};
+    support::ThreadExecutor executor{3};
+    const auto places =
+        place_circles(crowd.radius, base::Seed{12}, 0, 1, crowd.area, BoxGrid{crowd.area, crowd.boxes}, executor);
+    std::vector<std::size_t> by_x(places.size());
+    std::iota(by_x.begin(), by_x.end(), std::size_t{0});
+    std::ranges::sort(by_x, {}, [&](std::size_t i) { return places[i].x; });
+    for (std::size_t a = 0; a < by_x.size(); ++a) {
+        const std::size_t i = by_x[a];
+        ASSERT_TRUE(clear_of_all(places[i], crowd.radius[i], crowd.boxes));
+        for (std::size_t b = a + 1; b < by_x.size(); ++b) {
+            const std::size_t j = by_x[b];
+            if (places[j].x - places[i].x > to_units(49.0))
+                break;
+            ASSERT_FALSE(circles_touch(places[i], crowd.radius[i], places[j], crowd.radius[j])) << i << " and " << j;
+        }
+    }
+}
+
+TEST(PlaceCircles, FindsRoomOnTheLargestIsland) {
+    // Coordinates near the end of 32 bits, and radii as large as there can be.
+    const Area area{to_units(500'000.0), to_units(500'000.0)};
+    base::InlineExecutor executor;
+    const std::vector<float> radius(300, 10'000);
+    const auto places = place_circles(radius, base::Seed{13}, 2, 3, area, {}, executor);
+    const auto expected = place_one_by_one(radius, base::Seed{13}, area, {});
+    for (std::size_t i = 0; i < radius.size(); ++i)
+        ASSERT_TRUE(places[i] == expected[i]) << i;
+}
+
+TEST(BoxGrid, SaysWhatAskingEveryBoxSays) {
+    const Area area{to_units(3000.0), to_units(1000.0)};
+    base::RandomStream random{base::RandomKey{base::Seed{14}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    const auto somewhere = [&] {
+        const auto x = static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.width) + 1));
+        return Place{x, static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.height) + 1))};
+    };
+    for (const std::size_t count : {0u, 1u, 5u, 400u}) {
+        Boxes boxes;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Place place = somewhere();
+            boxes.add(place.x, place.y, static_cast<float>(random.uniform(1, 40)),
+                      static_cast<float>(random.uniform(1, 40)), 0);
+        }
+        const BoxGrid grid{area, boxes};
+        std::size_t clear = 0;
+        for (int query = 0; query < 5000; ++query) {
+            const Place place = somewhere();
+            const auto size = static_cast<float>(random.uniform(0, 60));
+            ASSERT_EQ(grid.clear_of_circle(place, size), clear_of_all(place, size, boxes));
+            bool box_clear = true;
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                box_clear &= !physics::box_box(physics::distance_px(boxes.x[i], place.x),
+                                               physics::distance_px(boxes.y[i], place.y),
+                                               {boxes.half_width[i], boxes.half_height[i]}, {size, size})
+                                  .touching;
+            ASSERT_EQ(grid.clear_of_box(place, size), box_clear);
+            clear += box_clear;
+        }
+        EXPECT_GT(clear, 0u);
+    }
+}
+
 TEST(PlaceCircles, AnOrganismDoesNotMoveWhenOthersAreBornAfterIt) {
     const Area area{to_units(500.0), to_units(500.0)};
-    const auto few = place_circles(std::vector<float>(20, 8), base::Seed{7}, 3, 2, area, {});
-    const auto many = place_circles(std::vector<float>(60, 8), base::Seed{7}, 3, 2, area, {});
+    base::InlineExecutor executor;
+    const auto few = place_circles(std::vector<float>(20, 8), base::Seed{7}, 3, 2, area, {}, executor);
+    const auto many = place_circles(std::vector<float>(60, 8), base::Seed{7}, 3, 2, area, {}, executor);
     for (std::size_t i = 0; i < few.size(); ++i) {
         EXPECT_EQ(few[i].x, many[i].x);
         EXPECT_EQ(few[i].y, many[i].y);

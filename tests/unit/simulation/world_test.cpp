@@ -1,6 +1,8 @@
 #include "server/simulation/world.h"
 
 #include "server/base/inline_executor.h"
+#include "server/simulation/fitness.h"
+#include "tests/support/thread_executor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -105,7 +107,7 @@ TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
         world.advance_tick(executor);
         for (std::size_t i = 0; i < 3; ++i) {
             ASSERT_TRUE(!dead[i] || world.islands()[i].hash() == frozen[i]) << "an island that has died out waits";
-            dead[i] = world.islands()[i].living().size() == 0;
+            dead[i] = world.islands()[i].alive_count() == 0;
             frozen[i] = world.islands()[i].hash();
         }
     }
@@ -257,12 +259,47 @@ TEST_F(WorldTest, ResetGivesTheSameHashesAgain) {
 
 TEST_F(WorldTest, ReplacesEverythingAtUniformPlacesEachGeneration) {
     World world = make();
-    const std::vector<physics::Coordinate> food = world.islands()[0].food().x(), bodies = world.islands()[0].bodies().x;
+    const auto food = world.islands()[0].food().all();
+    const auto bodies = world.islands()[0].bodies().x;
     run_generation(world);
     world.turn_over(executor);
-    EXPECT_NE(world.islands()[0].food().x(), food);
+    EXPECT_NE(world.islands()[0].food().all()[0].x, food[0].x);
     EXPECT_NE(world.islands()[0].bodies().x, bodies);
     EXPECT_EQ(world.islands()[0].food().present_count(), 25u);
+}
+
+TEST_F(WorldTest, GivesTheSameStatisticsOfManyOnAnyThreadCount) {
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.population_size = 30'000;
+    const auto statistics = [&](base::Executor& with) {
+        World world = make();
+        world.advance_tick(with);
+        return world.history().back()[0];
+    };
+    const GenerationStatistics reference = statistics(executor);
+    for (const std::size_t threads : {2, 3, 8, 13}) {
+        support::ThreadExecutor many{threads};
+        const GenerationStatistics s = statistics(many);
+        EXPECT_EQ(s.fitness_mean, reference.fitness_mean);
+        EXPECT_EQ(s.fitness_deviation, reference.fitness_deviation);
+        EXPECT_EQ(s.fitness_median, reference.fitness_median);
+        EXPECT_EQ(s.best_organism, reference.best_organism);
+        EXPECT_EQ(s.fitness_worst, reference.fitness_worst);
+        EXPECT_EQ(s.diversity, reference.diversity);
+    }
+    World world = make();
+    world.advance_tick(executor);
+    std::vector<double> fitness;
+    double sum = 0, squares = 0;
+    for (Eigen::Index i = 0; i < 30'000; ++i) {
+        fitness.push_back(gene_sum(world.islands()[0].born().genes.col(i)));
+        sum += fitness.back();
+        squares += fitness.back() * fitness.back();
+    }
+    EXPECT_NEAR(reference.fitness_mean, sum / 30'000, 1e-8);
+    EXPECT_NEAR(reference.fitness_deviation, std::sqrt(squares / 30'000 - sum / 30'000 * sum / 30'000), 1e-6);
+    EXPECT_EQ(reference.best_organism, std::ranges::max_element(fitness) - fitness.begin());
+    EXPECT_EQ(reference.fitness_worst, std::ranges::min(fitness));
 }
 
 TEST_F(WorldTest, GivesTheStatisticsThatItsOrganismsAddUpTo) {

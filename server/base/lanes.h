@@ -1,0 +1,153 @@
+// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels: files that are compiled once for every
+// processor and once for those with AVX2.
+//
+// Everything here is in an unnamed namespace, and kernels include no other inline code: a function that both copies of
+// a kernel had in common would be kept once by the linker, perhaps as the copy that not every processor can run.
+// Determinism  a lane computes what a loop over single numbers would, so the width changes no bit: + − × ÷ √, rounding
+//              and whole numbers only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#if defined(__x86_64__)
+#include <immintrin.h> // always inlined: what the vector types have no operator for
+#endif
+
+/// The name of this copy of a kernel.
+#if EVOD_LANES == 8
+#define EVOD_KERNEL(name) name##_avx2
+#else
+#define EVOD_KERNEL(name) name##_baseline
+#endif
+
+namespace evod::base {
+namespace {
+
+constexpr std::size_t lanes = EVOD_LANES;
+static_assert(lanes == 4 || lanes == 8);
+
+using Floats = float __attribute__((vector_size(4 * lanes)));
+using Integers = std::int32_t __attribute__((vector_size(4 * lanes)));
+using Words = std::uint32_t __attribute__((vector_size(4 * lanes)));
+using Longs = std::uint64_t __attribute__((vector_size(4 * lanes))); // half as many, twice as wide
+
+template <class Vector, class T>
+inline Vector load(const T* from) {
+    static_assert(sizeof(T) == 4);
+    Vector vector;
+    __builtin_memcpy(&vector, from, sizeof vector);
+    return vector;
+}
+
+template <class Vector, class T>
+inline void store(T* to, Vector vector) {
+    static_assert(sizeof(T) == 4);
+    __builtin_memcpy(to, &vector, sizeof vector);
+}
+
+/// All lanes the same.
+inline Floats all_lanes(float value) {
+    return value - Floats{};
+}
+inline Integers all_lanes(std::int32_t value) {
+    return value - Integers{};
+}
+inline Words all_lanes(std::uint32_t value) {
+    return value - Words{};
+}
+
+inline Floats to_floats(Integers v) {
+    return __builtin_convertvector(v, Floats);
+}
+
+inline Floats square_root(Floats v) {
+#if defined(__x86_64__) && EVOD_LANES == 8
+    return (Floats)_mm256_sqrt_ps((__m256)v);
+#elif defined(__x86_64__)
+    return (Floats)_mm_sqrt_ps((__m128)v);
+#else
+    for (std::size_t i = 0; i < lanes; ++i)
+        v[i] = __builtin_sqrtf(v[i]);
+    return v;
+#endif
+}
+
+/// The nearest whole number, halves to even.
+inline Integers round_to_integers(Floats v) {
+#if defined(__x86_64__) && EVOD_LANES == 8
+    return (Integers)_mm256_cvtps_epi32((__m256)v);
+#elif defined(__x86_64__)
+    return (Integers)_mm_cvtps_epi32((__m128)v);
+#else
+    Integers rounded{};
+    for (std::size_t i = 0; i < lanes; ++i)
+        rounded[i] = static_cast<std::int32_t>(__builtin_lrintf(v[i]));
+    return rounded;
+#endif
+}
+
+/// Bit i is set where lane i of a comparison holds.
+inline unsigned bits_of(Integers mask) {
+#if defined(__x86_64__) && EVOD_LANES == 8
+    return static_cast<unsigned>(_mm256_movemask_ps((__m256)mask));
+#elif defined(__x86_64__)
+    return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
+#else
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < lanes; ++i)
+        bits |= (mask[i] != 0 ? 1u : 0u) << i;
+    return bits;
+#endif
+}
+
+/// The lower halves of the 64-bit lanes, multiplied to 64 bits.
+inline Longs multiply_low_halves(Longs a, Longs b) {
+#if defined(__x86_64__) && EVOD_LANES == 8
+    return (Longs)_mm256_mul_epu32((__m256i)a, (__m256i)b);
+#elif defined(__x86_64__)
+    return (Longs)_mm_mul_epu32((__m128i)a, (__m128i)b);
+#else
+    return (a & 0xffff'ffffu) * (b & 0xffff'ffffu);
+#endif
+}
+
+/// The even and the odd 32-bit lanes, as the lower halves of 64-bit lanes; what the upper halves hold is undefined.
+inline Longs even_lanes(Words v) {
+    return (Longs)v;
+}
+inline Longs odd_lanes(Words v) {
+    return (Longs)v >> 32;
+}
+/// The other way: lower halves to the even and odd lanes.
+inline Words interleave(Longs even, Longs odd) {
+    return (Words)((even & 0xffff'ffffu) | odd << 32);
+}
+
+/// Lane 2i of a and of b side by side, as one 64-bit lane, a's the lower; the same of lanes 2i + 1.
+inline Longs even_pairs(Words a, Words b) {
+#if EVOD_LANES == 8
+    return (Longs)__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+#else
+    return (Longs)__builtin_shufflevector(a, b, 0, 4, 2, 6);
+#endif
+}
+inline Longs odd_pairs(Words a, Words b) {
+#if EVOD_LANES == 8
+    return (Longs)__builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+#else
+    return (Longs)__builtin_shufflevector(a, b, 1, 5, 3, 7);
+#endif
+}
+
+/// 64-bit lanes with their halves exchanged: rotated by 32.
+inline Longs exchanged_halves(Longs v) {
+    const auto words = (Words)v;
+#if EVOD_LANES == 8
+    return (Longs)__builtin_shufflevector(words, words, 1, 0, 3, 2, 5, 4, 7, 6);
+#else
+    return (Longs)__builtin_shufflevector(words, words, 1, 0, 3, 2);
+#endif
+}
+
+} // namespace
+} // namespace evod::base

@@ -1,0 +1,65 @@
+// Draws for many entities at once, for kernels (lanes.h): lane for lane what random.h and elementary.h give for one.
+#pragma once
+
+#include "server/base/lanes.h"
+
+namespace evod::base {
+namespace {
+
+struct WordPairs {
+    Words first, second;
+};
+
+/// RandomKey::pair(entity, tick), where counter and key are pair_counter(tick) and pair_key(): Philox2x32-10.
+inline WordPairs philox_pairs(Words entity, std::uint32_t counter, std::uint32_t key) {
+    struct Counter {
+        Longs first, second;
+    };
+    // Even and odd lanes apart, each as the lower half of a product's width; upper halves may hold anything.
+    Counter even{even_lanes(entity), Longs{} + counter}, odd{odd_lanes(entity), Longs{} + counter};
+    const Longs multiplier = Longs{} + 0xd256d193u;
+    const auto round = [&](Counter& words, std::uint32_t round_key) {
+        const Longs product = multiply_low_halves(words.first, multiplier);
+        words = {product >> 32 ^ words.second ^ (Longs{} + round_key), product};
+    };
+    for (int i = 0; i < 10; ++i, key += 0x9e3779b9u) {
+        round(even, key);
+        round(odd, key);
+    }
+    return {interleave(even.first, odd.first), interleave(even.second, odd.second)};
+}
+
+/// unit_float() of each word.
+inline Floats unit_floats(Words words) {
+    return to_floats((Integers)(words >> 8)) * 0x1p-24f;
+}
+
+struct Directions {
+    Floats x, y;
+};
+
+/// direction() of each word.
+inline Directions directions(Words words) {
+    const Words quarter = (words + 0x2000'0000u) >> 30;
+    const Floats angle =
+        to_floats((Integers)(words - (quarter << 30))) * static_cast<float>(2 * 3.14159265358979323846 / 4294967296.0);
+    const Floats square = angle * angle;
+    // The coefficients are 1/n!, as direction() has them.
+    Floats sine = all_lanes(static_cast<float>(1.0 / 362880));
+    sine = sine * square - static_cast<float>(1.0 / 5040);
+    sine = sine * square + static_cast<float>(1.0 / 120);
+    sine = sine * square - static_cast<float>(1.0 / 6);
+    sine = (sine * square + 1.0f) * angle;
+    Floats cosine = all_lanes(static_cast<float>(1.0 / 40320));
+    cosine = cosine * square - static_cast<float>(1.0 / 720);
+    cosine = cosine * square + static_cast<float>(1.0 / 24);
+    cosine = cosine * square - 0.5f;
+    cosine = cosine * square + 1.0f;
+    const Integers swapped = (quarter & 1u) != 0u;
+    const Words sign_x = ((quarter + 1u) & 2u) << 30, sign_y = (quarter & 2u) << 30; // of the quarters 1, 2; 2, 3
+    const Floats x = swapped ? sine : cosine, y = swapped ? cosine : sine;
+    return {(Floats)((Words)x ^ sign_x), (Floats)((Words)y ^ sign_y)};
+}
+
+} // namespace
+} // namespace evod::base

@@ -1,0 +1,55 @@
+// Reordering: puts columns into another order, with what is void left out; all columns of one entity by the same order.
+//
+// Threads      a column is read in blocks side by side.
+#pragma once
+
+#include "server/base/column.h"
+#include "server/base/executor.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace evod::physics {
+
+/// Kernels take several bodies at once; the columns that they read are a multiple of this long.
+constexpr std::size_t lanes_max = 8;
+constexpr std::size_t padded(std::size_t size) {
+    return (size + lanes_max - 1) / lanes_max * lanes_max;
+}
+
+class Reordering {
+  public:
+    /// order  indices into the columns, none twice.
+    /// spare  working memory, kept by the caller so that no column needs its own.
+    Reordering(std::span<const std::uint32_t> order, base::Column<std::uint32_t>& spare, base::Executor& executor)
+        : order_{order}, spare_{spare}, executor_{executor} {}
+
+    std::size_t size() const { return order_.size(); }
+
+    /// Element i becomes what order[i] was; `filling` fills up to padded(size()).
+    template <class T>
+    void apply(base::Column<T>& column, T filling) const {
+        static_assert(sizeof(T) == sizeof(std::uint32_t));
+        constexpr std::size_t grain = 8192;
+        spare_.resize(order_.size());
+        executor_.parallel_for(order_.size(), grain, [&](base::Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i)
+                std::memcpy(&spare_[i], &column[order_[i]], sizeof(T));
+        });
+        executor_.parallel_for(order_.size(), grain, [&](base::Range range) {
+            std::memcpy(&column[range.begin], &spare_[range.begin], (range.end - range.begin) * sizeof(T));
+        });
+        column.resize(order_.size());
+        column.resize(padded(order_.size()), filling);
+    }
+
+  private:
+    std::span<const std::uint32_t> order_;
+    base::Column<std::uint32_t>& spare_;
+    base::Executor& executor_;
+};
+
+} // namespace evod::physics

@@ -1,0 +1,124 @@
+// A kernel: compiled once per set of instructions; see base/lanes.h for what it may include.
+#include "server/simulation/organism_kernels.h"
+
+#include "server/base/hash_lanes.h"
+#include "server/base/lanes.h"
+#include "server/base/random_lanes.h"
+
+namespace evod::simulation {
+namespace {
+
+using namespace evod::base; // lanes
+
+constexpr float px = 1.0f / 4096; // px_per_unit
+
+void append(FoundIndices& found, std::size_t begin, unsigned bits) {
+    for (; bits != 0; bits &= bits - 1)
+        found.indices[found.count++] = static_cast<std::uint32_t>(begin) + static_cast<unsigned>(__builtin_ctz(bits));
+}
+
+/// to − from, px; see physics::distance_px.
+Floats distances(Integers from, Integers to) {
+    return to_floats((Integers)((Words)to - (Words)from)) * px;
+}
+
+Floats lesser(Floats a, Floats b) {
+    return b < a ? b : a;
+}
+
+void find_stale(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale) {
+    for (std::size_t i = begin; i < end; i += lanes)
+        if (const unsigned bits = bits_of(load<Floats>(others + i) < 0.0f); bits != 0)
+            append(stale, i, bits);
+}
+
+struct Offset {
+    Floats x, y, square;
+};
+
+Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Integers y) {
+    const Floats dx = distances(x, load<Integers>(view.x + i)), dy = distances(y, load<Integers>(view.y + i));
+    return {dx, dy, dx * dx + dy * dy};
+}
+
+void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+            float* force_x, float* force_y) {
+    for (std::size_t i = begin; i < end; i += lanes) {
+        store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
+
+        const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
+        const Offset food = offset_to_nearest(columns.food, i, x, y),
+                     poison = offset_to_nearest(columns.poison, i, x, y);
+        const Floats food_radius = load<Floats>(columns.food.radius + i),
+                     poison_radius = load<Floats>(columns.poison.radius + i);
+        const Integers sees_food = food.square <= food_radius * food_radius;
+        const Integers sees_poison = poison.square <= poison_radius * poison_radius;
+        const Integers afraid =
+            rules.always_flee ? sees_poison : sees_poison & (~sees_food | (poison.square < food.square));
+
+        const WordPairs words = philox_pairs(load<Words>(columns.id + i), rules.pair_counter, rules.pair_key);
+        const Floats impulse = load<Floats>(columns.impulse + i);
+        const Integers flees = afraid & (unit_floats(words.second) * rules.certain_impulse < impulse);
+
+        const Floats ahead_x = food.x - load<Floats>(columns.velocity_x + i) * rules.lookahead_s;
+        const Floats ahead_y = food.y - load<Floats>(columns.velocity_y + i) * rules.lookahead_s;
+        const Floats way_x = flees ? -poison.x : ahead_x, way_y = flees ? -poison.y : ahead_y;
+        const Floats square = way_x * way_x + way_y * way_y;
+        const Integers to_or_from = flees | sees_food, straight = to_or_from & (square != 0.0f);
+        const Floats size = (to_or_from ? impulse : load<Floats>(columns.normal_speed + i)) * rules.force_per_unit;
+        const Floats share = size / square_root(square);
+        const Directions random = directions(words.first);
+        store(force_x + (i - begin), straight ? way_x * share : random.x * size);
+        store(force_y + (i - begin), straight ? way_y * share : random.y * size);
+    }
+}
+
+/// Whether the items of the view may be touched.
+Integers follow_view(const ViewColumns& view, std::size_t i, Integers x, Integers y, Floats way, Floats body_radius) {
+    const Offset nearest = offset_to_nearest(view, i, x, y);
+    Floats others = load<Floats>(view.others + i);
+    others -= way + (others * 1e-6f + 0.002f); // a little more, for all rounding of distances and places
+    const Floats reach = body_radius + view.item_radius, radius = load<Floats>(view.radius + i);
+    const Integers good = (others > 0.0f) & (lesser(nearest.square, radius * radius) < others * others);
+    store(view.others + i, good ? others : all_lanes(-1.0f));
+    return (nearest.square <= reach * reach) | (others <= reach);
+}
+
+void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
+            FoundIndices& at_poison) {
+    for (std::size_t i = begin; i < end; i += lanes) {
+        const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
+        const Floats way_x = distances(load<Integers>(columns.seen_x + i), x);
+        const Floats way_y = distances(load<Integers>(columns.seen_y + i), y);
+        const Floats way = square_root(way_x * way_x + way_y * way_y);
+        store(columns.seen_x + i, x);
+        store(columns.seen_y + i, y);
+        const Floats body_radius = load<Floats>(columns.body_radius + i);
+        if (const unsigned bits = bits_of(follow_view(columns.food, i, x, y, way, body_radius)); bits != 0)
+            append(at_food, i, bits);
+        if (const unsigned bits = bits_of(follow_view(columns.poison, i, x, y, way, body_radius)); bits != 0)
+            append(at_poison, i, bits);
+    }
+}
+
+HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t begin, std::size_t end,
+               FoundIndices& dying) {
+    HashSums sums;
+    const std::uint32_t kind_key = kind * 0x85ebca6bu;
+    for (std::size_t i = begin; i < end; i += lanes) {
+        const Floats health = load<Floats>(columns.health + i);
+        const Integers there = health >= -__FLT_MAX__;
+        sums.add(load<Words>(columns.id + i) + kind_key, load<Words>(columns.x + i), load<Words>(columns.y + i),
+                 load<Words>(columns.velocity_x + i), load<Words>(columns.velocity_y + i), (Words)health, there);
+        if (const unsigned bits = bits_of(there & (health <= 0.0f)); bits != 0)
+            append(dying, i, bits);
+    }
+    return {sum_of(sums.low), sum_of(sums.high)};
+}
+
+} // namespace
+
+extern const OrganismKernels EVOD_KERNEL(organism_kernels);
+const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, follow, hash};
+
+} // namespace evod::simulation

@@ -1,0 +1,22 @@
+// World names: what a world may be called, wherever a name is read.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+
+namespace evod::simulation {
+
+/// A name has 1 to world_name_bytes_max of the characters that is_world_name_character allows.
+constexpr std::size_t world_name_bytes_max = 64;
+constexpr std::string_view world_name_allowed = "1 to 64 of a-z A-Z 0-9 _ -";
+
+constexpr bool is_world_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+constexpr bool is_world_name(std::string_view name) {
+    return !name.empty() && name.size() <= world_name_bytes_max && std::ranges::all_of(name, is_world_name_character);
+}
+
+} // namespace evod::simulation

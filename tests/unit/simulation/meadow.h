@@ -1,0 +1,129 @@
+// Meadow: organisms, food and poison put where a test wants them, and their ticks in the order of an island's
+// (server/simulation/island.h), one part after the other, so that a test can look between them.
+#pragma once
+
+#include "server/base/inline_executor.h"
+#include "server/physics/step.h"
+#include "server/simulation/behaviour.h"
+#include "server/simulation/feeding.h"
+#include "server/simulation/items.h"
+#include "server/simulation/living.h"
+#include "server/simulation/sight.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace evod::simulation {
+
+struct Meadow {
+    physics::Area area;
+    physics::Circles bodies;
+    physics::Boxes boxes;
+    Living living;
+    Items food, poison;
+    physics::StepParameters step{.integration =
+                                     physics::integration(physics::Integrator::SymplecticEuler, 1.0 / 60, 0.06),
+                                 .restitution = 0.8f,
+                                 .max_speed_px_s = 600};
+    BehaviourRules rules{
+        .flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 1};
+    base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
+    base::InlineExecutor executor;
+    physics::Stepper stepper;
+    Sight sight;
+    Feeding food_feeding, poison_feeding;
+    std::uint32_t tick = 0;
+
+    /// At rest; the id is its number among those added.
+    void add_organism(physics::Coordinate x, physics::Coordinate y, const evolution::Chromosome& genes) {
+        const BodyShape shape = body_shape(genes(evolution::BodySize), Parameters{});
+        const auto id = static_cast<std::uint32_t>(bodies.size());
+        bodies.add({.id = id, .x = x, .y = y, .radius = shape.radius_px, .mass = shape.mass_kg});
+        living.resize(bodies.size());
+        living.put(id, genes, Parameters{});
+    }
+
+    void put_items(const std::vector<Place>& foods, const std::vector<Place>& poisons, float radius_px, bool respawn) {
+        const auto put = [&](Items& items, const std::vector<Place>& places, base::Purpose respawn_purpose) {
+            items.begin_at({.placement = base::Purpose::FoodPlacement,
+                            .respawn_purpose = respawn_purpose,
+                            .kind = 2,
+                            .count = static_cast<std::uint32_t>(places.size()),
+                            .radius_px = radius_px,
+                            .respawn = respawn,
+                            .respawn_ticks = 1},
+                           places, base::Seed{1}, area, executor);
+        };
+        put(food, foods, base::Purpose::FoodRespawn);
+        put(poison, poisons, base::Purpose::PoisonRespawn);
+    }
+
+    /// Once everything is in its place.
+    void begin() {
+        sight.begin(bodies, living, food, poison);
+        stepper.near().forget();
+    }
+
+    OrganismColumns columns() { return organism_columns(bodies, living, sight, food, poison); }
+
+    /// Items reappear, and all know what is nearest.
+    void perceive() {
+        ++tick;
+        if (stepper.near().worn(bodies, boxes)) {
+            stepper.near().sort(bodies, boxes, area, executor);
+            stepper.near().list(bodies, boxes, executor);
+        }
+        food.reappear(tick, {}, executor);
+        poison.reappear(tick, {}, executor);
+        sight.notice_changes(bodies, stepper.near(), living, food, poison, executor);
+        sight.look(bodies, living, food, poison, {0, bodies.size()});
+    }
+
+    /// All choose and move, and touch what they touch.
+    void act() {
+        const std::size_t blocks = physics::block_count(bodies.size());
+        stepper.begin(bodies, boxes, area, step);
+        ChosenForces forces;
+        for (std::size_t block = 0; block < blocks; ++block) {
+            live_and_choose(columns(), rules, key, tick, physics::circles_of_block(bodies.size(), block), forces);
+            stepper.accelerate(bodies, block, {forces.x.data(), forces.y.data()});
+        }
+        stepper.collide(bodies, boxes, executor);
+        food_feeding.begin(blocks);
+        poison_feeding.begin(blocks);
+        for (std::size_t block = 0; block < blocks; ++block) {
+            stepper.move(bodies, block);
+            const base::Range range = physics::circles_of_block(bodies.size(), block);
+            std::uint32_t food_indices[physics::circles_per_block], poison_indices[physics::circles_per_block];
+            FoundIndices at_food{food_indices}, at_poison{poison_indices};
+            organism_kernels().follow(columns(), range.begin, range.end, at_food, at_poison);
+            food_feeding.find_touches(block, {food_indices, at_food.count}, bodies, food);
+            poison_feeding.find_touches(block, {poison_indices, at_poison.count}, bodies, poison);
+        }
+        stepper.finish(boxes);
+        food_feeding.award();
+        poison_feeding.award();
+    }
+
+    /// An item and the body that gets it.
+    struct Meal {
+        std::uint32_t item, body;
+    };
+    std::vector<Meal> meals(const Feeding& feeding) const {
+        std::vector<Meal> meals;
+        for (std::size_t block = 0; block < physics::block_count(bodies.size()); ++block)
+            for (const Touch& touch : feeding.touches(block))
+                if (touch.gets_it)
+                    meals.push_back({touch.item, touch.body});
+        return meals;
+    }
+
+    void eat() {
+        for (const Meal& meal : meals(food_feeding))
+            food.consume(meal.item, tick);
+        for (const Meal& meal : meals(poison_feeding))
+            poison.consume(meal.item, tick);
+    }
+};
+
+} // namespace evod::simulation
