@@ -1,11 +1,14 @@
 """What a viewer costs the simulation, and how long commands take, on a real evod.
 
-    viewer_cost.py EVOD MESSAGES [organisms] [runs]
+    viewer_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
 The same ticks of the same run are simulated again and again at full speed on one thread, by turns with a subscriber at
 30 pictures a second and without one; what is compared is the processor time of the simulation thread for those ticks.
 """
+import argparse
+import json
 import os
+import re
 import secrets
 import socket
 import statistics
@@ -15,17 +18,22 @@ import sys
 import threading
 import time
 
-evod_path, messages_path = sys.argv[1:3]
-organisms = int(sys.argv[3]) if len(sys.argv) > 3 else 10_000
-runs = int(sys.argv[4]) if len(sys.argv) > 4 else 11
-sys.path.insert(0, messages_path)
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("evod", help="the program")
+parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("--organisms", type=int, default=10_000)
+parser.add_argument("--runs", type=int, default=11, help="pairs of runs")
+parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+options = parser.parse_args()
+sys.path.insert(0, options.messages)
 
 from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w  # noqa: E402
 
-area_px2 = organisms * 46_080
-parameters = {"population_size": organisms, "food_count": organisms * 3, "poison_count": organisms * 2,
+area_px2 = options.organisms * 46_080
+parameters = {"population_size": options.organisms, "food_count": options.organisms * 3,
+              "poison_count": options.organisms * 2,
               "island_width_px": (area_px2 * 16 / 9) ** 0.5, "island_height_px": (area_px2 * 9 / 16) ** 0.5}
-first_tick, last_tick = 60, 60 + max(100, 6_000_000 // organisms)
+first_tick, last_tick = 60, 60 + max(100, 6_000_000 // options.organisms)
 
 
 class Client:
@@ -70,9 +78,9 @@ class Client:
             time.sleep(0.005)
 
 
-def start(*options):
+def start(*arguments):
     began = time.perf_counter()
-    process = subprocess.Popen([evod_path, "--port", "0", *options], stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([options.evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
     line = process.stdout.readline()
     port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
     Client(port)
@@ -86,82 +94,125 @@ def simulation_thread_s(pid):
     raise RuntimeError("no simulation thread")
 
 
-def median_ms(values):
-    return f"median {statistics.median(values) * 1e3:.2f} ms, worst {max(values) * 1e3:.2f} ms"
+class Reader(threading.Thread):
+    """Reads what a viewer is sent, and counts it, until its connection is shut down."""
+
+    def __init__(self, viewer):
+        super().__init__()
+        self.viewer, self.pictures, self.picture_bytes = viewer, 0, 0
+        self.start()
+
+    def run(self):
+        try:
+            while True:
+                channel, body = self.viewer.frame()
+                if channel == 2:
+                    self.pictures += 1
+                    self.picture_bytes = len(body)
+        except (EOFError, OSError):
+            pass
+
+    def finish(self):
+        self.viewer.socket.shutdown(socket.SHUT_RDWR)
+        self.join()
 
 
-starts = []
-for _ in range(9):
-    process, port, took = start()
-    starts.append(took)
+def measure_starts():
+    """Seconds from exec to the first client's welcome, several times."""
+    starts = []
+    for _ in range(9):
+        process, _, took = start()
+        starts.append(took)
+        process.terminate()
+        process.wait()
+    return starts
+
+
+def measure_memory():
+    """The most memory that a server with the default world at full speed takes, in bytes."""
+    process, port, _ = start()
+    control = Client(port)
+    control.call(create_world=c.CreateWorld(name="w", seed=1))
+    control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+    control.call(run=c.Run(world="w"))
+    time.sleep(5)
+    peak_kib = re.search(r"VmHWM:\s+(\d+)", open(f"/proc/{process.pid}/status").read())[1]
     process.terminate()
     process.wait()
-print(f"from exec to the first welcome: {median_ms(starts)}")
+    return int(peak_kib) * 1024
 
-process, port, _ = start("--threads", "1")
-control = Client(port)
-control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=[
-    w.ParameterAssignment(name=n, value=w.ParameterValue(**{"count" if isinstance(v, int) else "real": v}))
-    for n, v in parameters.items()]))
-control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
 
-per_tick = {True: [], False: []}
-rates = {True: [], False: []}
-pictures = picture_bytes = 0
-for run in range(2 * runs):
-    watched = run % 2 == 1
-    control.call(reset_world=c.ResetWorld(world="w"))
-    viewer = None
-    if watched:
-        viewer = Client(port)
-        viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=30))
+def measure_viewer(process, port, control):
+    """Seconds of the simulation thread per tick, by whether a viewer watched; how many pictures, and bytes of one."""
+    per_tick = {False: [], True: []}
+    pictures = 0
+    for run in range(2 * options.runs):
+        watched = run % 2 == 1
+        control.call(reset_world=c.ResetWorld(world="w"))
+        reader = None
+        if watched:
+            viewer = Client(port)
+            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=30))
+            reader = Reader(viewer)
+        control.run_to(first_tick)
+        before = simulation_thread_s(process.pid)
+        control.run_to(last_tick)
+        per_tick[watched].append((simulation_thread_s(process.pid) - before) / (last_tick - first_tick))
+        if reader:
+            reader.finish()
+            pictures += reader.pictures
+    return per_tick, pictures, reader.picture_bytes
 
-        def read_on():
-            global pictures, picture_bytes
-            try:
-                while True:
-                    channel, body = viewer.frame()
-                    if channel == 2:
-                        pictures += 1
-                        picture_bytes = len(body)
-            except (EOFError, OSError):
-                pass
 
-        reader = threading.Thread(target=read_on)
-        reader.start()
-    control.run_to(first_tick)
-    before, began = simulation_thread_s(process.pid), time.perf_counter()
-    control.run_to(last_tick)
-    rates[watched].append((last_tick - first_tick) / (time.perf_counter() - began))
-    per_tick[watched].append((simulation_thread_s(process.pid) - before) / (last_tick - first_tick))
-    if viewer:
-        viewer.socket.shutdown(socket.SHUT_RDWR)
-        reader.join()
-
-alone, watched = (statistics.median(per_tick[x]) for x in (False, True))
-ratios = sorted(b / a for a, b in zip(per_tick[False], per_tick[True]))
-print(f"{organisms} organisms, {parameters['food_count'] + parameters['poison_count']} items, "
-      f"{last_tick - first_tick} ticks, {runs} pairs of runs; pictures of {picture_bytes} bytes, {pictures} of them")
-print(f"simulation thread, alone:   {alone * 1e6:.0f} µs a tick")
-print(f"simulation thread, watched: {watched * 1e6:.0f} µs a tick")
-print(f"a viewer at 30 Hz costs it {100 * (statistics.median(ratios) - 1):+.2f} % "
-      f"(pairs {100 * (ratios[0] - 1):+.2f} to {100 * (ratios[-1] - 1):+.2f} %)")
-
-control.call(run=c.Run(world="w"))
-for name, request in (("a command, beside that world at full speed", {"set_speed": c.SetSpeed(world="w", speed=w.Speed(max=True))}),
-                      ("a query, beside it", {"list_worlds": c.ListWorlds()})):
+def time_calls(control, count, **request):
     times = []
-    for _ in range(300):
+    for _ in range(count):
         began = time.perf_counter()
         control.call(**request)
         times.append(time.perf_counter() - began)
-    print(f"{name}: {median_ms(times)}")
-control.call(pause=c.Pause(world="w"))
-times = []
-for _ in range(1000):
-    began = time.perf_counter()
+    return times
+
+
+def spread_ms(values):
+    return {"median": 1e3 * statistics.median(values), "min": 1e3 * min(values), "max": 1e3 * max(values)}
+
+
+def measure():
+    starts = measure_starts()
+    memory_bytes = measure_memory()
+    process, port, _ = start("--threads", "1")
+    control = Client(port)
+    control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=[
+        w.ParameterAssignment(name=n, value=w.ParameterValue(**{"count" if isinstance(v, int) else "real": v}))
+        for n, v in parameters.items()]))
+    control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+    per_tick, pictures, picture_bytes = measure_viewer(process, port, control)
+    control.call(run=c.Run(world="w"))
+    command_beside = time_calls(control, 300, set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+    query_beside = time_calls(control, 300, list_worlds=c.ListWorlds())
     control.call(pause=c.Pause(world="w"))
-    times.append(time.perf_counter() - began)
-print(f"a command to a server at rest: {median_ms(times)}")
-process.terminate()
-process.wait()
+    command_at_rest = time_calls(control, 1000, pause=c.Pause(world="w"))
+    process.terminate()
+    process.wait()
+    rises = [100 * (watched / alone - 1) for alone, watched in zip(per_tick[False], per_tick[True])]
+    return {"organisms": options.organisms, "items": parameters["food_count"] + parameters["poison_count"],
+            "ticks": last_tick - first_tick, "pairs": options.runs,
+            "start_ms": spread_ms(starts), "default_world_memory_bytes": memory_bytes,
+            "tick_alone_ms": spread_ms(per_tick[False]), "tick_watched_ms": spread_ms(per_tick[True]),
+            "viewer_rise_percent": {"median": statistics.median(rises), "min": min(rises), "max": max(rises)},
+            "pictures": pictures, "picture_bytes": picture_bytes,
+            "command_at_rest_ms": spread_ms(command_at_rest), "command_beside_ms": spread_ms(command_beside),
+            "query_beside_ms": spread_ms(query_beside)}
+
+
+def main():
+    figures = measure()
+    if options.json:
+        print(json.dumps(figures))
+        return
+    for name, value in figures.items():
+        parts = value.items() if isinstance(value, dict) else [("", value)]
+        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))
+
+
+main()

@@ -2,23 +2,13 @@
 //
 // items_per_second is organism-ticks per second: organisms alive at the start of each tick, summed, by processor time.
 #include "server/base/inline_executor.h"
-#include "server/simulation/experiment.h"
 #include "server/simulation/world.h"
+#include "tests/bench/experiment.h"
 
 #include <benchmark/benchmark.h>
 
-#include <fstream>
-#include <sstream>
-
 namespace evod {
 namespace {
-
-simulation::Parameters experiment(const std::string& name) {
-    std::ifstream file{EVOD_EXPERIMENTS "/" + name + ".json"};
-    std::ostringstream text;
-    text << file.rdbuf();
-    return simulation::parse_experiment(text.str()).value().parameters;
-}
 
 void advance(benchmark::State& state, const simulation::Parameters& parameters) {
     base::InlineExecutor executor;
@@ -34,16 +24,14 @@ void advance(benchmark::State& state, const simulation::Parameters& parameters) 
 
 /// Turnovers of generations included, as they come.
 void default_world(benchmark::State& state) {
-    advance(state, experiment("default"));
+    advance(state, bench::experiment("default"));
 }
 BENCHMARK(default_world)->Unit(benchmark::kMicrosecond)->MinTime(3);
 
-void bench_world(benchmark::State& state) {
-    simulation::Parameters parameters = experiment("bench");
-    parameters.population_size = static_cast<std::uint32_t>(state.range(0));
-    advance(state, parameters);
+void benchmark_world(benchmark::State& state) {
+    advance(state, bench::bench_world(static_cast<std::uint32_t>(state.range(0))));
 }
-BENCHMARK(bench_world)->Arg(100)->Arg(1'000)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond)->MinTime(3);
+BENCHMARK(benchmark_world)->Arg(100)->Arg(1'000)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond)->MinTime(3);
 
 } // namespace
 } // namespace evod

@@ -1,0 +1,32 @@
+// The experiments that benchmarks run: files of experiments/, at any population.
+#pragma once
+
+#include "server/simulation/experiment.h"
+
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace evod::bench {
+
+/// The parameters of experiments/NAME.json; throws if there is no such file.
+inline simulation::Parameters experiment(const std::string& name) {
+    const std::string path = EVOD_EXPERIMENTS "/" + name + ".json";
+    std::ifstream file{path};
+    if (!file)
+        throw std::runtime_error{"cannot read " + path};
+    std::ostringstream text;
+    text << file.rdbuf();
+    return simulation::parse_experiment(text.str()).value().parameters;
+}
+
+/// The benchmark world: 46,080 px², 2.5 food and 1.5 poison to each organism.
+inline simulation::Parameters bench_world(std::uint32_t organisms) {
+    simulation::Parameters parameters = experiment("bench");
+    parameters.population_size = organisms;
+    return parameters;
+}
+
+} // namespace evod::bench

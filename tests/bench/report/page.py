@@ -1,0 +1,301 @@
+"""docs/PERFORMANCE.md from the results: every {{name}} of the template is a method here.
+
+A number stands in the page only if it comes from the results; what is kept from earlier days is in by_hand.md.in, with
+its date.
+"""
+import pathlib
+import re
+
+from .figures import count, digits, megabytes, minus, table, with_spread
+from .sections import columns, measured_ticks, warm_up_ticks
+
+folder = pathlib.Path(__file__).resolve().parent
+program_names = {"evod": "evod", "box2d": "Box2D", "chipmunk_hash": "Chipmunk, hash", "chipmunk_tree": "Chipmunk, tree",
+                 "all_pairs": "all pairs", "galib": "GAlib", "deap": "DEAP"}
+
+
+class Page:
+    def __init__(self, results):
+        self.results = results
+
+    def text(self):
+        def value(match):
+            method = getattr(self, match[1])
+            return str(method(*match[2].split()) if match[2] else method())
+        text = (folder / "PERFORMANCE.md.in").read_text()
+        return re.sub(r"\{\{(\w+)((?: [^{} ]+)*)\}\}", value, text)
+
+    # Where and when
+
+    def machine(self):
+        about, load = self.results["about"], self.results["load"]
+        model = f"{about['processor']} (family {about['family']}, model {about['model']}" + \
+                (", KVM guest or the like)" if about["virtual"] else ")")
+        rows = [["machine", f"{about['cores']} cores of {model}, {about['memory_gib']} GiB"],
+                ["system", f"{about['system']}, Linux {about['kernel']}"],
+                ["compiler", f"{about['compiler']}, preset `release` ({about['flags']})"],
+                ["evod", f"version {about['version']}, commit {about['commit']}"],
+                ["date", about["date"]],
+                ["beside", ", ".join(f"{name} {version}" for name, version in about["packages"].items())],
+                ["load", f"{load['load_before']} before; while it ran, other programs kept "
+                         f"{load['others_cores']} cores busy"],
+                ["took", f"{load['minutes']} minutes, {about['repeats']} runs of everything" +
+                         (", **a quick look only**" if about["quick"] else "") +
+                         (", **the rest is older than " + ", ".join(about["only"]) + "**" if "only" in about else "")]]
+        return table(["", ""], rows)
+
+    def repeats(self):
+        return self.results["about"]["repeats"]
+
+    def warm_up_ticks(self):
+        return warm_up_ticks
+
+    def measured_ticks(self):
+        return measured_ticks
+
+    # The workload
+
+    def _rows(self, **wanted):
+        return [row for row in self.results["workload"] if all(row[key] == value for key, value in wanted.items())]
+
+    def _row(self, **wanted):
+        rows = self._rows(**wanted)
+        return rows[0] if rows else None
+
+    def _populations(self):
+        return sorted({row["organisms"] for row in self.results["workload"]})
+
+    def _rate(self, program, organisms, spatial_order=False):
+        row = self._row(program=program, organisms=organisms, threads=1, spatial_order=spatial_order)
+        return row and row["organism_ticks_per_processor_s"]["median"]
+
+    def _best_engine(self, organisms):
+        """The fastest engine other than evod, however its bodies were created: its row, or None."""
+        rows = [row for row in self._rows(organisms=organisms, threads=1)
+                if row["program"] not in ("evod", "all_pairs")]
+        return max(rows, key=lambda row: row["organism_ticks_per_processor_s"]["median"], default=None)
+
+    def engines(self):
+        present = {row["program"] for row in self.results["workload"]}
+        programs = [name for name in program_names if name in present]
+        rows = []
+        for organisms in self._populations():
+            for spatial_order in (False, True):
+                measured = {name: self._row(program=name, organisms=organisms, threads=1, spatial_order=spatial_order)
+                            for name in programs}
+                if not any(measured.values()):
+                    continue
+                cells = [with_spread(row["organism_ticks_per_processor_s"], 1e-6) if row else "" for row in
+                         measured.values()]
+                rows.append([count(organisms) + (", in spatial order" if spatial_order else ""), *cells])
+        return table(["organisms", *(program_names[name] for name in programs)], rows)
+
+    def ratios(self):
+        rows = []
+        for organisms in self._populations():
+            best = self._best_engine(organisms)
+            if best is None:
+                continue
+            evod = self._rate("evod", organisms)
+            against = [digits(evod / rate) if (rate := self._rate(name, organisms)) else ""
+                       for name in ("box2d", "chipmunk_hash", "all_pairs")]
+            order = ", in spatial order" if best["spatial_order"] else ""
+            rows.append([count(organisms), *against,
+                         f"{digits(evod / best['organism_ticks_per_processor_s']['median'])} "
+                         f"({program_names[best['program']]}{order})"])
+        return table(["organisms", "× Box2D", "× Chipmunk, hash", "× all pairs", "× the fastest of the others"], rows)
+
+    def agreement(self):
+        rows = self.results["agreement"]
+        evod = rows[0]
+
+        def beside(row, key):
+            text = digits(row[key])
+            if row is evod or not evod[key]:
+                return text
+            return minus(f"{text} ({100 * (row[key] / evod[key] - 1):+.1f} %)")
+        keys = ("food_per_organism_s", "poison_per_organism_s", "speed_mean_px_s", "seeing_food_share", "deaths_share",
+                "organism_ticks")
+        return table(["", "food eaten, an organism and s", "poison", "mean speed, px/s", "share that sees food",
+                      "share that dies", "organism-ticks"],
+                     [[program_names[row["program"]], *(beside(row, key) for key in keys)] for row in rows])
+
+    def agreement_scenes(self):
+        return self.results["agreement"][0]["scenes"]
+
+    def agreement_worst(self, key):
+        """The greatest difference to evod of any program, in per cent."""
+        rows = self.results["agreement"]
+        return f"{max(abs(100 * (row[key] / rows[0][key] - 1)) for row in rows[1:]):.1f}"
+
+    # Threads and populations
+
+    def threads(self):
+        rows = []
+        for islands, measured in ((1, self.results["workload"]), (64, self.results["islands"])):
+            for organisms in sorted({row["organisms"] for row in measured}):
+                one, two = ([row["organism_ticks_per_s"] for row in measured if row["program"] == "evod" and
+                             row["organisms"] == organisms and row["threads"] == n][0] for n in (1, 2))
+                where = f"{islands} islands of {count(organisms)}" if islands > 1 else count(organisms)
+                rows.append([where, with_spread(one, 1e-6), with_spread(two, 1e-6),
+                             f"{two['median'] / one['median']:.2f}", digits(1e9 / one["median"]),
+                             digits(1e9 / two["median"]), digits(two["median"] / (60 * islands * organisms))])
+        return table(["organisms", "1 thread, M/s", "2 threads, M/s", "2 : 1", "1 thread, ns", "2 threads, ns",
+                      "2 threads, × real time"], rows)
+
+    def densities(self):
+        names = {"as it is": "the benchmark world of 20,000, as it is",
+                 "far-sighted": "genes food_radius and poison_radius 1,000 px",
+                 "thin": "an island of the same area, a hundred times as long as wide",
+                 "default density": "as dense as the default world",
+                 "crowded": "all of the greatest size, bodies cover 0.3 of the island",
+                 "few organisms": "10 organisms, 1,000,000 food",
+                 "many islands": "64 islands of 500"}
+        rows = {row["world"]: row for row in self.results.get("densities", [])}
+        return table(["world", "ns an organism and tick", "× as it is", "µs a tick"],
+                     [[names[name], with_spread(row["ns"]),
+                       digits(row["ns"]["median"] / rows["as it is"]["ns"]["median"]),
+                       digits(row["tick_us"]["median"])] for name in names if (row := rows.get(name))])
+
+    def instruction_sets(self):
+        names = {"baseline": "evod, baseline instructions", "avx2": "evod, AVX2"}
+        rows = self.results.get("instruction_sets", [])
+        key = "organism_ticks_per_processor_s"
+        return table(["20,000 organisms, one thread", "M organism-ticks/s", "× baseline"],
+                     [[names[row["instructions"]], with_spread(row[key], 1e-6),
+                       digits(row[key]["median"] / rows[0][key]["median"])] for row in rows])
+
+    def _ns(self, organisms):
+        return 1e9 / self._row(program="evod", organisms=organisms, threads=1)["organism_ticks_per_s"]["median"]
+
+    def growth(self):
+        """How much dearer an organism and tick is in the largest population than at 2,000."""
+        return f"{self._ns(self._populations()[-1]) / self._ns(2_000):.2f}"
+
+    def largest(self):
+        return count(self._populations()[-1])
+
+    # Roofs
+
+    def roofs(self):
+        rows = []
+        for key, name in (("memory_gb_per_s", "triad in memory, 3 × 256 MiB a thread, GB/s"),
+                          ("cache_8_mib_gb_per_s", "triad in cache, 8 MiB a thread, GB/s"),
+                          ("cache_192_kib_gb_per_s", "triad in cache, 192 KiB a thread, GB/s"),
+                          ("instructions_g_per_s", "additions that wait for nothing, G instructions/s")):
+            rows.append([name, *(digits(self.results["machine"][n][key]) for n in ("one_thread", "two_threads"))])
+        return table(["", "1 thread", "2 threads"], rows)
+
+    def columns(self):
+        rows = [[entry["pass"], entry["columns"], entry["read"], entry["written"]] for entry in columns()]
+        rows.append(["**together**", "", *(sum(entry[way] for entry in columns()) for way in ("read", "written"))])
+        return table(["pass", "columns", "bytes read", "written"], rows)
+
+    def bytes_per_organism_tick(self):
+        return sum(entry["read"] + entry["written"] for entry in columns())
+
+    def _counted(self, work):
+        entry = [e for e in self.results["instructions"] if e["work"] == work][-1]
+        return entry["instructions"] / entry["units"]
+
+    def instructions_per(self, work):
+        return digits(self._counted(work))
+
+    def _largest_rate(self):
+        return self._row(program="evod", organisms=self._populations()[-1], threads=1)["organism_ticks_per_s"]["median"]
+
+    def bandwidth_share(self):
+        roof = self.results["machine"]["one_thread"]["memory_gb_per_s"]
+        return f"{100 * self._largest_rate() * self.bytes_per_organism_tick() / (1e9 * roof):.0f}"
+
+    def instruction_share(self):
+        roof = self.results["machine"]["one_thread"]["instructions_g_per_s"]
+        rate = self._row(program="evod", organisms=2_000, threads=1)["organism_ticks_per_s"]["median"]
+        return f"{100 * rate * self._counted('ticks') / (1e9 * roof):.0f}"
+
+    def counts(self):
+        names = {"ticks": "a tick of an organism, benchmark world of 2,000",
+                 "generation": "a tick of an organism, default world, breeding and placing included",
+                 "breeding": "a chromosome bred, of 20,000"}
+        return table(["", "instruction set", "instructions"],
+                     [[names[e["work"]], e["instruction_set"], digits(e["instructions"] / e["units"])]
+                      for e in self.results["instructions"]])
+
+    def phases(self):
+        rows = self.results["phases"]
+        if not rows:
+            return table([], [])
+        populations = sorted({row["organisms"] for row in rows})
+        ns = {(row["phase"], row["organisms"]): row["ns"]["median"] for row in rows}
+        parts = [name for name in dict.fromkeys(row["phase"] for row in rows) if name != "whole tick"]
+        whole = {n: ns["whole tick", n] for n in populations}
+        body = [[name, *(digits(ns[name, n]) for n in populations)] for name in parts]
+        body += [["**together**", *(digits(sum(ns[name, n] for name in parts)) for n in populations)],
+                 ["an island's tick, by one clock", *(digits(whole[n]) for n in populations)],
+                 ["state hash, share of a tick", *(f"{100 * ns['hash', n] / whole[n]:.1f} %" for n in populations)]]
+        return table(["ns an organism and tick", *map(count, populations)], body) + \
+            "\n\n![phases of a tick](performance/phases.svg)"
+
+    # The genetic algorithm
+
+    def genetic(self):
+        rows = self.results["genetic"]
+        evod = {row["population"]: row["ms_per_generation"]["median"] for row in rows if row["program"] == "evod"}
+        return table(["", "population", "generations", "ms a generation", "× evod", "best fitness at the end"],
+                     [[program_names[row["program"]], count(row["population"]), row["generations"],
+                       with_spread(row["ms_per_generation"]),
+                       digits(row["ms_per_generation"]["median"] / evod[row["population"]]),
+                       with_spread(row["fitness_best"])] for row in rows])
+
+    def breeding(self):
+        found = self.results["breeding"]
+        small = [row for row in found if row["chromosomes"] == 100_000]
+        default = [row for row in small if row["choice"] == "population_model=hybrid"][0]
+        slowest = [row for row in small if row["choice"] == "slowest choices together"][0]
+        single = sorted((row for row in small if row is not slowest), key=lambda row: row["ms"]["median"])
+        rows = [["100,000", "the defaults", 1, with_spread(default["ms"])],
+                ["100,000", f"the fastest single choice, `{single[0]['choice']}`", 1, with_spread(single[0]["ms"])],
+                ["100,000", f"the slowest single choice, `{single[-1]['choice']}`", 1, with_spread(single[-1]["ms"])],
+                ["100,000", "the slowest choices together", 1, with_spread(slowest["ms"])]]
+        rows += [[count(row["chromosomes"]), "the defaults", row["threads"], with_spread(row["ms"])]
+                 for row in found if row["chromosomes"] == 1_000_000]
+        return table(["chromosomes", "choices", "threads", "ms"], rows)
+
+    # Whole programs
+
+    def runs(self):
+        default, large = self.results["runs"]["default"], self.results["runs"]["large"]
+        return table(["", ""], [
+            ["`evod run`, default world, one thread, × real time", with_spread(default["real_time_factor"])],
+            ["the same, M organism-ticks/s", with_spread(default["m_organism_ticks_per_s"])],
+            [f"`evod run`, benchmark world of {count(large['organisms'])}: start-up, s", digits(large["start_up_s"])],
+            ["the same: turnover of a generation, s", digits(large["turnover_s"])],
+            ["the same: most memory (`VmHWM`), MB", megabytes(large["memory_bytes"])],
+            ["the same: bytes of memory an organism", digits(large["memory_bytes"] / large["organisms"])]])
+
+    def server(self):
+        figures = self.results["server"]
+        rise = figures["viewer_rise_percent"]
+        return table(["", "median (least – greatest)"], [
+            ["from exec to the first accepted client's welcome, ms", with_spread(figures["start_ms"])],
+            [f"a viewer at 30 pictures/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, "
+             "free running: rise of the simulation thread's processor time per tick",
+             minus(f"{rise['median']:+.2f} % ({rise['min']:+.2f} – {rise['max']:+.2f} %)")],
+            ["one of its pictures, bytes", count(figures["picture_bytes"])],
+            ["a command to a server at rest, ms", with_spread(figures["command_at_rest_ms"])],
+            ["a command beside that world at full speed, ms", with_spread(figures["command_beside_ms"])],
+            ["a query beside it, ms", with_spread(figures["query_beside_ms"])]])
+
+    def drawing(self):
+        return table(["organisms", "ms of processor time a drawn frame, OpenGL in software included"],
+                     [[count(row["organisms"]), digits(row["ms"])] for row in self.results["drawing"]])
+
+    def sizes(self):
+        disk = self.results["runs"]["disk_bytes"]
+        rows = [["memory of a server with the default world after 5 s at full speed (`VmHWM`), MB",
+                 megabytes(self.results["server"]["default_world_memory_bytes"])]]
+        rows += [[f"`{name}` on disk, MB", megabytes(size)] for name, size in disk.items()]
+        return table(["", ""], rows)
+
+    def by_hand(self):
+        return (folder / "by_hand.md.in").read_text().strip()
