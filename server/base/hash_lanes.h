@@ -12,10 +12,19 @@ struct HashSums {
 
     /// lanes_used  a comparison: all bits set where a lane counts.
     void add(Words kind_and_id, Words a, Words b, Words c, Words d, Words e, Integers lanes_used) {
-        Hash even = hash_of(even_lanes(kind_and_id), even_lanes(a), even_lanes(b), even_lanes(c), even_lanes(d),
-                            even_lanes(e), even_pairs(a, b), even_pairs(c, d));
-        Hash odd = hash_of(odd_lanes(kind_and_id), odd_lanes(a), odd_lanes(b), odd_lanes(c), odd_lanes(d), odd_lanes(e),
-                           odd_pairs(a, b), odd_pairs(c, d));
+        const Words key = kind_and_id * 0x9e3779b1u;
+        a ^= key;
+        b ^= key ^ 0x27d4eb2fu;
+        c ^= key ^ 0xc2b2ae35u;
+        d ^= key ^ 0x165667b1u;
+        e ^= key;
+        const Words last = key ^ 0xd3a2646cu;
+        Hash even = hash_of(multiply_low_halves(even_lanes(a), even_lanes(b)),
+                            multiply_low_halves(even_lanes(c), even_lanes(d)),
+                            multiply_low_halves(even_lanes(e), even_lanes(last)), even_pairs(a, b), even_pairs(c, d));
+        Hash odd =
+            hash_of(multiply_low_halves(odd_lanes(a), odd_lanes(b)), multiply_low_halves(odd_lanes(c), odd_lanes(d)),
+                    multiply_low_halves(odd_lanes(e), odd_lanes(last)), odd_pairs(a, b), odd_pairs(c, d));
         if (bits_of(lanes_used) != (1u << lanes) - 1) { // seldom
             const auto used = (Words)lanes_used;
             even = {even.low & even_pairs(used, used), even.high & even_pairs(used, used)};
@@ -29,15 +38,9 @@ struct HashSums {
     struct Hash {
         Longs low, high;
     };
-    /// Of single words, the upper halves may hold anything.
-    static Hash hash_of(Longs kind_and_id, Longs a, Longs b, Longs c, Longs d, Longs e, Longs a_and_b, Longs c_and_d) {
-        const Longs start = multiply_low_halves(kind_and_id, Longs{} + 0x9e3779b1u);
-        const Longs key = start + (start << 32), high_key = key >> 32;
-        const Longs first = multiply_low_halves(a ^ key, b ^ high_key);
-        const Longs second = multiply_low_halves(c ^ key ^ 0xc2b2ae35u, d ^ high_key ^ 0x27d4eb2fu);
-        const Longs third = multiply_low_halves(e ^ key ^ 0x165667b1u, high_key ^ 0xd3a2646cu);
-        Longs l = first + c_and_d + third;
-        Longs h = second + a_and_b + exchanged_halves(third);
+    static Hash hash_of(Longs ab, Longs cd, Longs fifth, Longs a_and_b, Longs c_and_d) {
+        Longs l = ab + c_and_d + fifth;
+        Longs h = cd + a_and_b + exchanged_halves(fifth);
         l += multiply_low_halves(h, h >> 32);
         h ^= exchanged_halves(l);
         h += multiply_low_halves(l, l >> 32);

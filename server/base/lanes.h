@@ -45,6 +45,15 @@ inline void store(T* to, Vector vector) {
     __builtin_memcpy(to, &vector, sizeof vector);
 }
 
+/// Asks for what columns hold a little further on than index i. Hardware follows fewer columns at once than kernels go
+/// over: without this, a tick of 1,000,000 organisms takes a sixth longer.
+template <class... Columns>
+inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
+    constexpr std::size_t ahead = 512, per_cache_line = 16, into_second_level = 2;
+    if (i % per_cache_line == 0)
+        (__builtin_prefetch(columns + i + ahead, 0, into_second_level), ...);
+}
+
 /// All lanes the same.
 inline Floats all_lanes(float value) {
     return value - Floats{};
@@ -54,6 +63,13 @@ inline Integers all_lanes(std::int32_t value) {
 }
 inline Words all_lanes(std::uint32_t value) {
     return value - Words{};
+}
+
+inline Floats lesser(Floats a, Floats b) {
+    return b < a ? b : a;
+}
+inline Floats greater(Floats a, Floats b) {
+    return a < b ? b : a;
 }
 
 inline Floats to_floats(Integers v) {

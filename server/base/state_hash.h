@@ -72,13 +72,12 @@ struct HashedWords {
 /// (Black, Halevi, Krawczyk, Krovetz & Rogaway 1999, "UMAC").
 inline StateHash hash_of(const HashedWords& words) {
     const auto product = [](std::uint64_t a, std::uint64_t b) { return (a & 0xffff'ffff) * (b & 0xffff'ffff); };
-    const std::uint64_t start = product(words.id + words.kind * 0x85ebca6bu, 0x9e3779b1u);
-    const std::uint64_t key = start + (start << 32), high_key = key >> 32;
-    const std::uint64_t first = product(words.a ^ key, words.b ^ high_key);
-    const std::uint64_t second = product(words.c ^ key ^ 0xc2b2ae35u, words.d ^ high_key ^ 0x27d4eb2fu);
-    const std::uint64_t third = product(words.e ^ key ^ 0x165667b1u, high_key ^ 0xd3a2646cu);
-    std::uint64_t low = first + (words.c | std::uint64_t{words.d} << 32) + third;
-    std::uint64_t high = second + (words.a | std::uint64_t{words.b} << 32) + (third >> 32 | third << 32);
+    const std::uint32_t key = (words.id + words.kind * 0x85ebca6bu) * 0x9e3779b1u;
+    const std::uint32_t a = words.a ^ key, b = words.b ^ key ^ 0x27d4eb2fu;
+    const std::uint32_t c = words.c ^ key ^ 0xc2b2ae35u, d = words.d ^ key ^ 0x165667b1u;
+    const std::uint64_t fifth = product(words.e ^ key, key ^ 0xd3a2646cu);
+    std::uint64_t low = product(a, b) + (c | std::uint64_t{d} << 32) + fifth;
+    std::uint64_t high = product(c, d) + (a | std::uint64_t{b} << 32) + (fifth >> 32 | fifth << 32);
     // Each step can be undone, so entities that differ here still differ at the end.
     low += product(high, high >> 32);
     high ^= low >> 32 | low << 32;

@@ -7,6 +7,7 @@
 
 #include "server/base/column.h"
 #include "server/physics/reordering.h"
+#include "server/physics/units.h"
 
 #include <cmath>
 #include <cstddef>
@@ -14,10 +15,6 @@
 #include <vector>
 
 namespace evod::physics {
-
-using Coordinate = std::int32_t;
-constexpr Coordinate units_per_px = 4096;
-constexpr float px_per_unit = 1.0f / units_per_px;
 
 /// The nearest whole unit, halves to even; |px| < 2^19.
 inline Coordinate to_units(double px) {
@@ -39,10 +36,6 @@ inline Coordinate difference(Coordinate a, Coordinate b) {
 inline float distance_px(Coordinate a, Coordinate b) {
     return static_cast<float>(difference(a, b)) * px_per_unit;
 }
-
-/// Where what is not there pretends to be: further from any place on an island than anything reaches, so that loops
-/// need not ask whether it is there.
-constexpr Coordinate elsewhere = -(1 << 30);
 
 /// An island's inside: 0 … width, 0 … height. The walls are half-planes beyond it.
 struct Area {

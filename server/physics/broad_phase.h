@@ -31,13 +31,25 @@ constexpr std::size_t circles_per_block = 512;
 constexpr std::size_t block_count(std::size_t circles) {
     return (circles + circles_per_block - 1) / circles_per_block;
 }
-/// How many blocks one piece of a parallel loop takes: all, where handing pieces over costs more than it saves.
+/// Whether a loop over so many circles is worth handing pieces of it over to other threads.
+constexpr bool worth_cutting(std::size_t circles) {
+    return circles >= 4096;
+}
+/// How many blocks one piece of a parallel loop takes: all, where it is not worth cutting.
 constexpr std::size_t blocks_per_piece(std::size_t circles) {
-    constexpr std::size_t circles_worth_cutting = 4096;
-    return circles < circles_worth_cutting ? block_count(circles_worth_cutting) : 1;
+    return worth_cutting(circles) ? 1 : block_count(circles) + 1;
 }
 constexpr base::Range circles_of_block(std::size_t circles, std::size_t block) {
     return {block * circles_per_block, std::min((block + 1) * circles_per_block, circles)};
+}
+
+/// As many lists as there are blocks, kept warm between ticks: a new one has room for what a block usually needs.
+template <class T>
+void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks, std::size_t usually_enough) {
+    const std::size_t before = list_of_block.size();
+    list_of_block.resize(blocks);
+    for (std::size_t block = before; block < blocks; ++block)
+        list_of_block[block].reserve(usually_enough);
 }
 
 /// The circles that are not void, strip by strip, each strip in order of (x, id).
@@ -123,6 +135,11 @@ class NearPairs {
     /// What the next worn() goes by. strayed_square: of the circle furthest from its anchor, px².
     void circles_strayed(float strayed_square) { strayed_square_ = strayed_square; }
 
+    /// All anew, from where bodies are: sort(), then list(). Who wants to reorder circles does so between the two.
+    void renew(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
+        sort(circles, boxes, area, executor);
+        list(circles, boxes, executor);
+    }
     /// Takes the circles' present places for anchors and sorts them.
     void sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor);
     const Strips& strips() const { return strips_; }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t box_bit = 0x8000'0000;
 constexpr std::uint32_t nobody = ~0u;
-constexpr std::size_t contacts_per_piece = 1024;
+constexpr std::size_t contacts_per_piece = 256;
 
 BoxShape shape_of(const Boxes& boxes, std::size_t i) {
     return {boxes.half_width[i], boxes.half_height[i]};
@@ -80,10 +80,7 @@ std::uint32_t identity_of(const Circles& circles, std::uint32_t body) {
 
 void Contacts::begin(const Circles& circles, const Boxes& boxes) {
     constexpr std::size_t usually_enough = 64;
-    const std::size_t before = found_in_block_.size();
-    found_in_block_.resize(block_count(circles.size()));
-    for (std::size_t block = before; block < found_in_block_.size(); ++block)
-        found_in_block_[block].reserve(usually_enough);
+    resize_lists(found_in_block_, block_count(circles.size()), usually_enough);
     left_.reserve(found_in_block_.size() * usually_enough + 8 * boxes.size());
     found_with_boxes_.reserve(8 * boxes.size());
     first_of_circle_.resize(circles.size(), nobody);
@@ -115,8 +112,7 @@ void Contacts::find_with_boxes(const Circles& circles, const Boxes& boxes, const
 
 void Contacts::find(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
     NearPairs near;
-    near.sort(circles, boxes, area, executor);
-    near.list(circles, boxes, executor);
+    near.renew(circles, boxes, area, executor);
     begin(circles, boxes);
     for (std::size_t block = 0; block < found_in_block_.size(); ++block)
         find_among_circles(circles, near, block);

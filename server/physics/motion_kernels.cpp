@@ -2,13 +2,12 @@
 #include "server/physics/motion_kernels.h"
 
 #include "server/base/lanes.h"
+#include "server/physics/units.h"
 
 namespace evod::physics {
 namespace {
 
 using namespace evod::base; // lanes
-
-constexpr float units = 4096, px = 1.0f / 4096; // units_per_px, px_per_unit
 
 Floats accelerated(Floats velocity, Floats force, Floats inverse_mass, const MotionRules& rules) {
     return (velocity + force * inverse_mass * rules.tick_s) * rules.velocity_kept;
@@ -23,6 +22,7 @@ Floats bounced(Integers position, Floats velocity, Integers extent, std::int32_t
 void accelerate(const MotionColumns& columns, const Forces& force, std::size_t begin, std::size_t end,
                 const MotionRules& rules) {
     for (std::size_t i = begin; i < end; i += lanes) {
+        prefetch_ahead(i, columns.inverse_mass);
         const Floats inverse_mass = load<Floats>(columns.inverse_mass + i);
         const Floats old_x = load<Floats>(columns.velocity_x + i), old_y = load<Floats>(columns.velocity_y + i);
         const Floats vx = accelerated(old_x, load<Floats>(force.x + (i - begin)), inverse_mass, rules);
@@ -31,7 +31,7 @@ void accelerate(const MotionColumns& columns, const Forces& force, std::size_t b
             store(columns.drift_x + i, old_x - vx);
             store(columns.drift_y + i, old_y - vy);
         }
-        const Integers extent = round_to_integers(load<Floats>(columns.radius + i) * units);
+        const Integers extent = round_to_integers(load<Floats>(columns.radius + i) * static_cast<float>(units_per_px));
         store(columns.velocity_x + i, bounced(load<Integers>(columns.x + i), vx, extent, rules.width, rules));
         store(columns.velocity_y + i, bounced(load<Integers>(columns.y + i), vy, extent, rules.height, rules));
     }
@@ -59,15 +59,13 @@ Axis kept_inside(Axis axis, Integers extent, std::int32_t size, Integers movable
     return axis;
 }
 
-Floats largest(Floats a, Floats b) {
-    return a > b ? a : b;
-}
-
 MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules) {
     MoveCounts counts;
     Floats strayed{};
     const float limit_square = rules.max_speed * rules.max_speed;
     for (std::size_t i = begin; i < end; i += lanes) {
+        prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.radius,
+                       columns.anchor_x, columns.anchor_y);
         Floats vx = load<Floats>(columns.velocity_x + i), vy = load<Floats>(columns.velocity_y + i);
         Floats moving_x = vx, moving_y = vy;
         if (columns.drift_x != nullptr) {
@@ -91,19 +89,21 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
         if (const unsigned too_fast = bits_of(way_x * way_x + way_y * way_y > radius * radius); too_fast != 0)
             counts.too_fast += static_cast<unsigned>(__builtin_popcount(too_fast));
 
-        const Integers movable = load<Floats>(columns.inverse_mass + i) > 0.0f;
-        const Integers extent = round_to_integers(radius * units);
-        const Axis x = kept_inside({load<Integers>(columns.x + i) + round_to_integers(way_x * units), vx}, extent,
+        const Integers old_x = load<Integers>(columns.x + i);
+        const Integers movable = old_x != elsewhere;
+        const Integers extent = round_to_integers(radius * static_cast<float>(units_per_px));
+        const Axis x = kept_inside({old_x + round_to_integers(way_x * static_cast<float>(units_per_px)), vx}, extent,
                                    rules.width, movable, rules);
-        const Axis y = kept_inside({load<Integers>(columns.y + i) + round_to_integers(way_y * units), vy}, extent,
-                                   rules.height, movable, rules);
+        const Axis y = kept_inside(
+            {load<Integers>(columns.y + i) + round_to_integers(way_y * static_cast<float>(units_per_px)), vy}, extent,
+            rules.height, movable, rules);
         store(columns.x + i, x.position);
         store(columns.y + i, y.position);
         store(columns.velocity_x + i, x.velocity);
         store(columns.velocity_y + i, y.velocity);
-        const Floats away_x = to_floats(x.position - load<Integers>(columns.anchor_x + i)) * px;
-        const Floats away_y = to_floats(y.position - load<Integers>(columns.anchor_y + i)) * px;
-        strayed = largest(strayed, away_x * away_x + away_y * away_y);
+        const Floats away_x = to_floats(x.position - load<Integers>(columns.anchor_x + i)) * px_per_unit;
+        const Floats away_y = to_floats(y.position - load<Integers>(columns.anchor_y + i)) * px_per_unit;
+        strayed = greater(strayed, away_x * away_x + away_y * away_y);
     }
     for (std::size_t lane = 0; lane < lanes; ++lane)
         counts.strayed_square = strayed[lane] > counts.strayed_square ? strayed[lane] : counts.strayed_square;

@@ -33,7 +33,7 @@ class Reordering {
     template <class T>
     void apply(base::Column<T>& column, T filling) const {
         static_assert(sizeof(T) == sizeof(std::uint32_t));
-        constexpr std::size_t grain = 8192;
+        constexpr std::size_t grain = 2048;
         spare_.resize(order_.size());
         executor_.parallel_for(order_.size(), grain, [&](base::Range range) {
             for (std::size_t i = range.begin; i < range.end; ++i)

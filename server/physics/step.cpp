@@ -41,10 +41,8 @@ void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
 
 StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                          const Forces& force, base::Executor& executor) {
-    if (near_.worn(circles, boxes)) {
-        near_.sort(circles, boxes, area, executor);
-        near_.list(circles, boxes, executor);
-    }
+    if (near_.worn(circles, boxes))
+        near_.renew(circles, boxes, area, executor);
     begin(circles, boxes, area, parameters);
     executor.parallel_for(block_count(circles.size()), blocks_per_piece(circles.size()), [&](base::Range blocks) {
         for (std::size_t block = blocks.begin; block < blocks.end; ++block)

@@ -39,7 +39,7 @@ class Stepper {
 
     // The parts of step(), in the order in which they are called.
 
-    /// Which pairs are near; to be renewed by its sort() and list() while it is worn().
+    /// Which pairs are near; to be renewed while it is worn().
     NearPairs& near() { return near_; }
     const NearPairs& near() const { return near_; }
     void begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters);

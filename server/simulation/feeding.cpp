@@ -1,5 +1,7 @@
 #include "server/simulation/feeding.h"
 
+#include "server/physics/broad_phase.h"
+
 #include <bit>
 #include <tuple>
 
@@ -7,10 +9,7 @@ namespace evod::simulation {
 
 void Feeding::begin(std::size_t blocks) {
     constexpr std::size_t usually_enough = 32;
-    const std::size_t before = touches_of_block_.size();
-    touches_of_block_.resize(blocks);
-    for (std::size_t block = before; block < blocks; ++block)
-        touches_of_block_[block].reserve(usually_enough);
+    physics::resize_lists(touches_of_block_, blocks, usually_enough);
     first_of_item_.reserve(4 * blocks * usually_enough);
 }
 

@@ -5,7 +5,6 @@
 #include "server/simulation/placement.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,8 +12,8 @@
 namespace evod::simulation {
 namespace {
 
-// Kinds of entity in the state hash; part of a run's identity.
-enum HashKind : std::uint32_t { OrganismKind = 1, FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
+// Kinds of entity in the state hash beside organisms; part of a run's identity.
+enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
 constexpr std::uint32_t dead = ~0u; // in place of a body's index
@@ -56,7 +55,6 @@ void Island::begin_generation(const Parameters& parameters, std::uint64_t genera
     body_of_.clear();
     stepper_.near().forget();
     renewals_ = 0;
-    organisms_hash_ = {};
 
     std::vector<base::StateHash> hash_of_block((organisms + organisms_per_block - 1) / organisms_per_block);
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
@@ -134,9 +132,16 @@ void Island::place(const Parameters& parameters, std::uint64_t generation, base:
 void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
     if (stepper_.near().worn(bodies_, boxes_))
         renew_near_pairs(executor);
-    food_.reappear(tick, obstacles_, executor);
-    poison_.reappear(tick, obstacles_, executor);
-    sight_.notice_changes(bodies_, stepper_.near(), living_, food_, poison_, executor);
+    for_each_kind(
+        executor,
+        [&] {
+            food_.reappear(tick, obstacles_, executor);
+            sight_.notice_food(bodies_, stepper_.near(), living_, food_, executor);
+        },
+        [&] {
+            poison_.reappear(tick, obstacles_, executor);
+            sight_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor);
+        });
 
     const BehaviourRules rules{.flee_rule = parameters.flee_rule,
                                .lookahead_s = static_cast<float>(parameters.steering_lookahead_s),
@@ -161,8 +166,19 @@ void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base
     const physics::StepCounts step = stepper_.finish(boxes_);
     counts_.too_fast_count += step.too_fast;
     counts_.speed_limit_count += step.speed_limited;
-    feed_and_bury(parameters, tick, executor);
-    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms_hash_ + hash_of_boxes();
+    const base::StateHash organisms = feed_and_bury(parameters, tick, executor);
+    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+}
+
+/// Food and poison, side by side where that pays.
+template <class OfFood, class OfPoison>
+void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
+    executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
+        if (kinds.begin == 0)
+            of_food();
+        if (kinds.end == 2)
+            of_poison();
+    });
 }
 
 void Island::resize_blocks(std::size_t count) {
@@ -193,7 +209,7 @@ void Island::reorder(base::Executor& executor) {
     living_.reorder(reordering);
     sight_.reorder(reordering);
     near.follow_reordering(bodies_, executor);
-    executor.parallel_for(bodies_.size(), 16 * organisms_per_block, [&](base::Range range) {
+    executor.parallel_for(bodies_.size(), 2 * organisms_per_block, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
             body_of_[bodies_.id[i]] = static_cast<std::uint32_t>(i);
     });
@@ -219,14 +235,14 @@ void Island::move(std::size_t block) {
 
     std::uint32_t dying_indices[physics::circles_per_block];
     FoundIndices dying{dying_indices};
-    const HashWords hash = organism_kernels().hash(organisms, OrganismKind, range.begin, range.end, dying);
+    const HashWords hash = organism_kernels().hash(organisms, organism_hash_kind, range.begin, range.end, dying);
     blocks_[block].hash = {hash.low, hash.high};
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
 }
 
-void Island::feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
+base::StateHash Island::feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
     // What happens to organisms, block by block; what happens to the items' grid, one after another.
-    constexpr std::size_t events_worth_cutting = 512;
+    constexpr std::size_t events_worth_cutting = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
     for (const Block& block : blocks_)
         events += block.dying.size();
@@ -235,9 +251,9 @@ void Island::feed_and_bury(const Parameters& parameters, std::uint32_t tick, bas
             feed_and_bury_in_block(parameters, tick, block);
     });
 
-    organisms_hash_ = {};
+    base::StateHash organisms;
     for (const Block& block : blocks_) {
-        organisms_hash_ += block.hash;
+        organisms += block.hash;
         food_.add_to_hash(block.food_hash_change);
         poison_.add_to_hash(block.poison_hash_change);
         counts_.food_eaten += block.food_eaten;
@@ -257,8 +273,9 @@ void Island::feed_and_bury(const Parameters& parameters, std::uint32_t tick, bas
                     items.take_out(touch.item, touch.place);
         }
     };
-    take_out(food_, food_feeding_);
-    take_out(poison_, poison_feeding_);
+    for_each_kind(
+        executor, [&] { take_out(food_, food_feeding_); }, [&] { take_out(poison_, poison_feeding_); });
+    return organisms;
 }
 
 void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t tick, std::size_t index) {
@@ -306,9 +323,9 @@ void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t 
 
 template <class Change>
 void Island::change_health(Block& block, std::uint32_t body, Change&& change) {
-    block.hash -= hash_of_organism(body);
+    block.hash -= hash_of_organism(bodies_, living_, body);
     living_.health[body] = change(living_.health[body]);
-    block.hash += hash_of_organism(body);
+    block.hash += hash_of_organism(bodies_, living_, body);
 }
 
 bool Island::is_dying(std::uint32_t body) const {
@@ -319,22 +336,12 @@ void Island::bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfD
     const std::uint32_t id = bodies_.id[body];
     fate_.cause[id] = cause;
     fate_.lived_ticks[id] = tick;
-    block.hash -= hash_of_organism(body);
+    block.hash -= hash_of_organism(bodies_, living_, body);
     body_of_[id] = dead;
     bodies_.remove(body);
     sight_.remove(body);
     stepper_.near().remove(body);
     living_.health[body] = -std::numeric_limits<float>::infinity();
-}
-
-base::StateHash Island::hash_of_organism(std::size_t body) const {
-    return base::hash_of({.kind = OrganismKind,
-                          .id = bodies_.id[body],
-                          .a = static_cast<std::uint32_t>(bodies_.x[body]),
-                          .b = static_cast<std::uint32_t>(bodies_.y[body]),
-                          .c = std::bit_cast<std::uint32_t>(bodies_.velocity_x[body]),
-                          .d = std::bit_cast<std::uint32_t>(bodies_.velocity_y[body]),
-                          .e = std::bit_cast<std::uint32_t>(living_.health[body])});
 }
 
 base::StateHash Island::hash_of_boxes() const {

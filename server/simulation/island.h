@@ -86,8 +86,8 @@ class Island {
     void reorder(base::Executor& executor);
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
     void move(std::size_t block);
-    void feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
-    base::StateHash hash_of_organism(std::size_t body) const;
+    /// Returns the hash of the living.
+    base::StateHash feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
     base::StateHash hash_of_boxes() const;
     OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
 
@@ -98,6 +98,8 @@ class Island {
         base::StateHash food_hash_change, poison_hash_change;
         std::uint32_t food_eaten = 0, poison_eaten = 0, starved = 0, poisoned = 0;
     };
+    template <class OfFood, class OfPoison>
+    void for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison);
     void resize_blocks(std::size_t count);
     void feed_and_bury_in_block(const Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>
@@ -125,7 +127,6 @@ class Island {
     std::uint32_t alive_count_ = 0;
     base::Column<std::uint32_t> body_of_; // by id: its index, or a number that none has for the dead
     base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
-    base::StateHash organisms_hash_;      // of the living
     base::StateHash hash_;
 
     std::vector<Block> blocks_; // kept warm between ticks

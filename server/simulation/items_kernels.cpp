@@ -2,14 +2,15 @@
 #include "server/simulation/items_kernels.h"
 
 #include "server/base/lanes.h"
+#include "server/physics/units.h"
 
 namespace evod::simulation {
 namespace {
 
 using namespace evod::base; // lanes
+using physics::elsewhere;
 
-constexpr std::int32_t elsewhere = -(1 << 30);
-constexpr float px = 1.0f / 4096; // px_per_unit
+constexpr float px = physics::px_per_unit, units = physics::units_per_px;
 
 template <class T>
 T least(T a, T b) {
@@ -23,13 +24,6 @@ T greatest(T a, T b) {
 /// to − from; wraps around for slots that are elsewhere, which are far all the same.
 Floats distances(std::int32_t from, const std::int32_t* to) {
     return to_floats((Integers)(load<Words>(to) - static_cast<std::uint32_t>(from)));
-}
-
-Floats lesser(Floats a, Floats b) {
-    return b < a ? b : a;
-}
-Floats greater(Floats a, Floats b) {
-    return a < b ? b : a;
 }
 
 float least_lane(Floats v) {
@@ -96,13 +90,13 @@ class Search {
     }
 
     TwoNearest result(float radius) const {
-        const float within = radius * radius * (4096.0f * 4096.0f);
+        const float within = radius * radius * (units * units);
         const float best = least_lane(best_);
         const float others = least(others_square(), within) * (px * px);
         if (best > within)
             return {no_item, elsewhere, elsewhere, within * (px * px), within * (px * px)};
         std::uint32_t place = place_[__builtin_ctz(bits_of(best_ == best))];
-        if (others * (4096.0f * 4096.0f) == best)
+        if (others * (units * units) == best)
             place = lowest_id_at(best, place);
         const ItemBucket& bucket = grid_.buckets[place / ItemBucket::slots];
         return {place, bucket.x[place % ItemBucket::slots], bucket.y[place % ItemBucket::slots], best * (px * px),
@@ -163,7 +157,7 @@ std::uint32_t Search::lowest_id_at(float square, std::uint32_t place) const {
 TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
     const auto [x, y, radius] = query;
     Search search{grid, x, y};
-    const Cells cells = cells_within(grid, x, y, static_cast<std::int64_t>(radius * 4096.0f) + 1);
+    const Cells cells = cells_within(grid, x, y, static_cast<std::int64_t>(radius * units) + 1);
     const std::int64_t more_columns = cells.right - cells.left, more_rows = cells.bottom - cells.top;
     if (more_columns <= 1 && more_rows <= 1) {
         // Nearly always: four buckets, an empty one in the place of what is not needed, so that nothing branches.
@@ -217,7 +211,7 @@ void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* ans
     // Buckets lie anywhere in memory: all are asked for before the first is needed.
     for (std::size_t i = 0; i < count; ++i) {
         const Cells cells =
-            cells_within(grid, queries[i].x, queries[i].y, static_cast<std::int64_t>(queries[i].radius * 4096.0f) + 1);
+            cells_within(grid, queries[i].x, queries[i].y, static_cast<std::int64_t>(queries[i].radius * units) + 1);
         const std::int64_t first = cells.top * grid.columns + cells.left,
                            last = cells.bottom * grid.columns + cells.left;
         __builtin_prefetch(grid.buckets + first);

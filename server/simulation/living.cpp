@@ -1,6 +1,7 @@
 #include "server/simulation/living.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace evod::simulation {
@@ -63,6 +64,16 @@ float health_cap(const evolution::Chromosome& genes, const Parameters& p) {
 BodyShape body_shape(float body_size_gene, const Parameters& p) {
     return {body_size_gene * static_cast<float>(p.radius_per_unit_px),
             body_size_gene * static_cast<float>(p.mass_per_unit_kg)};
+}
+
+base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body) {
+    return base::hash_of({.kind = organism_hash_kind,
+                          .id = bodies.id[body],
+                          .a = static_cast<std::uint32_t>(bodies.x[body]),
+                          .b = static_cast<std::uint32_t>(bodies.y[body]),
+                          .c = std::bit_cast<std::uint32_t>(bodies.velocity_x[body]),
+                          .d = std::bit_cast<std::uint32_t>(bodies.velocity_y[body]),
+                          .e = std::bit_cast<std::uint32_t>(living.health[body])});
 }
 
 void Fate::begin_generation(std::size_t organisms) {

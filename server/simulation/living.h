@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/base/column.h"
+#include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/parameters.h"
@@ -37,6 +38,11 @@ struct BodyShape {
     float radius_px, mass_kg;
 };
 BodyShape body_shape(float body_size_gene, const Parameters& parameters);
+
+/// What organisms are called in the state hash.
+constexpr std::uint32_t organism_hash_kind = 1;
+/// What an organism adds to the state hash; for many at once, organism_kernels().hash.
+base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t body);
 
 /// What became of each organism that was born, by id.
 struct Fate {

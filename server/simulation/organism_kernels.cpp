@@ -4,13 +4,12 @@
 #include "server/base/hash_lanes.h"
 #include "server/base/lanes.h"
 #include "server/base/random_lanes.h"
+#include "server/physics/units.h"
 
 namespace evod::simulation {
 namespace {
 
 using namespace evod::base; // lanes
-
-constexpr float px = 1.0f / 4096; // px_per_unit
 
 void append(FoundIndices& found, std::size_t begin, unsigned bits) {
     for (; bits != 0; bits &= bits - 1)
@@ -19,17 +18,17 @@ void append(FoundIndices& found, std::size_t begin, unsigned bits) {
 
 /// to − from, px; see physics::distance_px.
 Floats distances(Integers from, Integers to) {
-    return to_floats((Integers)((Words)to - (Words)from)) * px;
-}
-
-Floats lesser(Floats a, Floats b) {
-    return b < a ? b : a;
+    return to_floats((Integers)((Words)to - (Words)from)) * physics::px_per_unit;
 }
 
 void find_stale(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale) {
     for (std::size_t i = begin; i < end; i += lanes)
         if (const unsigned bits = bits_of(load<Floats>(others + i) < 0.0f); bits != 0)
             append(stale, i, bits);
+}
+
+void prefetch_view_ahead(std::size_t i, const ViewColumns& view) {
+    prefetch_ahead(i, view.x, view.y, view.others, view.radius);
 }
 
 struct Offset {
@@ -44,6 +43,10 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
 void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
             float* force_x, float* force_y) {
     for (std::size_t i = begin; i < end; i += lanes) {
+        prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.body_radius, columns.id,
+                       columns.health, columns.loss_per_tick, columns.normal_speed, columns.impulse);
+        prefetch_view_ahead(i, columns.food);
+        prefetch_view_ahead(i, columns.poison);
         store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
 
         const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
@@ -87,6 +90,9 @@ Integers follow_view(const ViewColumns& view, std::size_t i, Integers x, Integer
 void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,
             FoundIndices& at_poison) {
     for (std::size_t i = begin; i < end; i += lanes) {
+        prefetch_ahead(i, columns.seen_x, columns.seen_y, columns.id, columns.health);
+        prefetch_view_ahead(i, columns.food);
+        prefetch_view_ahead(i, columns.poison);
         const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
         const Floats way_x = distances(load<Integers>(columns.seen_x + i), x);
         const Floats way_y = distances(load<Integers>(columns.seen_y + i), y);

@@ -89,9 +89,13 @@ void Sight::look(View& view, const Circles& bodies, const base::Column<float>& r
     }
 }
 
-void Sight::notice_changes(const Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
-                           Items& poison, base::Executor& executor) {
+void Sight::notice_food(const Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
+                        base::Executor& executor) {
     notice(food_, bodies, near, living.food_radius, food, executor);
+}
+
+void Sight::notice_poison(const Circles& bodies, const physics::NearPairs& near, const Living& living, Items& poison,
+                          base::Executor& executor) {
     notice(poison_, bodies, near, living.poison_radius, poison, executor);
 }
 

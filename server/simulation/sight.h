@@ -33,9 +33,12 @@ class Sight {
     void look(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
               base::Range range);
 
-    /// Takes note of what has come and gone since the last call. Bodies are where views were last brought up to date.
-    void notice_changes(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living,
-                        Items& food, Items& poison, base::Executor& executor);
+    /// Takes note of what food, or poison, has come and gone since the last call. Bodies are where views were last
+    /// brought up to date. The two may be done side by side.
+    void notice_food(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living, Items& food,
+                     base::Executor& executor);
+    void notice_poison(const physics::Circles& bodies, const physics::NearPairs& near, const Living& living,
+                       Items& poison, base::Executor& executor);
 
     void reorder(const physics::Reordering& reordering);
     /// The body has become void.

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <limits>
 #include <map>
@@ -45,8 +44,6 @@ enum Phase : std::size_t {
     WholeTick,
     phase_count
 };
-/// Kind of entity in the state hash, as in Island.
-constexpr std::uint32_t organism_kind = 1;
 constexpr std::array<const char*, phase_count> phase_names = {
     "near pairs",       "items reappear", "notice changes",   "look", "choose",        "accelerate and find contacts",
     "resolve contacts", "move",           "follow and touch", "hash", "feed and bury", "whole tick"};
@@ -72,16 +69,6 @@ class Laps {
     Times& times_;
     Clock::time_point last_ = Clock::now();
 };
-
-base::StateHash hash_of_organism(const physics::Circles& bodies, const Living& living, std::size_t i) {
-    return base::hash_of({.kind = organism_kind,
-                          .id = bodies.id[i],
-                          .a = static_cast<std::uint32_t>(bodies.x[i]),
-                          .b = static_cast<std::uint32_t>(bodies.y[i]),
-                          .c = std::bit_cast<std::uint32_t>(bodies.velocity_x[i]),
-                          .d = std::bit_cast<std::uint32_t>(bodies.velocity_y[i]),
-                          .e = std::bit_cast<std::uint32_t>(living.health[i])});
-}
 
 /// An island without boxes, with its parts in reach; see Island for what they do.
 class OpenIsland {
@@ -116,7 +103,8 @@ class OpenIsland {
         food_.reappear(tick_, {}, executor_);
         poison_.reappear(tick_, {}, executor_);
         laps.lap(ItemsReappear);
-        sight_.notice_changes(bodies_, stepper_.near(), living_, food_, poison_, executor_);
+        sight_.notice_food(bodies_, stepper_.near(), living_, food_, executor_);
+        sight_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor_);
         laps.lap(ChangesNoticed);
 
         const BehaviourRules rules{.flee_rule = parameters_.flee_rule,
@@ -188,7 +176,7 @@ class OpenIsland {
         laps.lap(Follow);
         std::uint32_t dying_indices[physics::circles_per_block];
         FoundIndices dying{dying_indices};
-        const HashWords hash = organism_kernels().hash(columns(), organism_kind, range.begin, range.end, dying);
+        const HashWords hash = organism_kernels().hash(columns(), organism_hash_kind, range.begin, range.end, dying);
         hash_ += base::StateHash{hash.low, hash.high};
         dying_[block].assign(dying_indices, dying_indices + dying.count);
         laps.lap(Hash);

@@ -15,16 +15,16 @@ namespace evod::scenarios {
 namespace {
 
 const std::map<std::string, std::string> golden_hashes = {
-    {"default_world", "d8410c8b5d813d1023033ee0333a59f8"},
-    {"classic", "0ebc136ce34a3c8d0745fed030ecbff4"},
-    {"crates_and_obstacles_explicit_euler", "f7774b4d7900dbd6093f6112b4e42308"},
-    {"dense_backward_euler", "8de7f59cbde42906d9a6a25821ca6a66"},
-    {"ring_of_four", "3c834e375857ca21f9fdf670ab9b831b"},
-    {"trade_offs_dying_out", "9209a877b5e7ee4fb20548d2acb94590"},
-    {"changes_while_it_runs", "b8ec924ea3caa2031f469d1f39020c17"},
-    {"three_thousand", "29cdaef6beb81d640a008a387624d0f8"},
-    {"twenty_thousand", "bd1e54ae94362c37c66b2b85f07cde5d"},
-    {"far_corner", "65d9635639fa5527cc32f4ed071f3336"},
+    {"default_world", "361930ae0a58d814e3c0d56c1aeae6bc"},
+    {"classic", "745222742554fa5bb60703ea4bb9a9c8"},
+    {"crates_and_obstacles_explicit_euler", "b95f164cd427474b7ebc228e8d95162d"},
+    {"dense_backward_euler", "1b6b0e86c329eae446d59a1e7fab458a"},
+    {"ring_of_four", "ad304a617c7fd41525add0a21421f9c9"},
+    {"trade_offs_dying_out", "62ec6d1321d37ffb842cdf08470f0910"},
+    {"changes_while_it_runs", "054607c7d5928ad7519a05e503e6daad"},
+    {"three_thousand", "c6c09a8e6c529b49ca74a4d66c000fdd"},
+    {"twenty_thousand", "733c6c34850357d87a6ce2d9ae38953e"},
+    {"far_corner", "f5bba82a8a064dbfff81992f98267e52"},
     {"rastrigin", "6f8c8ba85d02b6725b8107a0c1b60946"},
 };
 

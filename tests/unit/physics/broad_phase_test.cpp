@@ -66,8 +66,7 @@ RC_GTEST_PROP(NearPairs, ListEachPairWithinTheSkinOnceAndNoOther, ()) {
     const Scene scene = some_scene(random);
     NearPairs near;
     base::InlineExecutor executor;
-    near.sort(scene.circles, scene.boxes, scene.area, executor);
-    near.list(scene.circles, scene.boxes, executor);
+    near.renew(scene.circles, scene.boxes, scene.area, executor);
     std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
     for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
         for (const NearPairs::Pair& pair : near.circle_pairs(block))
@@ -94,8 +93,7 @@ RC_GTEST_PROP(NearPairs, FindEveryCircleNearAPlaceThoughAllHaveMovedSince, ()) {
     Scene scene = some_scene(random);
     NearPairs near;
     base::InlineExecutor executor;
-    near.sort(scene.circles, scene.boxes, scene.area, executor);
-    near.list(scene.circles, scene.boxes, executor);
+    near.renew(scene.circles, scene.boxes, scene.area, executor);
     const auto way = static_cast<double>(near.skin_px() / 2 / 1.5f);
     for (std::size_t i = 0; i < scene.circles.size(); ++i)
         if (!scene.circles.is_void(i)) {
@@ -130,10 +128,7 @@ TEST(NearPairs, AreWornWhenABodyHasMovedHalfTheSkinAndWhenThereAreOthers) {
     NearPairs near;
     base::InlineExecutor executor;
     EXPECT_TRUE(near.worn(scene.circles, scene.boxes));
-    const auto renew = [&] {
-        near.sort(scene.circles, scene.boxes, scene.area, executor);
-        near.list(scene.circles, scene.boxes, executor);
-    };
+    const auto renew = [&] { near.renew(scene.circles, scene.boxes, scene.area, executor); };
     renew();
     EXPECT_FALSE(near.worn(scene.circles, scene.boxes));
     const float half = near.skin_px() / 2;
@@ -161,8 +156,7 @@ TEST(NearPairs, OfACrowdOnALargeIslandAreNotFarMoreThanTouch) {
         scene.add_circle(random.uniform(50, 1800), random.uniform(50, 1800), 10, 1);
     NearPairs near;
     base::InlineExecutor executor;
-    near.sort(scene.circles, scene.boxes, scene.area, executor);
-    near.list(scene.circles, scene.boxes, executor);
+    near.renew(scene.circles, scene.boxes, scene.area, executor);
     std::size_t pairs = 0;
     for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
         pairs += near.circle_pairs(block).size();

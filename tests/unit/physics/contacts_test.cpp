@@ -105,8 +105,7 @@ TEST(Contacts, AreNotCountedBetweenTheRemoved) {
         scene.add_circle(1000 + 3 * i, 1000, 5, 1);
     NearPairs near;
     base::InlineExecutor executor;
-    near.sort(scene.circles, scene.boxes, scene.area, executor);
-    near.list(scene.circles, scene.boxes, executor);
+    near.renew(scene.circles, scene.boxes, scene.area, executor);
     for (std::size_t i = 0; i < 8; ++i)
         scene.circles.remove(i);
     Contacts contacts;

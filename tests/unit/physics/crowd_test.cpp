@@ -106,8 +106,7 @@ void step_in_parts(Scene& scene, base::Executor& executor, const std::function<v
     Stepper& stepper = scene.stepper;
     const std::vector<float> none(circles_per_block, 0);
     if (stepper.near().worn(scene.circles, scene.boxes)) {
-        stepper.near().sort(scene.circles, scene.boxes, scene.area, executor);
-        stepper.near().list(scene.circles, scene.boxes, executor);
+        stepper.near().renew(scene.circles, scene.boxes, scene.area, executor);
     }
     stepper.begin(scene.circles, scene.boxes, scene.area, scene.parameters);
     for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)

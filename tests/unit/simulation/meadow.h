@@ -69,13 +69,12 @@ struct Meadow {
     /// Items reappear, and all know what is nearest.
     void perceive() {
         ++tick;
-        if (stepper.near().worn(bodies, boxes)) {
-            stepper.near().sort(bodies, boxes, area, executor);
-            stepper.near().list(bodies, boxes, executor);
-        }
+        if (stepper.near().worn(bodies, boxes))
+            stepper.near().renew(bodies, boxes, area, executor);
         food.reappear(tick, {}, executor);
         poison.reappear(tick, {}, executor);
-        sight.notice_changes(bodies, stepper.near(), living, food, poison, executor);
+        sight.notice_food(bodies, stepper.near(), living, food, executor);
+        sight.notice_poison(bodies, stepper.near(), living, poison, executor);
         sight.look(bodies, living, food, poison, {0, bodies.size()});
     }
 
