@@ -58,7 +58,7 @@ void Strips::count_and_place(const Circles& circles, base::Executor& executor) {
 void Strips::sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor) {
     choose_cells(circles.size(), area, reach_px);
     first_.assign(std::size_t{strips_} * columns_ + 1, 0);
-    if (executor.thread_count() > 1 && circles.size() > 16 * circles_per_block)
+    if (executor.thread_count() > 1 && circles.size() > 128 * circles_per_block)
         count_and_place<true>(circles, executor);
     else
         count_and_place<false>(circles, executor);

@@ -285,6 +285,12 @@ void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t 
     for (const Touch& touch : food_feeding_.touches(index)) {
         food_.prefetch_item(touch.item);
         __builtin_prefetch(&fate_.food_eaten[touch.id], 1);
+        __builtin_prefetch(&bodies_.id[touch.body]);
+        __builtin_prefetch(&bodies_.x[touch.body]);
+        __builtin_prefetch(&bodies_.y[touch.body]);
+        __builtin_prefetch(&bodies_.velocity_x[touch.body]);
+        __builtin_prefetch(&bodies_.velocity_y[touch.body]);
+        __builtin_prefetch(&living_.health[touch.body], 1);
     }
     // All food before all poison; equal items, so that the order among each does not matter.
     for (const Touch& touch : food_feeding_.touches(index)) {

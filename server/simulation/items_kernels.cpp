@@ -207,8 +207,7 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
     return search.result(radius);
 }
 
-void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count) {
-    // Buckets lie anywhere in memory: all are asked for before the first is needed.
+void prefetch(const ItemGrid& grid, const ItemQuery* queries, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         const Cells cells =
             cells_within(grid, queries[i].x, queries[i].y, static_cast<std::int64_t>(queries[i].radius * units) + 1);
@@ -219,6 +218,9 @@ void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* ans
         __builtin_prefetch(grid.buckets + last);
         __builtin_prefetch(grid.buckets + last + (cells.right - cells.left));
     }
+}
+
+void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         answers[i] = two_nearest_of(grid, queries[i]);
 }
@@ -226,6 +228,6 @@ void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* ans
 } // namespace
 
 extern const ItemsKernels EVOD_KERNEL(items_kernels);
-const ItemsKernels EVOD_KERNEL(items_kernels) = {two_nearest};
+const ItemsKernels EVOD_KERNEL(items_kernels) = {prefetch, two_nearest};
 
 } // namespace evod::simulation

@@ -43,6 +43,8 @@ struct ItemQuery {
 };
 
 struct ItemsKernels {
+    /// Asks for the memory that two_nearest() will need.
+    void (*prefetch)(const ItemGrid& grid, const ItemQuery* queries, std::size_t count);
     /// Answers queries. The cost of one grows with the number of cells that have to be looked at until both nearest are
     /// known, whatever the radius.
     void (*two_nearest)(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count);

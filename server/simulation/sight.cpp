@@ -61,31 +61,37 @@ void Sight::begin(View& view, const Circles& bodies, const base::Column<float>& 
 
 void Sight::look(const Circles& bodies, const Living& living, const Items& food, const Items& poison,
                  base::Range range) {
-    look(food_, bodies, living.food_radius, food, range);
-    look(poison_, bodies, living.poison_radius, poison, range);
+    for (std::size_t begin = range.begin; begin < range.end; begin += physics::circles_per_block) {
+        const base::Range block{begin, std::min(begin + physics::circles_per_block, range.end)};
+        // Cells of items lie anywhere in memory: those for poison are on their way while food is looked for.
+        Looks for_food, for_poison;
+        begin_look(for_food, food_, bodies, living.food_radius, food, block);
+        begin_look(for_poison, poison_, bodies, living.poison_radius, poison, block);
+        finish_look(for_food, food_, food);
+        finish_look(for_poison, poison_, poison);
+    }
 }
 
-void Sight::look(View& view, const Circles& bodies, const base::Column<float>& radius, const Items& items,
-                 base::Range range) {
-    std::uint32_t indices[physics::circles_per_block];
-    const ItemGrid grid = items.grid();
-    ItemQuery queries[physics::circles_per_block];
+void Sight::begin_look(Looks& looks, const View& view, const Circles& bodies, const base::Column<float>& radius,
+                       const Items& items, base::Range block) {
+    FoundIndices stale{looks.indices};
+    organism_kernels().find_stale(view.others.data(), block.begin, block.end, stale);
+    looks.count = stale.count;
+    for (std::size_t k = 0; k < looks.count; ++k) {
+        const std::uint32_t i = looks.indices[k];
+        looks.queries[k] = {bodies.x[i], bodies.y[i], look_radius(radius[i], bodies.radius[i], items.radius_px())};
+    }
+    items_kernels().prefetch(items.grid(), looks.queries, looks.count);
+}
+
+void Sight::finish_look(const Looks& looks, View& view, const Items& items) {
     TwoNearest found[physics::circles_per_block];
-    for (std::size_t begin = range.begin; begin < range.end; begin += physics::circles_per_block) {
-        FoundIndices stale{indices};
-        organism_kernels().find_stale(view.others.data(), begin,
-                                      std::min(begin + physics::circles_per_block, range.end), stale);
-        for (std::size_t k = 0; k < stale.count; ++k) {
-            const std::uint32_t i = indices[k];
-            queries[k] = {bodies.x[i], bodies.y[i], look_radius(radius[i], bodies.radius[i], items.radius_px())};
-        }
-        items_kernels().two_nearest(grid, queries, found, stale.count);
-        for (std::size_t k = 0; k < stale.count; ++k) {
-            const std::uint32_t i = indices[k];
-            view.x[i] = found[k].x;
-            view.y[i] = found[k].y;
-            view.others[i] = safely_below(std::sqrt(found[k].others_square));
-        }
+    items_kernels().two_nearest(items.grid(), looks.queries, found, looks.count);
+    for (std::size_t k = 0; k < looks.count; ++k) {
+        const std::uint32_t i = looks.indices[k];
+        view.x[i] = found[k].x;
+        view.y[i] = found[k].y;
+        view.others[i] = safely_below(std::sqrt(found[k].others_square));
     }
 }
 
@@ -142,9 +148,12 @@ std::size_t Sight::notice(View& view, const Circles& bodies, const physics::Near
         for (std::size_t k = 0; k < count && concerned <= concerned_max; ++k) {
             if (batch[k].places.begin == batch[k].places.end)
                 continue;
-            const std::uint32_t i = order[batch[k].places.begin];
-            __builtin_prefetch(batch[k].change->came ? &bodies.x[i] : &view.x[i]);
-            __builtin_prefetch(batch[k].change->came ? &bodies.y[i] : &view.y[i]);
+            const auto& x = batch[k].change->came ? bodies.x : view.x;
+            const auto& y = batch[k].change->came ? bodies.y : view.y;
+            for (const std::size_t place : {batch[k].places.begin, batch[k].places.end - 1}) {
+                __builtin_prefetch(&x[order[place]]);
+                __builtin_prefetch(&y[order[place]]);
+            }
         }
         for (std::size_t k = 0; k < count && concerned <= concerned_max; ++k)
             for (std::size_t place = batch[k].places.begin; place < batch[k].places.end; ++place)

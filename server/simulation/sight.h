@@ -57,8 +57,15 @@ class Sight {
 
     static void begin(View& view, const physics::Circles& bodies, const base::Column<float>& radius,
                       const Items& items);
-    static void look(View& view, const physics::Circles& bodies, const base::Column<float>& radius, const Items& items,
-                     base::Range range);
+    /// Those of a block who have to look, and from where.
+    struct Looks {
+        std::uint32_t indices[physics::circles_per_block];
+        ItemQuery queries[physics::circles_per_block];
+        std::size_t count = 0;
+    };
+    static void begin_look(Looks& looks, const View& view, const physics::Circles& bodies,
+                           const base::Column<float>& radius, const Items& items, base::Range block);
+    static void finish_look(const Looks& looks, View& view, const Items& items);
     static void notice(View& view, const physics::Circles& bodies, const physics::NearPairs& near,
                        const base::Column<float>& radius, Items& items, base::Executor& executor);
     /// How many bodies were near; if more than concerned_max, not all of them have been looked at.
