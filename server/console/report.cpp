@@ -1,9 +1,8 @@
 #include "server/console/report.h"
 
-#include "server/evolution/chromosome.h"
-
 #include <charconv>
 #include <cstdio>
+#include <type_traits>
 
 namespace evod::console {
 namespace {
@@ -38,44 +37,22 @@ std::string table_row(const simulation::GenerationStatistics& s, bool with_islan
 }
 
 std::string csv_heading() {
-    std::string line = "generation,island,end_tick,simulated_s,organism_count,fitness_best,fitness_mean,fitness_median,"
-                       "fitness_worst,fitness_deviation,diversity,alive_count,starved_count,poisoned_count,food_eaten,"
-                       "poison_eaten,clamp_count,too_fast_count,speed_limit_count,best_organism";
-    for (const std::string_view gene : evolution::gene_names)
-        for (const char* statistic : {"_mean", "_deviation", "_min", "_max"})
-            line += "," + std::string{gene} + statistic;
+    std::string line;
+    simulation::for_each_number(simulation::GenerationStatistics{}, [&](const std::string& name, auto) {
+        line += (line.empty() ? "" : ",") + name;
+    });
     return line;
 }
 
 std::string csv_row(const simulation::GenerationStatistics& s) {
-    std::string line = std::to_string(s.generation);
-    const auto count = [&](std::uint64_t value) { line += "," + std::to_string(value); };
-    const auto real = [&](double value) { line += "," + exact(value); };
-    count(s.island);
-    count(s.end_tick);
-    real(s.simulated_s);
-    count(s.organism_count);
-    real(s.fitness_best);
-    real(s.fitness_mean);
-    real(s.fitness_median);
-    real(s.fitness_worst);
-    real(s.fitness_deviation);
-    real(s.diversity);
-    count(s.alive_count);
-    count(s.starved_count);
-    count(s.poisoned_count);
-    count(s.food_eaten);
-    count(s.poison_eaten);
-    count(s.clamp_count);
-    count(s.too_fast_count);
-    count(s.speed_limit_count);
-    count(s.best_organism);
-    for (const simulation::GeneStatistics& gene : s.genes) {
-        real(gene.mean);
-        real(gene.deviation);
-        real(gene.min);
-        real(gene.max);
-    }
+    std::string line;
+    simulation::for_each_number(s, [&](const std::string&, auto value) {
+        line += line.empty() ? "" : ",";
+        if constexpr (std::is_floating_point_v<decltype(value)>)
+            line += exact(value);
+        else
+            line += std::to_string(value);
+    });
     return line;
 }
 

@@ -139,14 +139,14 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     return experiment;
 }
 
-std::string to_experiment_text(const Parameters& parameters) {
+std::string to_experiment_text(const Parameters& parameters, Written written) {
     std::string text = "{";
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
         // What a reader takes where nothing is said.
         const bool follows = description.name == "reference_population";
-        if (follows ? parameters.reference_population == parameters.population_size
-                    : value == description.default_value())
+        if (written == Written::Differences && (follows ? parameters.reference_population == parameters.population_size
+                                                        : value == description.default_value()))
             continue;
         text += text.size() > 1 ? ",\n  " : "\n  ";
         text += "\"" + std::string{description.name} + "\": ";

@@ -21,7 +21,8 @@ struct Experiment {
 /// population_size. Violations name the field with its line: "mutation_chance (line 4)".
 base::Result<Experiment> parse_experiment(std::string_view text);
 
-/// The parameters that differ from their defaults as an experiment file, one a line, in registry order.
-std::string to_experiment_text(const Parameters& parameters);
+enum class Written { Differences, Everything }; // from the defaults
+/// The parameters as an experiment file, one a line, in registry order.
+std::string to_experiment_text(const Parameters& parameters, Written written = Written::Differences);
 
 } // namespace evod::simulation

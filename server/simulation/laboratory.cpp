@@ -53,6 +53,20 @@ bool has_goal(const RunControl& control) {
 
 } // namespace
 
+bool mind_goals(RunControl& control, const World& world) {
+    bool reached = false;
+    if (control.until_tick && world.moment().tick >= *control.until_tick) {
+        control.until_tick.reset();
+        control.paused = true;
+        reached = true;
+    }
+    if (control.until_generation && generations_over(world) >= *control.until_generation) {
+        control.until_generation.reset();
+        reached = true;
+    }
+    return reached;
+}
+
 bool Entry::wants_tick() const {
     if (world.outcome() != evolution::Outcome::Running)
         return false;
@@ -73,18 +87,7 @@ RunState Entry::state() const {
 void Laboratory::advance(Entry& entry, base::Executor& executor) {
     entry.world.advance_tick(executor);
     collect_events(entry);
-    RunControl& control = entry.control;
-    bool reached = false;
-    if (control.until_tick && entry.world.moment().tick >= *control.until_tick) {
-        control.until_tick.reset();
-        control.paused = true;
-        reached = true;
-    }
-    if (control.until_generation && generations_over(entry.world) >= *control.until_generation) {
-        control.until_generation.reset();
-        reached = true;
-    }
-    if (reached)
+    if (mind_goals(entry.control, entry.world))
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
 }
 

@@ -32,6 +32,9 @@ struct RunControl {
     Speed speed = 1.0;
 };
 
+/// Takes goals away that the world has reached; one reached by ticks pauses it. Whether there was one.
+bool mind_goals(RunControl& control, const World& world);
+
 /// A world in its laboratory.
 struct Entry {
     std::string name;
@@ -56,6 +59,9 @@ class Laboratory {
   public:
     /// Applies a command now, between two ticks; a refusal has changed nothing.
     base::Result<Applied> apply(const Command& command);
+
+    /// Takes in a world that comes from elsewhere; its name is free.
+    void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
 
     /// Advances a world that wants a tick by one, and minds its goals.
     void advance(Entry& entry, base::Executor& executor);

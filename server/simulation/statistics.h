@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace evod::simulation {
 
@@ -32,6 +33,40 @@ struct GenerationStatistics {
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;
 };
+
+/// Calls visit(name, value) for every number, in the order in which files have them as columns.
+///
+/// Statistics  GenerationStatistics, or the same and const.
+template <class Statistics, class Visit>
+void for_each_number(Statistics&& s, Visit&& visit) {
+    visit("generation", s.generation);
+    visit("island", s.island);
+    visit("end_tick", s.end_tick);
+    visit("simulated_s", s.simulated_s);
+    visit("organism_count", s.organism_count);
+    visit("fitness_best", s.fitness_best);
+    visit("fitness_mean", s.fitness_mean);
+    visit("fitness_median", s.fitness_median);
+    visit("fitness_worst", s.fitness_worst);
+    visit("fitness_deviation", s.fitness_deviation);
+    visit("diversity", s.diversity);
+    visit("alive_count", s.alive_count);
+    visit("starved_count", s.starved_count);
+    visit("poisoned_count", s.poisoned_count);
+    visit("food_eaten", s.food_eaten);
+    visit("poison_eaten", s.poison_eaten);
+    visit("clamp_count", s.clamp_count);
+    visit("too_fast_count", s.too_fast_count);
+    visit("speed_limit_count", s.speed_limit_count);
+    visit("best_organism", s.best_organism);
+    for (std::size_t gene = 0; gene < evolution::gene_count; ++gene) {
+        const std::string name{evolution::gene_names[gene]};
+        visit(name + "_mean", s.genes[gene].mean);
+        visit(name + "_deviation", s.genes[gene].deviation);
+        visit(name + "_min", s.genes[gene].min);
+        visit(name + "_max", s.genes[gene].max);
+    }
+}
 
 class Island;
 struct Parameters;

@@ -12,6 +12,19 @@ World::World(const Parameters& parameters, base::Seed seed) : seed_{seed}, param
     begin_run();
 }
 
+World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
+             base::Executor& executor)
+    : seed_{seed}
+    , parameters_{opening.parameters}
+    , moment_{opening.moment}
+    , history_{std::move(history)}
+    , progress_{opening.progress} {
+    EVOD_ASSERT(born.size() == parameters_.active.island_count);
+    EVOD_ASSERT(moment_.generation_tick == 0);
+    make_islands();
+    begin_generation(std::move(born), executor);
+}
+
 void World::reset(base::Seed seed) {
     seed_ = seed;
     parameters_.active = parameters_.requested;
@@ -25,11 +38,9 @@ void World::begin_run() {
     moment_ = {};
     progress_ = {};
     generation_over_ = false;
-    fitness_.clear();
-    islands_.clear();
+    make_islands();
     std::vector<evolution::NextGeneration> first;
     for (std::uint32_t island = 0; island < p.island_count; ++island) {
-        islands_.emplace_back(seed_, island);
         evolution::NextGeneration born;
         born.genes = evolution::initial_population(p.population_size, p, seed_, island);
         first.push_back(std::move(born));
@@ -38,7 +49,15 @@ void World::begin_run() {
     begin_generation(std::move(first), executor);
 }
 
+void World::make_islands() {
+    islands_.clear();
+    for (std::uint32_t island = 0; island < parameters_.active.island_count; ++island)
+        islands_.emplace_back(seed_, island);
+}
+
 void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
+    opening_ = {moment_, parameters_, progress_};
+    fitness_.clear();
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
             islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);

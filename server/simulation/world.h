@@ -31,13 +31,29 @@ struct Moment {
     double simulated_s = 0;            // sum of the lengths of all ticks
 };
 
+/// What held when a generation began, before its first tick.
+struct Opening {
+    Moment moment; // generation_tick 0
+    ParameterSet parameters;
+    evolution::Progress progress; // of the generations before it
+};
+
 class World {
   public:
     /// Generations of statistics kept in memory; older ones are forgotten.
     static constexpr std::size_t history_generations_kept = 10'000;
+    /// Statistics of ended generations, oldest first, one element per generation with one entry per island.
+    using History = std::deque<std::vector<GenerationStatistics>>;
 
     /// parameters  valid. The first generation stands ready at (1, 0).
     World(const Parameters& parameters, base::Seed seed);
+
+    /// At the beginning of a generation of a run, from where it goes on as that run did.
+    ///
+    /// born     what bred it, shape (islands): opening.parameters.active.island_count.
+    /// history  statistics of the generations before it, as far as they are known.
+    World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
+          base::Executor& executor);
 
     /// Begins the run again with the parameters last asked for.
     void reset(base::Seed seed);
@@ -60,20 +76,25 @@ class World {
     /// The criterion that holds now that a generation is over, by the parameters that hold now; else Running.
     evolution::Outcome outcome() const;
 
+    /// Of the present generation; who was born in it is known by the islands.
+    const Opening& opening() const { return opening_; }
+
     std::span<const Island> islands() const { return islands_; }
     /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
     bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
     /// Organisms alive on all islands.
     std::uint64_t alive_count() const;
 
-    /// Statistics of the generations kept, oldest first, one element per generation with one entry per island.
-    const std::deque<std::vector<GenerationStatistics>>& history() const { return history_; }
+    const History& history() const { return history_; }
+    /// Of the generation that is over: per island, by id. Empty while none is.
+    std::span<const std::vector<double>> fitness() const { return fitness_; }
 
     /// What happened since this was last called, in order.
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
   private:
     void begin_run();
+    void make_islands();
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
     void end_generation(base::Executor& executor);
     /// What breeds: the chromosomes of the generation that is over, or, where migrants came, `migrated`.
@@ -86,7 +107,8 @@ class World {
     bool generation_over_ = false;
     base::StateHash hash_;
     std::vector<Island> islands_;
-    std::deque<std::vector<GenerationStatistics>> history_;
+    Opening opening_;
+    History history_;
     std::vector<EventKind> events_;
     std::vector<std::vector<double>> fitness_; // of the generation that is over: per island, by id
     evolution::Progress progress_;
