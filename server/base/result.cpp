@@ -20,6 +20,8 @@ const char* name_of(RefusalCode code) {
         return "UNIMPLEMENTED";
     case RefusalCode::Unavailable:
         return "UNAVAILABLE";
+    case RefusalCode::DataLoss:
+        return "DATA_LOSS";
     }
     return "UNKNOWN";
 }

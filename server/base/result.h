@@ -18,6 +18,7 @@ enum class RefusalCode {
     FailedPrecondition = 9,
     Unimplemented = 12,
     Unavailable = 14,
+    DataLoss = 15,
 };
 
 /// The code as users read it: "INVALID_ARGUMENT".

@@ -37,10 +37,13 @@ class Loop : public testing::Test {
                 .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); }}} {}
 
     void send(simulation::Command command) {
-        mailbox.try_push(CommandMail{std::move(command), [this](const Laboratory&, const simulation::Command& applied,
-                                                                const base::Result<simulation::Applied>& result) {
-                                         ASSERT_TRUE(result) << to_text(result.error());
+        mailbox.try_push(CommandMail{std::move(command),
+                                     {},
+                                     [this](const Laboratory&, const simulation::Command& applied,
+                                            const base::Result<simulation::Applied>& result) -> CommandAnswer {
+                                         EXPECT_TRUE(result) << to_text(result.error());
                                          last_applied = applied;
+                                         return {};
                                      }});
     }
     const simulation::Entry& world(std::string_view name = "") { return **loop.laboratory().find(name); }
@@ -195,11 +198,13 @@ TEST_F(Loop, AnAnswerSeesTheStateInWhichItsCommandBeginsToHold) {
     send(simulation::Run{"w", {}});
     live_through(200ms);
     bool answered = false;
-    mailbox.try_push(CommandMail{simulation::Pause{"w"},
-                                 [&](const Laboratory& laboratory, const simulation::Command&, const auto& applied) {
-                                     answered = true;
-                                     EXPECT_EQ(applied->tick, (*laboratory.find("w"))->world.moment().tick);
-                                 }});
+    mailbox.try_push(CommandMail{
+        simulation::Pause{"w"},
+        {},
+        [&](const Laboratory& laboratory, const simulation::Command&, const auto& applied) -> CommandAnswer {
+            EXPECT_EQ(applied->tick, (*laboratory.find("w"))->world.moment().tick);
+            return {.frame = {}, .give = [&] { answered = true; }};
+        }});
     loop.pass();
     EXPECT_TRUE(answered);
 }
@@ -355,9 +360,11 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
         clock,
         {.events = [](const Laboratory&, std::vector<simulation::Event>) {}, .picture = [](SnapshotPtr) {}}};
     const auto send = [&](simulation::Command command) {
-        ASSERT_TRUE(
-            mailbox.try_push(CommandMail{std::move(command), [](const Laboratory&, const simulation::Command&,
-                                                                const auto& applied) { ASSERT_TRUE(applied); }}));
+        ASSERT_TRUE(mailbox.try_push(
+            CommandMail{std::move(command), {}, [](const Laboratory&, const simulation::Command&, const auto& applied) {
+                            EXPECT_TRUE(applied);
+                            return CommandAnswer{};
+                        }}));
     };
     const auto look = [&] {
         std::promise<std::pair<std::uint64_t, base::StateHash>> seen;

@@ -1,0 +1,92 @@
+#include "server/storage/archive.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace evod::storage {
+
+using base::Result;
+
+Archive::Archive(DataFolder folder, const RunFile::Options& options)
+    : folder_{std::move(folder)}
+    , durability_{options.durability}
+    , thread_{std::make_unique<StorageThread>(options)}
+    , recorder_{std::make_unique<Recorder>(folder_, *thread_)} {}
+
+Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const RunFile::Options& options,
+                                               base::Executor& executor) {
+    auto folder = DataFolder::open(path);
+    if (!folder)
+        return folder.error();
+    const auto files = folder->files();
+    if (!files)
+        return files.error();
+    std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
+
+    // The last thing that was done to a run that was deleted.
+    for (const std::string& ended : files->ended) {
+        const auto file = RunFile::open_read_only(ended);
+        if (!file)
+            continue; // no world depends on it; whoever opens it is told
+        if (auto last = (*file)->journal((*file)->contents().journal_entries))
+            archive->answers_.insert(archive->answers_.end(), last->begin(), last->end());
+    }
+    for (const std::string& file : files->of_worlds)
+        if (auto brought = archive->bring_back(file, options, executor); !brought)
+            return brought.error();
+    return archive;
+}
+
+Result<void> Archive::bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor) {
+    auto file = RunFile::open(path, options);
+    if (!file) {
+        // Whoever was creating it did not come to the end of it, so nobody was told that it is there.
+        if (file.error().code == base::RefusalCode::NotFound)
+            return {};
+        return file.error();
+    }
+    const RunIdentity identity = (*file)->identity();
+    const auto mark = (*file)->end_mark();
+    if (!mark)
+        return mark.error();
+    if (*mark && (*mark)->ended) {
+        // It was to be renamed next.
+        file->reset();
+        std::error_code error;
+        std::filesystem::rename(path, folder_.ended_file_of(identity.name, identity.run_id), error);
+        if (error)
+            return base::Refusal{.code = base::RefusalCode::Unavailable,
+                                 .message = path + " cannot be renamed: " + error.message(),
+                                 .violations = {}};
+        return {};
+    }
+    auto recovered = recover(**file, executor);
+    if (!recovered)
+        return recovered.error();
+    const EndMark contents = (*file)->contents();
+    const std::uint64_t generations_ended = (*file)->last_generation_ended();
+    spdlog::info("world \"{}\" goes on from generation {}, tick {}{}", identity.name,
+                 recovered->world.moment().generation, recovered->world.moment().tick,
+                 *mark ? "" : ", where its file was left without being closed");
+    const auto name = std::filesystem::path{path}.stem().string();
+    auto entry = std::make_unique<simulation::Entry>(
+        simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
+    RunRecorder& run = recorder_->go_on(name, *std::move(file), contents, generations_ended);
+    run.follow(entry->world);
+    laboratory_.adopt(std::move(entry));
+    identities_.push_back(identity);
+    identities_.back().name = name;
+    answers_.insert(answers_.end(), std::make_move_iterator(recovered->journal.begin()),
+                    std::make_move_iterator(recovered->journal.end()));
+    return {};
+}
+
+const RunIdentity* Archive::identity_of(const std::string& world) const {
+    const auto found = std::ranges::find(identities_, world, &RunIdentity::name);
+    return found == identities_.end() ? nullptr : &*found;
+}
+
+} // namespace evod::storage

@@ -1,0 +1,51 @@
+// Archive: the runs of a server, in its data folder: brought back when it starts, written down while it runs.
+//
+// Owner        the server. The laboratory is taken and the recorder used by the simulation thread.
+#pragma once
+
+#include "server/storage/data_folder.h"
+#include "server/storage/recorder.h"
+#include "server/storage/rerun.h"
+#include "server/storage/storage_thread.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evod::storage {
+
+class Archive {
+  public:
+    /// Takes the folder and brings every world back. Refused, naming the file, where one cannot be brought back: a
+    /// server that went on without it would seem to have lost it.
+    static base::Result<std::unique_ptr<Archive>> open(const std::string& path, const RunFile::Options& options,
+                                                       base::Executor& executor);
+
+    const std::string& path() const { return folder_.path(); }
+    Durability durability() const { return durability_; }
+    /// What the run of a world that was brought back began with; nullptr if there is none of that name.
+    const RunIdentity* identity_of(const std::string& world) const;
+    bool holds_worlds() const { return !identities_.empty(); }
+    /// The worlds; once.
+    simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
+    /// Commands that were applied, with their answers, oldest first within a run; once.
+    std::vector<JournalEntry> take_answers() { return std::move(answers_); }
+
+    Recorder& recorder() { return *recorder_; }
+    /// Writes what waits, as far as that can be done now; once the recorder is used no more.
+    void close() { thread_.reset(); }
+
+  private:
+    Archive(DataFolder folder, const RunFile::Options& options);
+    base::Result<void> bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor);
+
+    DataFolder folder_;
+    Durability durability_;
+    std::unique_ptr<StorageThread> thread_;
+    std::unique_ptr<Recorder> recorder_;
+    simulation::Laboratory laboratory_;
+    std::vector<RunIdentity> identities_;
+    std::vector<JournalEntry> answers_;
+};
+
+} // namespace evod::storage

@@ -1,0 +1,38 @@
+// Data folder: where a server's run files lie. `NAME.evod` is the run of the world NAME; `NAME.RUNID.evod` is one that
+// has ended.
+//
+// Owner        one server: a lock on the file `lock` keeps a second one out.
+#pragma once
+
+#include "server/base/result.h"
+#include "server/simulation/commands.h"
+
+#include <string>
+#include <vector>
+
+namespace evod::storage {
+
+class DataFolder {
+  public:
+    /// Makes the folder if there is none. Refused where another server has it, or it cannot be used.
+    static base::Result<DataFolder> open(const std::string& path);
+
+    DataFolder(DataFolder&& other) noexcept;
+    DataFolder& operator=(DataFolder&&) = delete;
+    ~DataFolder();
+
+    const std::string& path() const { return path_; }
+    std::string file_of(const std::string& world) const;
+    std::string ended_file_of(const std::string& world, const simulation::RunId& run_id) const;
+    struct Files {
+        std::vector<std::string> of_worlds, ended; // paths, in order
+    };
+    base::Result<Files> files() const;
+
+  private:
+    DataFolder(std::string path, int lock) : path_{std::move(path)}, lock_{lock} {}
+    std::string path_;
+    int lock_; // file descriptor
+};
+
+} // namespace evod::storage

@@ -1,0 +1,84 @@
+// Database: SQLite, as little of it as run files need.
+//
+// Errors       the first thing that goes wrong is kept, and everything after it is skipped: whoever has read or written
+//              asks failed() once, at the end.
+// Owner        one thread at a time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace evod::storage {
+
+class Database {
+  public:
+    enum class Mode {
+        Create, // a new file; fails if there is one
+        Write,
+        Read,
+    };
+    /// vfs  SQLite's name of the way to the disk; nullptr is the usual one.
+    Database(const std::string& path, Mode mode, const char* vfs = nullptr);
+
+    bool failed() const { return !error_.empty(); }
+    /// One sentence; empty if nothing has gone wrong.
+    const std::string& error() const { return error_; }
+    /// Whether what went wrong is that the file is not, or no longer, a sound database.
+    bool damaged() const { return damaged_; }
+
+    /// Statements without parameters or rows.
+    void run(const char* sql);
+    /// The whole number that a query gives; 0 if it gives none.
+    std::int64_t number(const char* sql);
+
+  private:
+    friend class Statement;
+    void check(int code);
+
+    struct Close {
+        void operator()(sqlite3* handle) const;
+    };
+    std::unique_ptr<sqlite3, Close> handle_;
+    std::string error_;
+    bool damaged_ = false;
+};
+
+/// A prepared statement; lives no longer than its database.
+class Statement {
+  public:
+    Statement(Database& database, const std::string& sql);
+
+    // Parameters and columns count from 0.
+    void bind(int parameter, std::int64_t value);
+    void bind(int parameter, double value);
+    void bind(int parameter, std::string_view text);
+    void bind(int parameter, std::span<const std::byte> bytes);
+    void bind_nothing(int parameter);
+
+    /// Whether there is a row, or one more. After the last, and after a failure, the statement may be used anew.
+    bool row();
+    /// For statements without rows.
+    void done();
+
+    std::int64_t integer(int column) const;
+    double real(int column) const;
+    std::string text(int column) const;
+    std::string bytes(int column) const;
+    bool is_nothing(int column) const;
+
+  private:
+    struct Finalize {
+        void operator()(sqlite3_stmt* handle) const;
+    };
+    Database& database_;
+    std::unique_ptr<sqlite3_stmt, Finalize> handle_;
+};
+
+} // namespace evod::storage

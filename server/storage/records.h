@@ -1,0 +1,79 @@
+// Records: what a run file holds, as the program knows it. How it is laid out in tables is in docs/RUN_FILE.md.
+#pragma once
+
+#include "server/base/state_hash.h"
+#include "server/evolution/next_generation.h"
+#include "server/simulation/laboratory.h"
+#include "server/simulation/living.h"
+#include "server/simulation/model_version.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::storage {
+
+/// What a run began with.
+struct RunIdentity {
+    std::string name; // of the world
+    simulation::RunId run_id;
+    base::Seed seed;
+    simulation::Parameters parameters;
+    std::string evod_version = EVOD_VERSION;
+    std::uint32_t model_version = simulation::model_version;
+    std::int64_t began_unix_ms = 0; // the clock on the wall, for people; nothing depends on it
+};
+
+/// Who asked for a command, and how.
+struct Origin {
+    std::string client; // as others are told who did it
+    std::string client_key;
+    std::uint64_t request_id = 0;
+    std::string request; // a serialized v1::Request
+};
+
+/// A command that was applied.
+struct JournalEntry {
+    std::uint64_t number = 0; // 1 for the first of the run
+    std::uint64_t tick = 0;   // after which it was applied
+    Origin origin;
+    std::string answer;             // the frame that its client got
+    simulation::RunControl control; // as it was then
+};
+
+/// A generation before its first tick; with the seed, all that follows from there.
+struct GenerationBegun {
+    simulation::Opening opening;
+    std::vector<evolution::NextGeneration> born; // one per island
+};
+
+/// What became of a generation's organisms on one island, by id.
+struct IslandOutcome {
+    std::vector<double> fitness;
+    std::vector<std::uint32_t> lived_ticks; // until death; 0 for those who lived on
+    std::vector<simulation::CauseOfDeath> cause;
+    friend bool operator==(const IslandOutcome&, const IslandOutcome&) = default;
+};
+struct GenerationEnded {
+    std::uint64_t generation = 0;
+    std::vector<IslandOutcome> outcomes;                      // one per island
+    std::vector<simulation::GenerationStatistics> statistics; // one per island
+};
+
+/// The state hash after a tick.
+struct HashLink {
+    std::uint64_t tick = 0;
+    base::StateHash hash;
+};
+/// After every tick that is a multiple of this.
+constexpr std::uint64_t ticks_per_link = 60;
+
+/// How a file was left. Absent while a server has it open, and after one that did not end in order.
+struct EndMark {
+    bool ended = false;     // reset or deleted: no world any more; else closed, to be gone on with
+    std::uint64_t tick = 0; // the last
+    std::uint64_t journal_entries = 0, generations = 0, links = 0;
+};
+
+} // namespace evod::storage

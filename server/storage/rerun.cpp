@@ -1,0 +1,121 @@
+#include "server/storage/rerun.h"
+
+#include "server/base/assert.h"
+#include "server/protocol/commands.h"
+
+#include <utility>
+
+namespace evod::storage {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Refusal damaged(const RunFile& file, const std::string& what) {
+    return {.code = RefusalCode::DataLoss, .message = file.path() + " is damaged: " + what, .violations = {}};
+}
+
+/// The command that a request was; nothing if it is none that this program knows.
+std::optional<simulation::Command> command_of(const std::string& request) {
+    v1::Request message;
+    if (!message.ParseFromString(request))
+        return std::nullopt;
+    auto command = protocol::to_command(message, {});
+    return command ? std::optional{*std::move(command)} : std::nullopt;
+}
+
+} // namespace
+
+Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor& executor) {
+    if (auto refused = file.other_model())
+        return *refused;
+    const auto journal = file.journal();
+    if (!journal)
+        return journal.error();
+    auto begun = file.beginning_of(generation);
+    if (!begun)
+        return begun.error();
+    if (!*begun && generation != 1)
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = file.path() + " holds no generation " + std::to_string(generation),
+                       .violations = {}};
+    // A change that came between the end of a generation and the beginning of the next is in that beginning already.
+    const std::uint64_t begun_tick = *begun ? (*begun)->opening.moment.tick : 0;
+    std::vector<Change> changes;
+    for (const JournalEntry& entry : *journal) {
+        if (generation == 1 ? false : entry.tick <= begun_tick)
+            continue;
+        auto command = command_of(entry.origin.request);
+        if (!command)
+            return damaged(file, "entry " + std::to_string(entry.number) + " of its journal is no command");
+        if (auto* change = std::get_if<simulation::SetParameters>(&*command))
+            changes.push_back({entry.tick, std::move(*change)});
+    }
+    if (!*begun) {
+        Rerun rerun{simulation::World{file.identity().parameters, file.identity().seed}, std::move(changes)};
+        rerun.make_changes();
+        return rerun;
+    }
+    auto history = file.history(simulation::World::history_generations_kept);
+    if (!history)
+        return history.error();
+    while (!history->empty() && history->back().front().generation >= generation)
+        history->pop_back();
+    Rerun rerun{simulation::World{file.identity().seed, (*begun)->opening, std::move((*begun)->born),
+                                  *std::move(history), executor},
+                std::move(changes)};
+    rerun.make_changes();
+    return rerun;
+}
+
+void Rerun::make_changes() {
+    for (; next_ < changes_.size() && changes_[next_].tick <= world_.moment().tick; ++next_) {
+        // It was accepted then, and the same rules hold.
+        const auto requested =
+            simulation::assign(world_.parameters().requested, changes_[next_].command.assignments, "");
+        EVOD_ASSERT(requested.has_value());
+        world_.request_parameters(*requested);
+    }
+}
+
+void Rerun::advance_tick(base::Executor& executor) {
+    world_.advance_tick(executor);
+    make_changes();
+}
+
+void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
+    while (world_.moment().tick < tick && world_.outcome() == evolution::Outcome::Running)
+        advance_tick(executor);
+}
+
+Result<Recovered> recover(RunFile& file, base::Executor& executor) {
+    const std::uint64_t last_tick = file.contents().tick;
+    auto rerun = Rerun::at(file, std::max<std::uint64_t>(1, file.last_generation()), executor);
+    if (!rerun)
+        return rerun.error();
+    const std::uint64_t from = rerun->world().moment().tick;
+    const auto links = file.links(from, last_tick);
+    if (!links)
+        return links.error();
+    for (const HashLink& link : *links) {
+        rerun->advance_to(link.tick, executor);
+        if (rerun->world().moment().tick != link.tick || rerun->world().hash() != link.hash)
+            return damaged(file, "simulated again, tick " + std::to_string(link.tick) +
+                                     " has another state hash than the one that is stored");
+    }
+    rerun->advance_to(last_tick, executor);
+    if (rerun->world().moment().tick != last_tick)
+        return damaged(file, "it tells of tick " + std::to_string(last_tick) + ", and the run is over at tick " +
+                                 std::to_string(rerun->world().moment().tick));
+    auto journal = file.journal();
+    if (!journal)
+        return journal.error();
+    Recovered recovered{std::move(*rerun).take(), {}, *std::move(journal)};
+    if (!recovered.journal.empty())
+        recovered.control = recovered.journal.back().control;
+    simulation::mind_goals(recovered.control, recovered.world);
+    return recovered;
+}
+
+} // namespace evod::storage

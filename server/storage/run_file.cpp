@@ -1,0 +1,659 @@
+#include "server/storage/run_file.h"
+
+#include "server/simulation/experiment.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace evod::storage {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+using Columns = std::vector<std::string>;
+
+Refusal refusal(RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+const Columns journal_columns = {"number", "tick",    "client",           "client_key", "request_id", "request",
+                                 "answer", "endless", "until_generation", "until_tick", "paused",     "speed"};
+const Columns parameters_columns = {"number", "revision", "active", "requested"};
+const Columns generation_columns = {"generation",   "first_tick",        "simulated_s",
+                                    "parameters",   "generations_over",  "stagnant",
+                                    "best_fitness", "last_best_fitness", "last_died_out"};
+const Columns population_columns = {"generation",     "island",        "organism_count", "elite_count",
+                                    "survivor_count", "clamped_count", "chromosomes",    "parents"};
+const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
+const Columns link_columns = {"tick", "low", "high"};
+const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
+const Columns run_columns = {"key", "value"};
+
+Columns statistics_columns() {
+    Columns columns;
+    simulation::for_each_number(simulation::GenerationStatistics{},
+                                [&](const std::string& name, auto) { columns.push_back(name); });
+    return columns;
+}
+
+/// The DDL of a table whose columns have the types of an SQLite "STRICT" table.
+std::string statistics_table() {
+    std::string sql = "CREATE TABLE statistics (";
+    simulation::for_each_number(simulation::GenerationStatistics{}, [&](const std::string& name, auto value) {
+        sql += name + (std::is_floating_point_v<decltype(value)> ? " REAL" : " INTEGER") + " NOT NULL, ";
+    });
+    return sql + "checksum INTEGER NOT NULL, PRIMARY KEY (generation, island)) STRICT;";
+}
+
+template <class T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+    return std::as_bytes(std::span{values});
+}
+
+/// false if the bytes are no whole number of T.
+template <class T>
+bool read_into(std::vector<T>& values, const std::string& bytes) {
+    if (bytes.size() % sizeof(T) != 0)
+        return false;
+    values.resize(bytes.size() / sizeof(T));
+    if (!bytes.empty())
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+    return true;
+}
+
+template <class T>
+std::optional<T> number_from(const std::string& text, int base = 10) {
+    T value{};
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value, base);
+    return read.ec == std::errc{} && read.ptr == text.data() + text.size() ? std::optional{value} : std::nullopt;
+}
+
+std::optional<std::int64_t> as_stored(const std::optional<std::uint64_t>& value) {
+    return value ? std::optional{static_cast<std::int64_t>(*value)} : std::nullopt;
+}
+
+std::optional<std::uint64_t> as_read(const std::optional<std::int64_t>& value) {
+    return value ? std::optional{static_cast<std::uint64_t>(*value)} : std::nullopt;
+}
+
+std::string row_of(const char* table, std::uint64_t key) {
+    return std::string{"the row "} + std::to_string(key) + " of its table " + table;
+}
+
+} // namespace
+
+struct RunFile::Writers {
+    explicit Writers(Database& database)
+        : journal{database, "journal", journal_columns}
+        , parameters{database, "parameters", parameters_columns}
+        , generation{database, "generation", generation_columns}
+        , population{database, "population", population_columns}
+        , outcome{database, "outcome", outcome_columns}
+        , statistics{database, "statistics", statistics_columns()}
+        , link{database, "state_hash", link_columns}
+        , end{database, "end_mark", end_columns} {}
+
+    RowWriter journal, parameters, generation, population, outcome, statistics, link, end;
+};
+
+RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
+    : path_{path}, database_{path, mode, options.vfs} {
+    if (mode == Database::Mode::Read)
+        return;
+    database_.run("PRAGMA journal_mode = WAL");
+    database_.run(options.durability == Durability::Full ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
+}
+
+RunFile::~RunFile() = default;
+
+Refusal RunFile::failure() const {
+    return refusal(database_.damaged() ? RefusalCode::DataLoss : RefusalCode::Unavailable,
+                   path_ + ": " + database_.error());
+}
+
+Refusal RunFile::damaged(const std::string& what) const {
+    if (database_.failed())
+        return failure();
+    return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + what + " is not as it was written");
+}
+
+Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
+                                                 const Options& options) {
+    std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
+    if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
+        return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    file->begin();
+    file->create_tables();
+    file->write_identity(identity);
+    if (auto committed = file->commit(); !committed)
+        return committed.error();
+    file->identity_ = identity;
+    return file;
+}
+
+Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Options& options) {
+    std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
+    if (auto read = file->read_identity(); !read)
+        return read.error();
+    file->marked_ = true;
+    return file;
+}
+
+Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path) {
+    std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
+    if (auto read = file->read_identity(); !read)
+        return read.error();
+    return file;
+}
+
+void RunFile::create_tables() {
+    database_.run(("PRAGMA application_id = " + std::to_string(application_id)).c_str());
+    database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
+    database_.run(R"(
+CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE parameters (number INTEGER PRIMARY KEY, revision INTEGER NOT NULL, active TEXT NOT NULL,
+    requested TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE journal (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, client TEXT NOT NULL,
+    client_key TEXT NOT NULL, request_id INTEGER NOT NULL, request BLOB NOT NULL, answer BLOB NOT NULL,
+    endless INTEGER NOT NULL, until_generation INTEGER, until_tick INTEGER, paused INTEGER NOT NULL, speed REAL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE generation (generation INTEGER PRIMARY KEY, first_tick INTEGER NOT NULL, simulated_s REAL NOT NULL,
+    parameters INTEGER NOT NULL, generations_over INTEGER NOT NULL, stagnant INTEGER NOT NULL,
+    best_fitness REAL NOT NULL, last_best_fitness REAL NOT NULL, last_died_out INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE population (generation INTEGER NOT NULL, island INTEGER NOT NULL, organism_count INTEGER NOT NULL,
+    elite_count INTEGER NOT NULL, survivor_count INTEGER NOT NULL, clamped_count INTEGER NOT NULL,
+    chromosomes BLOB NOT NULL, parents BLOB NOT NULL, checksum INTEGER NOT NULL,
+    PRIMARY KEY (generation, island)) STRICT;
+CREATE TABLE outcome (generation INTEGER NOT NULL, island INTEGER NOT NULL, fitness BLOB NOT NULL,
+    lived_ticks BLOB NOT NULL, cause BLOB NOT NULL, checksum INTEGER NOT NULL,
+    PRIMARY KEY (generation, island)) STRICT;
+CREATE TABLE state_hash (tick INTEGER PRIMARY KEY, low INTEGER NOT NULL, high INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEGER NOT NULL,
+    journal_entries INTEGER NOT NULL, generations INTEGER NOT NULL, links INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+)");
+    database_.run(statistics_table().c_str());
+}
+
+void RunFile::write_identity(const RunIdentity& identity) {
+    RowWriter run{database_, "run", run_columns};
+    const auto put = [&](std::string_view key, const std::string& value) { run.text(key).text(value).finish(); };
+    put("name", identity.name);
+    put("run_id", to_text(identity.run_id));
+    put("seed", std::to_string(identity.seed.value));
+    put("parameters", to_experiment_text(identity.parameters, simulation::Written::Everything));
+    put("evod_version", identity.evod_version);
+    put("model_version", std::to_string(identity.model_version));
+    put("began_unix_ms", std::to_string(identity.began_unix_ms));
+}
+
+Result<void> RunFile::read_identity() {
+    const std::int64_t application = database_.number("PRAGMA application_id");
+    const std::int64_t format = database_.number("PRAGMA user_version");
+    if (database_.failed())
+        return failure();
+    if (application == 0 && database_.number("SELECT count(*) FROM sqlite_schema") == 0 && !database_.failed())
+        return refusal(RefusalCode::NotFound, path_ + " holds nothing");
+    if (application != application_id)
+        return refusal(RefusalCode::InvalidArgument, path_ + " is not a run file of evod");
+    if (format > format_version)
+        return refusal(RefusalCode::FailedPrecondition, path_ + " was written by a newer evod: its format is version " +
+                                                            std::to_string(format) + ", this evod reads up to " +
+                                                            std::to_string(format_version));
+    // SQLite takes a last page that has been cut for one that ends in zeros. Where there is a write-ahead log, the page
+    // may be whole there.
+    const auto size_of = [](const std::string& path) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(path, error);
+        return error ? 0 : static_cast<std::int64_t>(size);
+    };
+    const std::int64_t page_size = database_.number("PRAGMA page_size");
+    if (page_size > 0 && size_of(path_) % page_size != 0 && size_of(path_ + "-wal") == 0)
+        return damaged("its last page");
+    RowReader run{database_, "run", run_columns};
+    std::size_t known = 0;
+    while (run.next()) {
+        const std::string key = run.text(), value = run.text();
+        if (!run.sound())
+            return damaged("the row \"" + key + "\" of its table run");
+        bool good = true;
+        const auto take = [&]<class T>(std::optional<T> read, T& to) {
+            good = read.has_value();
+            to = read.value_or(T{});
+        };
+        if (key == "name") {
+            identity_.name = value;
+        } else if (key == "run_id") {
+            good = value.size() == 32;
+            if (good)
+                take(number_from<std::uint64_t>(value.substr(0, 16), 16), identity_.run_id.high);
+            if (good)
+                take(number_from<std::uint64_t>(value.substr(16), 16), identity_.run_id.low);
+        } else if (key == "seed") {
+            take(number_from<std::uint64_t>(value), identity_.seed.value);
+        } else if (key == "parameters") {
+            const auto experiment = simulation::parse_experiment(value);
+            good = experiment.has_value();
+            if (good)
+                identity_.parameters = experiment->parameters;
+        } else if (key == "evod_version") {
+            identity_.evod_version = value;
+        } else if (key == "model_version") {
+            take(number_from<std::uint32_t>(value), identity_.model_version);
+        } else if (key == "began_unix_ms") {
+            take(number_from<std::int64_t>(value), identity_.began_unix_ms);
+        } else {
+            continue;
+        }
+        ++known;
+        if (!good)
+            return damaged("the row \"" + key + "\" of its table run");
+    }
+    if (database_.failed())
+        return failure();
+    constexpr std::size_t keys = 7;
+    if (known != keys)
+        return damaged("its table run");
+    return {};
+}
+
+std::optional<Refusal> RunFile::other_model() const {
+    if (identity_.model_version == simulation::model_version)
+        return std::nullopt;
+    return refusal(RefusalCode::FailedPrecondition,
+                   path_ + " was made with evod " + identity_.evod_version + ", which followed version " +
+                       std::to_string(identity_.model_version) + " of the model; this evod " + EVOD_VERSION +
+                       " follows version " + std::to_string(simulation::model_version) +
+                       ", so it can read the file but not simulate the run again");
+}
+
+Result<std::optional<EndMark>> RunFile::end_mark() {
+    RowReader end{database_, "end_mark", end_columns};
+    std::optional<EndMark> mark;
+    if (end.next()) {
+        (void)end.integer();
+        mark.emplace();
+        mark->ended = end.text() == "ended";
+        mark->tick = end.natural();
+        mark->journal_entries = end.natural();
+        mark->generations = end.natural();
+        mark->links = end.natural();
+        if (!end.sound())
+            return damaged("its end mark");
+    }
+    if (database_.failed())
+        return failure();
+    return mark;
+}
+
+Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first) {
+    std::vector<JournalEntry> entries;
+    RowReader reader{
+        database_, "journal", journal_columns, "number >= ? ORDER BY number", {static_cast<std::int64_t>(first)}};
+    while (reader.next()) {
+        JournalEntry entry;
+        entry.number = reader.natural();
+        entry.tick = reader.natural();
+        entry.origin.client = reader.text();
+        entry.origin.client_key = reader.text();
+        entry.origin.request_id = reader.natural();
+        entry.origin.request = reader.bytes();
+        entry.answer = reader.bytes();
+        entry.control.endless = reader.integer() != 0;
+        entry.control.until_generation = as_read(reader.optional_integer());
+        entry.control.until_tick = as_read(reader.optional_integer());
+        entry.control.paused = reader.integer() != 0;
+        entry.control.speed = reader.optional_real();
+        if (!reader.sound() || entry.number != first + entries.size())
+            return damaged(row_of("journal", first + entries.size()));
+        entries.push_back(std::move(entry));
+    }
+    if (database_.failed())
+        return failure();
+    return entries;
+}
+
+std::uint64_t RunFile::last_generation() {
+    return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM generation"));
+}
+
+Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
+    RowReader reader{database_, "parameters", parameters_columns, "number = ?", {number}};
+    const auto bad = [&] { return damaged(row_of("parameters", static_cast<std::uint64_t>(number))); };
+    if (!reader.next())
+        return bad();
+    (void)reader.integer();
+    simulation::ParameterSet set;
+    set.revision = reader.natural();
+    const auto active = simulation::parse_experiment(reader.text());
+    const auto requested = simulation::parse_experiment(reader.text());
+    if (!reader.sound() || !active || !requested)
+        return bad();
+    set.active = active->parameters;
+    set.requested = requested->parameters;
+    return set;
+}
+
+Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
+    const auto key = static_cast<std::int64_t>(generation);
+    RowReader reader{database_, "generation", generation_columns, "generation = ?", {key}};
+    if (!reader.next()) {
+        if (database_.failed())
+            return failure();
+        return std::optional<GenerationBegun>{};
+    }
+    GenerationBegun begun;
+    simulation::Opening& opening = begun.opening;
+    opening.moment.generation = reader.natural();
+    opening.moment.tick = reader.natural();
+    opening.moment.simulated_s = reader.real();
+    const std::int64_t parameters = reader.integer();
+    opening.progress.generations = reader.natural();
+    opening.progress.stagnant = reader.natural();
+    opening.progress.best_fitness = reader.real();
+    opening.progress.last_best_fitness = reader.real();
+    opening.progress.last_died_out = reader.integer() != 0;
+    if (!reader.sound())
+        return damaged(row_of("generation", generation));
+    const auto set = parameter_set(parameters);
+    if (!set)
+        return set.error();
+    opening.parameters = *set;
+
+    RowReader rows{database_, "population", population_columns, "generation = ? ORDER BY island", {key}};
+    const auto bad = [&] {
+        return damaged("the population of generation " + std::to_string(generation) + " on island " +
+                       std::to_string(begun.born.size()));
+    };
+    while (rows.next()) {
+        (void)rows.integer();
+        const std::uint64_t island = rows.natural(), organisms = rows.natural();
+        evolution::NextGeneration born;
+        born.elite_count = static_cast<std::uint32_t>(rows.integer());
+        born.survivor_count = static_cast<std::uint32_t>(rows.integer());
+        born.clamped_count = rows.natural();
+        const std::string genes = rows.bytes(), parents = rows.bytes();
+        if (!rows.sound() || island != begun.born.size() ||
+            genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents))
+            return bad();
+        born.genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
+        std::memcpy(born.genes.data(), genes.data(), genes.size());
+        begun.born.push_back(std::move(born));
+    }
+    if (database_.failed())
+        return failure();
+    if (begun.born.size() != opening.parameters.active.island_count)
+        return bad();
+    return begun;
+}
+
+Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generation) {
+    const auto key = static_cast<std::int64_t>(generation);
+    GenerationEnded ended{.generation = generation, .outcomes = {}, .statistics = {}};
+    const auto bad = [&](const char* what) {
+        return damaged(std::string{what} + " of generation " + std::to_string(generation));
+    };
+    RowReader rows{database_, "outcome", outcome_columns, "generation = ? ORDER BY island", {key}};
+    while (rows.next()) {
+        (void)rows.integer();
+        const std::uint64_t island = rows.natural();
+        IslandOutcome outcome;
+        const std::string fitness = rows.bytes(), lived = rows.bytes(), cause = rows.bytes();
+        if (!rows.sound() || island != ended.outcomes.size() || !read_into(outcome.fitness, fitness) ||
+            !read_into(outcome.lived_ticks, lived) || !read_into(outcome.cause, cause))
+            return bad("the outcome");
+        ended.outcomes.push_back(std::move(outcome));
+    }
+    RowReader numbers{database_, "statistics", statistics_columns(), "generation = ? ORDER BY island", {key}};
+    while (numbers.next()) {
+        simulation::GenerationStatistics statistics;
+        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
+            if constexpr (std::is_floating_point_v<T>)
+                value = numbers.real();
+            else
+                value = static_cast<T>(numbers.integer());
+        });
+        if (!numbers.sound() || statistics.island != ended.statistics.size())
+            return bad("a row of the statistics");
+        ended.statistics.push_back(statistics);
+    }
+    if (database_.failed())
+        return failure();
+    if (ended.outcomes.size() != ended.statistics.size())
+        return bad("the outcome");
+    if (ended.outcomes.empty())
+        return std::optional<GenerationEnded>{};
+    return ended;
+}
+
+Result<simulation::World::History> RunFile::history(std::size_t count) {
+    simulation::World::History history;
+    const auto last = static_cast<std::int64_t>(last_generation_ended());
+    const std::int64_t first = std::max<std::int64_t>(1, last - static_cast<std::int64_t>(count) + 1);
+    RowReader numbers{
+        database_, "statistics", statistics_columns(), "generation >= ? ORDER BY generation, island", {first}};
+    while (numbers.next()) {
+        simulation::GenerationStatistics statistics;
+        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
+            if constexpr (std::is_floating_point_v<T>)
+                value = numbers.real();
+            else
+                value = static_cast<T>(numbers.integer());
+        });
+        const std::uint64_t expected = static_cast<std::uint64_t>(first) + history.size();
+        const bool begins = statistics.island == 0;
+        if (!numbers.sound() || statistics.generation != (begins ? expected : expected - 1))
+            return damaged(row_of("statistics", expected));
+        if (begins)
+            history.emplace_back();
+        history.back().push_back(statistics);
+    }
+    if (database_.failed())
+        return failure();
+    return history;
+}
+
+Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t until) {
+    std::vector<HashLink> links;
+    RowReader reader{database_,
+                     "state_hash",
+                     link_columns,
+                     "tick > ? AND tick <= ? ORDER BY tick",
+                     {static_cast<std::int64_t>(after), static_cast<std::int64_t>(until)}};
+    while (reader.next()) {
+        HashLink link;
+        link.tick = reader.natural();
+        link.hash.low = reader.natural();
+        link.hash.high = reader.natural();
+        if (!reader.sound())
+            return damaged(row_of("state_hash", link.tick));
+        links.push_back(link);
+    }
+    if (database_.failed())
+        return failure();
+    return links;
+}
+
+EndMark RunFile::contents() {
+    std::int64_t last = 0;
+    for (const char* sql :
+         {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
+          "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
+        last = std::max(last, database_.number(sql));
+    const auto count = [&](const char* sql) { return static_cast<std::uint64_t>(database_.number(sql)); };
+    return {.ended = false,
+            .tick = static_cast<std::uint64_t>(last),
+            .journal_entries = count("SELECT count(*) FROM journal"),
+            .generations = last_generation(),
+            .links = count("SELECT count(*) FROM state_hash")};
+}
+
+std::uint64_t RunFile::last_generation_ended() {
+    return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM statistics"));
+}
+
+Result<void> RunFile::check() {
+    Statement integrity{database_, "PRAGMA integrity_check(1)"};
+    if (integrity.row())
+        if (const std::string verdict = integrity.text(0); verdict != "ok")
+            return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+    if (auto entries = journal(); !entries)
+        return entries.error();
+    const std::uint64_t last = last_generation();
+    for (std::uint64_t generation = 1; generation <= last; ++generation) {
+        const auto begun = beginning_of(generation);
+        if (!begun)
+            return begun.error();
+        if (!*begun)
+            return damaged(row_of("generation", generation));
+        const auto ended = outcome_of(generation);
+        if (!ended)
+            return ended.error();
+        if (!*ended && generation < last)
+            return damaged("the outcome of generation " + std::to_string(generation));
+    }
+    const EndMark found = contents();
+    const auto chain = links(0, found.tick);
+    if (!chain)
+        return chain.error();
+    for (std::size_t i = 0; i < chain->size(); ++i)
+        if ((*chain)[i].tick != (i + 1) * ticks_per_link)
+            return damaged(row_of("state_hash", (i + 1) * ticks_per_link));
+    const auto mark = end_mark();
+    if (!mark)
+        return mark.error();
+    if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
+                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
+        return damaged("what stands before its end mark");
+    if (database_.failed())
+        return failure();
+    return {};
+}
+
+RunFile::Writers& RunFile::writers() {
+    if (!writers_)
+        writers_ = std::make_unique<Writers>(database_);
+    return *writers_;
+}
+
+void RunFile::begin() {
+    database_.run("BEGIN IMMEDIATE");
+    if (marked_)
+        database_.run("DELETE FROM end_mark");
+}
+
+void RunFile::write(const JournalEntry& entry) {
+    writers()
+        .journal.natural(entry.number)
+        .natural(entry.tick)
+        .text(entry.origin.client)
+        .text(entry.origin.client_key)
+        .natural(entry.origin.request_id)
+        .bytes(std::as_bytes(std::span{entry.origin.request}))
+        .bytes(std::as_bytes(std::span{entry.answer}))
+        .integer(std::int64_t{entry.control.endless})
+        .integer(as_stored(entry.control.until_generation))
+        .integer(as_stored(entry.control.until_tick))
+        .integer(std::int64_t{entry.control.paused})
+        .real(entry.control.speed)
+        .finish();
+}
+
+std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
+    if (parameter_sets_ == 0)
+        parameter_sets_ = database_.number("SELECT max(number) FROM parameters");
+    if (last_parameters_ && last_parameters_->revision == parameters.revision &&
+        last_parameters_->active == parameters.active && last_parameters_->requested == parameters.requested)
+        return parameter_sets_;
+    using simulation::Written;
+    writers()
+        .parameters.integer(++parameter_sets_)
+        .natural(parameters.revision)
+        .text(to_experiment_text(parameters.active, Written::Everything))
+        .text(to_experiment_text(parameters.requested, Written::Everything))
+        .finish();
+    last_parameters_ = parameters;
+    return parameter_sets_;
+}
+
+void RunFile::write(const GenerationBegun& begun) {
+    const simulation::Opening& opening = begun.opening;
+    const std::int64_t parameters = number_of(opening.parameters);
+    writers()
+        .generation.natural(opening.moment.generation)
+        .natural(opening.moment.tick)
+        .real(opening.moment.simulated_s)
+        .integer(parameters)
+        .natural(opening.progress.generations)
+        .natural(opening.progress.stagnant)
+        .real(opening.progress.best_fitness)
+        .real(opening.progress.last_best_fitness)
+        .integer(std::int64_t{opening.progress.last_died_out})
+        .finish();
+    for (std::size_t island = 0; island < begun.born.size(); ++island) {
+        const evolution::NextGeneration& born = begun.born[island];
+        writers()
+            .population.natural(opening.moment.generation)
+            .natural(island)
+            .integer(born.genes.cols())
+            .natural(born.elite_count)
+            .natural(born.survivor_count)
+            .natural(born.clamped_count)
+            .bytes(std::as_bytes(std::span{born.genes.data(), static_cast<std::size_t>(born.genes.size())}))
+            .bytes(bytes_of(born.parents))
+            .finish();
+    }
+}
+
+void RunFile::write(const GenerationEnded& ended) {
+    for (std::size_t island = 0; island < ended.outcomes.size(); ++island) {
+        const IslandOutcome& outcome = ended.outcomes[island];
+        writers()
+            .outcome.natural(ended.generation)
+            .natural(island)
+            .bytes(bytes_of(outcome.fitness))
+            .bytes(bytes_of(outcome.lived_ticks))
+            .bytes(bytes_of(outcome.cause))
+            .finish();
+    }
+    for (const simulation::GenerationStatistics& statistics : ended.statistics) {
+        simulation::for_each_number(statistics, [&](const std::string&, auto value) {
+            if constexpr (std::is_floating_point_v<decltype(value)>)
+                writers().statistics.real(value);
+            else
+                writers().statistics.integer(static_cast<std::int64_t>(value));
+        });
+        writers().statistics.finish();
+    }
+}
+
+void RunFile::write(const HashLink& link) {
+    writers().link.natural(link.tick).natural(link.hash.low).natural(link.hash.high).finish();
+}
+
+void RunFile::write(const EndMark& mark) {
+    writers()
+        .end.integer(std::int64_t{1})
+        .text(mark.ended ? "ended" : "closed")
+        .natural(mark.tick)
+        .natural(mark.journal_entries)
+        .natural(mark.generations)
+        .natural(mark.links)
+        .finish();
+}
+
+Result<void> RunFile::commit() {
+    database_.run("COMMIT");
+    if (database_.failed())
+        return failure();
+    marked_ = false;
+    return {};
+}
+
+} // namespace evod::storage

@@ -1,0 +1,109 @@
+// Run file: one world's run as an SQLite database, `NAME.evod`. Tables and columns: docs/RUN_FILE.md.
+//
+// Every row has a checksum, and the rows of each table are numbered without gaps, so damage is found when what it hit
+// is read, and named. The first moment of every generation is there whole: whatever came after it is simulated again.
+//
+// Owner        one thread at a time: the storage thread while a server runs.
+#pragma once
+
+#include "server/base/result.h"
+#include "server/storage/database.h"
+#include "server/storage/records.h"
+#include "server/storage/row.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::storage {
+
+enum class Durability {
+    Full,    // what has been committed is on the disk
+    Relaxed, // what has been committed survives the program, but perhaps not the machine
+};
+
+class RunFile {
+  public:
+    static constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the file
+    static constexpr std::int64_t format_version = 1;
+
+    struct Options {
+        Durability durability = Durability::Full;
+        const char* vfs = nullptr; // as Database takes it
+    };
+
+    /// A new file; refused if there is one.
+    static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
+                                                         const Options& options);
+    /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
+    /// was to create it did not come to the end of it.
+    static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
+    /// To be looked at, while a server writes to it too.
+    static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
+
+    const std::string& path() const { return path_; }
+    const RunIdentity& identity() const { return identity_; }
+    /// Refused unless this program follows the model by which the run was made.
+    std::optional<base::Refusal> other_model() const;
+
+    // Reading. DATA_LOSS names the row that is not as it was written.
+
+    base::Result<std::optional<EndMark>> end_mark();
+    /// The entries from number `first` on.
+    base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1);
+    /// Of generations whose beginning is held; 0 if none is yet.
+    std::uint64_t last_generation();
+    /// Nothing if the generation's beginning is not held.
+    base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
+    /// Nothing if the generation has not ended, or its outcome is not held.
+    base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
+    /// Of the newest `count` generations that have ended, oldest first.
+    base::Result<simulation::World::History> history(std::size_t count);
+    /// In order of ticks, those after `after` up to `until`.
+    base::Result<std::vector<HashLink>> links(std::uint64_t after, std::uint64_t until);
+    /// What an end mark would say of what is there: its tick is the last that anything in the file tells of.
+    EndMark contents();
+    /// The newest that has ended; 0 if none has.
+    std::uint64_t last_generation_ended();
+    /// Whether SQLite finds the file sound, and every row is as it was written. Reads everything.
+    base::Result<void> check();
+
+    // Writing. After something has gone wrong nothing more is written: commit() says what, and the file is to be opened
+    // anew. What is written again takes the place of what was there.
+
+    void begin();
+    void write(const JournalEntry& entry);
+    void write(const GenerationBegun& begun);
+    void write(const GenerationEnded& ended);
+    void write(const HashLink& link);
+    void write(const EndMark& mark);
+    /// Refused with the reason; then it is unknown whether what was written since begin() is there.
+    base::Result<void> commit();
+
+  private:
+    struct Writers;
+    RunFile(const std::string& path, Database::Mode mode, const Options& options);
+    void create_tables();
+    void write_identity(const RunIdentity& identity);
+    base::Result<void> read_identity();
+    base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
+    std::int64_t number_of(const simulation::ParameterSet& parameters);
+    /// What the database says has gone wrong, with the path.
+    base::Refusal failure() const;
+    base::Refusal damaged(const std::string& what) const;
+    Writers& writers();
+
+    std::string path_;
+    Database database_;
+    RunIdentity identity_;
+    std::unique_ptr<Writers> writers_;
+    std::optional<simulation::ParameterSet> last_parameters_; // written, under parameter_sets_
+    std::int64_t parameter_sets_ = 0;
+    bool marked_ = false; // there may be an end mark
+
+  public:
+    ~RunFile();
+};
+
+} // namespace evod::storage

@@ -1,0 +1,96 @@
+// Storage thread: writes what runs hand over to their files, several records a commit.
+//
+//   records wait → one transaction a run → commit → those who asked are told that it is on the disk
+//
+// A commit is made at once for a record that somebody waits for, else for what has come together in `gathering_time`.
+//
+// Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
+//              anew and everything that may be missing written again, every `retry_time`, until it is there.
+// Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
+// Full         has_room() is false from `waiting_bytes_max` on; whoever hands over stops making more.
+#pragma once
+
+#include "server/storage/run_file.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace evod::storage {
+
+class StorageThread {
+  public:
+    static constexpr std::chrono::milliseconds gathering_time{200};
+    static constexpr std::chrono::milliseconds retry_time{250};
+    static constexpr std::size_t waiting_bytes_max = 64 << 20;
+
+    /// A run while its file is open here.
+    using RunNumber = std::uint64_t;
+    /// Called on the storage thread once the record is on the disk.
+    using Done = std::function<void()>;
+    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, EndMark>;
+
+    explicit StorageThread(RunFile::Options options, std::chrono::milliseconds retry_after = retry_time);
+    /// Writes what waits, as far as that can be done now, and ends.
+    ~StorageThread();
+
+    /// A new file for a run.
+    RunNumber create(const std::string& path, RunIdentity identity);
+    /// A file that is there and has been read.
+    RunNumber adopt(std::unique_ptr<RunFile> file);
+    void write(RunNumber run, Record record, Done done = {});
+    /// The end mark; then the file is closed, and renamed if `renamed` is given.
+    void close(RunNumber run, const EndMark& mark, std::string renamed = {}, Done done = {});
+
+    /// Whether everything handed over is written.
+    bool idle() const { return waiting_bytes_.load(std::memory_order_acquire) == 0; }
+    bool has_room() const { return waiting_bytes_.load(std::memory_order_relaxed) < waiting_bytes_max; }
+    /// Why nothing gets onto the disk at present; nothing if it does.
+    std::optional<std::string> trouble() const;
+
+  private:
+    struct Item {
+        Record record;
+        Done done;
+        std::size_t bytes = 0;
+    };
+    struct Run {
+        std::string path, renamed;
+        std::optional<RunIdentity> to_create;
+        std::unique_ptr<RunFile> file; // nullptr: to be opened, or created
+        std::vector<Item> waiting;
+        bool closing = false;
+    };
+
+    void work();
+    /// Writes what waits for a run; false if that failed.
+    bool write_out(Run& run);
+    base::Result<void> open(Run& run);
+    void set_trouble(const std::string& why);
+
+    const RunFile::Options options_;
+    const std::chrono::milliseconds retry_after_;
+    std::atomic<std::size_t> waiting_bytes_ = 0;
+
+    mutable std::mutex mutex_; // guards what follows
+    std::condition_variable changed_;
+    std::map<RunNumber, std::vector<Item>> handed_over_;
+    std::map<RunNumber, Run> new_runs_;
+    std::map<RunNumber, std::string> closing_; // → renamed
+    RunNumber last_number_ = 0;
+    bool urgent_ = false, stopping_ = false;
+    std::string trouble_;
+
+    std::map<RunNumber, Run> runs_; // the storage thread's own
+    std::thread thread_;            // last: it uses the rest
+};
+
+} // namespace evod::storage

@@ -1,0 +1,125 @@
+#include "server/storage/data_folder.h"
+
+#include "server/storage/archive.h"
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+namespace evod::storage {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(DataFolder, KeepsASecondServerOut) {
+    TemporaryFolder folder;
+    {
+        const auto first = DataFolder::open(folder.path() + "/new/folder");
+        ASSERT_TRUE(first) << to_text(first.error());
+        const auto second = DataFolder::open(folder.path() + "/new/folder");
+        ASSERT_FALSE(second);
+        EXPECT_THAT(second.error().message, HasSubstr("another server is using it"));
+    }
+    EXPECT_TRUE(DataFolder::open(folder.path() + "/new/folder"));
+}
+
+TEST(DataFolder, IsRefusedWhereThereCanBeNone) {
+    TemporaryFolder folder;
+    std::ofstream{folder.path() + "/file"} << "text";
+    EXPECT_THAT(DataFolder::open(folder.path() + "/file").error().message, HasSubstr(folder.path() + "/file"));
+}
+
+TEST(DataFolder, TellsRunsOfWorldsFromEndedOnes) {
+    TemporaryFolder folder;
+    const auto data = DataFolder::open(folder.path());
+    const std::string ended = data->ended_file_of("b", {0xabc, 1});
+    for (const std::string& path : {data->file_of("b"), data->file_of("a"), ended, folder.path() + "/notes.txt",
+                                    folder.path() + "/no name.evod", data->file_of("a") + "-wal"})
+        std::ofstream{path} << "text";
+    const auto files = data->files();
+    ASSERT_TRUE(files);
+    EXPECT_THAT(files->of_worlds, testing::ElementsAre(data->file_of("a"), data->file_of("b")));
+    EXPECT_THAT(files->ended, testing::ElementsAre(ended));
+}
+
+class ArchiveTest : public testing::Test {
+  protected:
+    void record(std::uint64_t ticks) {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.command(set_parameter("food_health", 2.0));
+        run.advance(ticks);
+        hash = run.world().hash();
+        run.recorder().close_all(run.laboratory());
+    }
+    auto open() { return Archive::open(folder.path(), {}, executor); }
+
+    TemporaryFolder folder;
+    base::InlineExecutor executor;
+    base::StateHash hash;
+};
+
+TEST_F(ArchiveTest, BringsAWorldBackAndGoesOnWritingIt) {
+    record(100);
+    for (const std::uint64_t tick : {100u, 190u, 280u}) { // the last moment of each time
+        const auto archive = open();
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        EXPECT_EQ((*archive)->take_answers().at(0).answer, "answer 1");
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        simulation::Entry& entry = **laboratory.find("w");
+        EXPECT_EQ(entry.run_id, (simulation::RunId{1, 2}));
+        EXPECT_EQ(entry.world.moment().tick, tick);
+        EXPECT_EQ(entry.world.hash(), hash);
+        for (int i = 0; i < 90; ++i) {
+            laboratory.advance(entry, executor);
+            (*archive)->recorder().of("w")->follow(entry.world);
+        }
+        hash = entry.world.hash();
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+        const auto file = RunFile::open_read_only(folder.path() + "/w.evod");
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+    }
+}
+
+TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
+    record(200);
+    {
+        Database database{folder.path() + "/w.evod", Database::Mode::Write};
+        database.run("UPDATE journal SET tick = 1");
+    }
+    const auto archive = open();
+    ASSERT_FALSE(archive);
+    EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
+    EXPECT_THAT(archive.error().message, HasSubstr("w.evod"));
+}
+
+TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorld) {
+    std::ofstream{folder.path() + "/w.evod"};
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_EQ((*archive)->identity_of("w"), nullptr);
+}
+
+TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
+    record(100);
+    {
+        const auto file = RunFile::open(folder.path() + "/w.evod", {});
+        (*file)->begin();
+        EndMark mark = (*file)->contents();
+        mark.ended = true;
+        (*file)->write(mark);
+        ASSERT_TRUE((*file)->commit());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
+}
+
+} // namespace
+} // namespace evod::storage

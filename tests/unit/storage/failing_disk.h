@@ -1,0 +1,19 @@
+// Failing disk: SQLite's usual way to the disk, but for one write, sync or truncation that fails.
+#pragma once
+
+#include <cstdint>
+
+namespace evod::storage {
+
+enum class Failure { InputOutput, Full, Torn }; // Torn: half of a write is made, then it fails
+
+/// The name to hand to RunFile::Options::vfs. Registers it when first asked.
+const char* failing_disk();
+
+/// The number `count` operation from now on fails, and no other; 0: none does.
+void fail_operation(std::uint64_t count, Failure how);
+
+/// Whether the operation that was to fail has.
+bool has_failed();
+
+} // namespace evod::storage

@@ -1,0 +1,104 @@
+// Recorded run: a world in a laboratory that is written to a file as a server does it, in a folder of its own.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "server/base/inline_executor.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/parameters.h"
+#include "server/storage/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace evod::storage {
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
+        EXPECT_NE(mkdtemp(name.data()), nullptr);
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::string& path() const { return path_; }
+    void clear() const {
+        for (const auto& file : std::filesystem::directory_iterator{path_})
+            std::filesystem::remove(file);
+    }
+
+  private:
+    std::string path_;
+};
+
+/// A world that breeds soon and dies now and then: twelve organisms, generations of two seconds, two islands.
+inline simulation::Parameters small_world() {
+    simulation::Parameters parameters;
+    parameters.population_size = 12;
+    parameters.generation_s = 2;
+    parameters.island_count = 2;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 2;
+    parameters.food_count = 40;
+    return parameters;
+}
+
+inline v1::Request set_parameter(const std::string& name, simulation::ParameterValue value) {
+    v1::Request request;
+    v1::ParameterAssignment& assignment = *request.mutable_set_parameters()->add_parameters();
+    assignment.set_name(name);
+    *assignment.mutable_value() = protocol::to_proto(value);
+    return request;
+}
+
+class RecordedRun {
+  public:
+    /// folder, thread: outlive it.
+    RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7}) : recorder_{folder, thread} {
+        EXPECT_TRUE(laboratory_.apply(simulation::CreateWorld{"w", small_world(), seed, {1, 2}}));
+        recorder_.begin(entry());
+    }
+
+    simulation::Entry& entry() { return **laboratory_.find("w"); }
+    simulation::World& world() { return entry().world; }
+    Recorder& recorder() { return recorder_; }
+    const simulation::Laboratory& laboratory() const { return laboratory_; }
+
+    void advance(std::uint64_t ticks) {
+        for (std::uint64_t tick = 0; tick < ticks && world().outcome() == evolution::Outcome::Running; ++tick) {
+            laboratory_.advance(entry(), executor_);
+            recorder_.of("w")->follow(world());
+        }
+    }
+
+    void command(
+        v1::Request request, StorageThread::Done done = [] {}) {
+        request.set_client_key("test");
+        request.set_request_id(++requests_);
+        const auto command = protocol::to_command(request, {});
+        ASSERT_TRUE(command) << to_text(command.error());
+        const auto applied = laboratory_.apply(*command);
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.of("w")->journal(applied->tick, entry().control,
+                                   {.client = "somebody",
+                                    .client_key = "test",
+                                    .request_id = requests_,
+                                    .request = request.SerializeAsString()},
+                                   "answer " + std::to_string(requests_), std::move(done));
+    }
+
+  private:
+    base::InlineExecutor executor_;
+    simulation::Laboratory laboratory_;
+    Recorder recorder_;
+    std::uint64_t requests_ = 0;
+};
+
+} // namespace evod::storage

@@ -1,0 +1,269 @@
+#include "server/storage/run_file.h"
+
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace evod::storage {
+namespace {
+
+using base::RefusalCode;
+using testing::HasSubstr;
+
+std::string content_of(const std::string& path) {
+    std::ifstream file{path, std::ios::binary};
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+}
+
+void put(const std::string& path, std::string_view bytes) {
+    std::ofstream{path, std::ios::binary}.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+void change(const std::string& path, const char* sql) {
+    Database database{path, Database::Mode::Write};
+    database.run(sql);
+    ASSERT_FALSE(database.failed()) << database.error();
+}
+
+/// Everything that a sound file tells, as one text.
+std::string told_by(RunFile& file) {
+    std::ostringstream text;
+    text << file.identity().name << ' ' << to_text(file.identity().run_id) << ' ' << file.identity().seed.value << '\n';
+    for (const JournalEntry& entry : *file.journal())
+        text << entry.number << ' ' << entry.tick << ' ' << entry.origin.client << ' ' << entry.origin.client_key << ' '
+             << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
+    for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
+        const auto begun = *file.beginning_of(generation);
+        text << generation << ' ' << begun->opening.moment.tick << ' ' << begun->opening.parameters.revision << '\n';
+        for (const evolution::NextGeneration& born : begun->born)
+            text << born.genes << '\n';
+        if (const auto ended = *file.outcome_of(generation))
+            for (const IslandOutcome& outcome : ended->outcomes)
+                for (const double fitness : outcome.fitness)
+                    text << fitness << ' ';
+    }
+    for (const HashLink& link : *file.links(0, file.contents().tick))
+        text << link.tick << ' ' << to_text(link.hash) << '\n';
+    return text.str();
+}
+
+class RunFileTest : public testing::Test {
+  protected:
+    /// The file of a run of four generations and a half with changes, closed.
+    std::string recorded() {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.advance(130);
+        run.command(set_parameter("mutation_chance", 0.5));
+        run.advance(410);
+        run.command(set_parameter("food_health", 7.0));
+        run.recorder().close_all(run.laboratory());
+        return data->file_of("w");
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
+    const RunIdentity identity{.name = "w",
+                               .run_id = {0x0123456789abcdef, 0xfedcba9876543210},
+                               .seed = {~std::uint64_t{0}},
+                               .parameters = small_world(),
+                               .began_unix_ms = 1234};
+    base::InlineExecutor executor;
+    simulation::World world{identity.parameters, identity.seed};
+    const GenerationBegun begun{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
+    while (!world.generation_over())
+        world.advance_tick(executor);
+    const GenerationEnded ended{
+        1,
+        {{world.fitness()[0], world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},
+         {world.fitness()[1], world.islands()[1].fate().lived_ticks, world.islands()[1].fate().cause}},
+        world.history().back()};
+    world.turn_over(executor);
+    const GenerationBegun second{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
+    const JournalEntry entry{
+        .number = 1,
+        .tick = 17,
+        .origin = {"ä \n client", "key", ~std::uint64_t{0}, std::string("\0\1\2", 3)},
+        .answer = std::string("\0\xff", 2),
+        .control = {
+            .endless = true, .until_generation = 3, .until_tick = std::nullopt, .paused = true, .speed = std::nullopt}};
+    const std::string path = folder.path() + "/run.evod";
+    {
+        const auto file = RunFile::create(path, identity, {});
+        ASSERT_TRUE(file) << to_text(file.error());
+        (*file)->begin();
+        (*file)->write(begun);
+        (*file)->write(entry);
+        (*file)->write(HashLink{60, {1, ~std::uint64_t{0}}});
+        (*file)->write(ended);
+        (*file)->write(second);
+        ASSERT_TRUE((*file)->commit());
+    }
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->identity().name, "w");
+    EXPECT_EQ((*file)->identity().run_id, identity.run_id);
+    EXPECT_EQ((*file)->identity().seed.value, identity.seed.value);
+    EXPECT_TRUE((*file)->identity().parameters == identity.parameters);
+    EXPECT_EQ((*file)->identity().began_unix_ms, 1234);
+    EXPECT_FALSE(*(*file)->end_mark());
+
+    const auto journal = *(*file)->journal();
+    ASSERT_EQ(journal.size(), 1u);
+    EXPECT_EQ(journal[0].tick, entry.tick);
+    EXPECT_EQ(journal[0].origin.client, entry.origin.client);
+    EXPECT_EQ(journal[0].origin.request_id, entry.origin.request_id);
+    EXPECT_EQ(journal[0].origin.request, entry.origin.request);
+    EXPECT_EQ(journal[0].answer, entry.answer);
+    EXPECT_EQ(journal[0].control.until_generation, 3u);
+    EXPECT_FALSE(journal[0].control.until_tick);
+    EXPECT_FALSE(journal[0].control.speed);
+    EXPECT_TRUE(journal[0].control.endless && journal[0].control.paused);
+
+    for (const auto& [generation, expected] : {std::pair{1u, &begun}, {2u, &second}}) {
+        const auto read = *(*file)->beginning_of(generation);
+        ASSERT_TRUE(read);
+        EXPECT_EQ(read->opening.moment.tick, expected->opening.moment.tick);
+        EXPECT_EQ(read->opening.moment.simulated_s, expected->opening.moment.simulated_s);
+        EXPECT_EQ(read->opening.progress, expected->opening.progress);
+        EXPECT_TRUE(read->opening.parameters.active == expected->opening.parameters.active);
+        ASSERT_EQ(read->born.size(), 2u);
+        for (std::size_t island = 0; island < 2; ++island) {
+            EXPECT_TRUE((read->born[island].genes == expected->born[island].genes).all());
+            EXPECT_EQ(read->born[island].parents, expected->born[island].parents);
+            EXPECT_EQ(read->born[island].elite_count, expected->born[island].elite_count);
+            EXPECT_EQ(read->born[island].survivor_count, expected->born[island].survivor_count);
+            EXPECT_EQ(read->born[island].clamped_count, expected->born[island].clamped_count);
+        }
+    }
+    const auto outcome = *(*file)->outcome_of(1);
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(outcome->outcomes, ended.outcomes);
+    ASSERT_EQ(outcome->statistics.size(), 2u);
+    EXPECT_EQ(outcome->statistics[1].fitness_median, ended.statistics[1].fitness_median);
+    EXPECT_FALSE(*(*file)->outcome_of(2));
+    EXPECT_FALSE(*(*file)->beginning_of(3));
+    EXPECT_EQ((*(*file)->links(0, 60))[0].hash.high, ~std::uint64_t{0});
+    EXPECT_EQ((*(*file)->history(10)).size(), 1u);
+    EXPECT_EQ((*file)->contents().tick, 120u);
+}
+
+TEST_F(RunFileTest, IsSoundWhenARunHasBeenWritten) {
+    const auto file = RunFile::open_read_only(recorded());
+    ASSERT_TRUE(file) << to_text(file.error());
+    const auto checked = (*file)->check();
+    ASSERT_TRUE(checked) << to_text(checked.error());
+    const auto mark = *(*file)->end_mark();
+    ASSERT_TRUE(mark);
+    EXPECT_FALSE(mark->ended);
+    EXPECT_EQ(mark->tick, 540u);
+    EXPECT_EQ(mark->journal_entries, 2u);
+    EXPECT_EQ(mark->generations, 5u);
+    EXPECT_EQ(mark->links, 9u);
+}
+
+TEST_F(RunFileTest, NamesTheTableThatIsNotAsItWasWritten) {
+    const std::string path = recorded(), sound = content_of(path);
+    for (const auto& [sql, named] : {
+             std::pair{"UPDATE run SET value = '8' WHERE key = 'seed'", "seed"},
+             {"DELETE FROM run WHERE key = 'parameters'", "table run"},
+             {"UPDATE journal SET tick = tick + 1 WHERE number = 2", "journal"},
+             {"DELETE FROM journal WHERE number = 1", "journal"},
+             {"UPDATE parameters SET revision = revision + 1 WHERE number = 2", "parameters"},
+             {"UPDATE generation SET simulated_s = 0 WHERE generation = 3", "row 3 of its table generation"},
+             {"DELETE FROM generation WHERE generation = 3", "row 3 of its table generation"},
+             {"UPDATE population SET chromosomes = zeroblob(288) WHERE generation = 2", "population of generation 2"},
+             {"DELETE FROM population WHERE generation = 2 AND island = 1", "population of generation 2"},
+             {"UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 4 AND island = 1",
+              "outcome of generation 4"},
+             {"DELETE FROM outcome WHERE generation = 2", "outcome of generation 2"},
+             {"UPDATE statistics SET alive_count = alive_count + 1 WHERE generation = 2", "statistics of generation 2"},
+             {"UPDATE state_hash SET low = low + 1 WHERE tick = 60", "state_hash"},
+             {"DELETE FROM state_hash WHERE tick = 120", "state_hash"},
+             {"UPDATE end_mark SET tick = 539", "end mark"},
+             {"DELETE FROM state_hash WHERE tick = 540", "end mark"},
+         }) {
+        put(path, sound);
+        ASSERT_NO_FATAL_FAILURE(change(path, sql));
+        const auto file = RunFile::open_read_only(path);
+        const base::Refusal refused = file ? (*file)->check().error() : file.error();
+        EXPECT_EQ(refused.code, RefusalCode::DataLoss) << sql;
+        EXPECT_THAT(refused.message, HasSubstr(named)) << sql;
+        EXPECT_THAT(refused.message, HasSubstr(path)) << sql;
+    }
+}
+
+TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
+    const std::string path = folder.path() + "/other.evod";
+    const auto refused = [&] { return RunFile::open(path, {}).error(); };
+    EXPECT_EQ(refused().code, RefusalCode::Unavailable); // not there
+    put(path,
+        "no database, but longer than the head of one, which is a hundred bytes and begins with a text of its own");
+    EXPECT_EQ(refused().code, RefusalCode::DataLoss);
+    put(path, "");
+    EXPECT_EQ(refused().code, RefusalCode::NotFound);
+    std::filesystem::remove(path);
+    {
+        Database foreign{path, Database::Mode::Create};
+        foreign.run("CREATE TABLE songs (title TEXT)");
+    }
+    EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
+    std::filesystem::remove(path);
+    const std::string newer = recorded();
+    change(newer, "PRAGMA user_version = 2");
+    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 2"));
+}
+
+TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {
+    const std::string path = recorded();
+    EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
+              RefusalCode::AlreadyExists);
+}
+
+TEST_F(RunFileTest, AFlippedBitIsNamedOrHitWhatNobodyReads) {
+    const std::string path = recorded(), sound = content_of(path);
+    std::string told;
+    {
+        const auto file = RunFile::open_read_only(path);
+        told = told_by(**file);
+    }
+    std::mt19937 random{5};
+    int named = 0, unread = 0;
+    for (int flip = 0; flip < 1500; ++flip) {
+        const std::size_t byte = random() % sound.size();
+        std::string flipped = sound;
+        flipped[byte] = static_cast<char>(flipped[byte] ^ (1 << random() % 8));
+        put(path, flipped);
+        const auto file = RunFile::open_read_only(path);
+        if (!file || !(*file)->check()) {
+            ++named;
+            continue;
+        }
+        ++unread;
+        ASSERT_EQ(told_by(**file), told) << "byte " << byte;
+    }
+    EXPECT_GT(named, 0);
+    EXPECT_GT(unread, 0);
+}
+
+TEST_F(RunFileTest, AClosedFileThatIsCutIsNamed) {
+    const std::string path = recorded(), sound = content_of(path);
+    std::mt19937 random{6};
+    for (int cut = 0; cut < 300; ++cut) {
+        put(path, std::string_view{sound}.substr(0, random() % sound.size()));
+        const auto file = RunFile::open_read_only(path);
+        EXPECT_TRUE(!file || !(*file)->check());
+    }
+}
+
+} // namespace
+} // namespace evod::storage
