@@ -28,6 +28,8 @@ struct ServeOptions {
     std::optional<std::uint64_t> seed;
     std::string speed;
     bool start = false;
+    std::string data_folder;
+    std::string durability = "full";
 };
 
 /// Says why evod cannot start, and what to do.
@@ -69,14 +71,19 @@ int serve(const ServeOptions& options) {
         create.seed = base::Seed{*options.seed};
 
     const std::string name = create.name;
-    const base::Seed seed = create.seed;
-    network::ServerOptions server_options{
-        .bind_address = options.bind_address, .port = options.port, .threads = options.threads, .first_commands = {}};
-    server_options.first_commands.emplace_back(std::move(create));
+    network::ServerOptions server_options{.bind_address = options.bind_address,
+                                          .port = options.port,
+                                          .threads = options.threads,
+                                          .data_folder = options.data_folder,
+                                          .durability = options.durability == "relaxed" ? storage::Durability::Relaxed
+                                                                                        : storage::Durability::Full,
+                                          .first_world = std::move(create),
+                                          .first_world_asked = !options.experiment_file.empty() || options.seed,
+                                          .first_seed_asked = options.seed.has_value(),
+                                          .first_speed = {},
+                                          .first_run = options.start};
     if (!options.speed.empty())
-        server_options.first_commands.emplace_back(simulation::SetSpeed{name, *parse_speed(options.speed)});
-    if (options.start)
-        server_options.first_commands.emplace_back(simulation::Run{name, {}});
+        server_options.first_speed = *parse_speed(options.speed);
 
     const auto server = network::Server::open(std::move(server_options));
     if (!server)
@@ -85,8 +92,9 @@ int serve(const ServeOptions& options) {
     if (!endpoint.address().is_loopback())
         spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
                      endpoint.address().to_string());
-    spdlog::info("evod {} listening on {}:{}, world \"{}\", seed {}", EVOD_VERSION, endpoint.address().to_string(),
-                 endpoint.port(), name, seed.value);
+    const auto seed = (*server)->first_seed();
+    spdlog::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
+                 seed ? ", world \"" + name + "\", seed " + std::to_string(seed->value) : std::string{});
     (*server)->run();
     spdlog::info("stopped");
     return 0;
@@ -112,6 +120,14 @@ int main(int argument_count, char** arguments) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
         });
     app.add_flag("--start", options.start, "Run at once, without end");
+    app.add_option("--data", options.data_folder,
+                   "Folder for the run files: worlds found there go on; without it nothing is kept");
+    app.add_option(
+           "--durability", options.durability,
+           "When a command is answered. full: once it is on the disk; relaxed: before, so that it survives evod, "
+           "but perhaps not the machine")
+        ->check(CLI::IsMember({"full", "relaxed"}))
+        ->capture_default_str();
     app.footer("Without a subcommand evod is a server.");
 
     console::RunOptions run_options;

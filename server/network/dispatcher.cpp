@@ -116,6 +116,12 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     }
 }
 
+void Dispatcher::restore(const std::vector<storage::JournalEntry>& answers) {
+    for (const storage::JournalEntry& entry : answers)
+        retries_.restore(entry.origin.client_key, entry.origin.request_id, entry.origin.request,
+                         std::make_shared<const std::string>(entry.answer));
+}
+
 void Dispatcher::command(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     const auto refused = [id](const base::Refusal& why) { return encode_response(protocol::refusing(id, why)); };
@@ -146,20 +152,24 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         break;
     }
 
-    // On the simulation thread: the answer shows the state in which the command begins to hold.
+    // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
+    // the command cannot be lost any more.
     auto reply = [this, request, by = session.by()](const simulation::Laboratory& laboratory,
                                                     const simulation::Command& applied_command,
                                                     const base::Result<simulation::Applied>& applied) {
-        outbox_.answer([this, key = request.client_key(), request_id = request.request_id(),
-                        response = response_to(request, laboratory, applied)]() mutable {
-            retries_.finish(key, request_id, encode_response(std::move(response)));
-        });
-        if (!applied || !demand_.events_wanted())
-            return;
-        if (auto event = protocol::event_of(applied_command, *applied, by, laboratory))
-            outbox_.event([this, told = *std::move(event)]() mutable { streams_.tell(std::move(told)); });
+        const SharedBytes frame = encode_response(response_to(request, laboratory, applied));
+        std::optional<v1::Event> event;
+        if (applied && demand_.events_wanted())
+            event = protocol::event_of(applied_command, *applied, by, laboratory);
+        return runtime::CommandAnswer{
+            *frame, [this, key = request.client_key(), request_id = request.request_id(), frame, event] {
+                outbox_.answer([this, key, request_id, frame] { retries_.finish(key, request_id, frame); });
+                if (event)
+                    outbox_.event([this, event] { streams_.tell(*event); });
+            }};
     };
-    if (!mailbox_.try_push(runtime::CommandMail{*std::move(command), std::move(reply)}))
+    storage::Origin origin{.client = session.by(), .client_key = key, .request_id = id, .request = bytes_of(request)};
+    if (!mailbox_.try_push(runtime::CommandMail{*std::move(command), std::move(origin), std::move(reply)}))
         retries_.forget(key, id, refused(busy()));
 }
 

@@ -21,6 +21,9 @@ class Dispatcher {
 
     void handle(Session& session, v1::Request request);
 
+    /// Answers that were given before this server started.
+    void restore(const std::vector<storage::JournalEntry>& answers);
+
     /// From now on every request is refused: the server is going away.
     void refuse_all() { going_away_ = true; }
 

@@ -63,6 +63,12 @@ void Retries::finish(const std::string& client_key, std::uint64_t request_id, co
     trim_keys();
 }
 
+void Retries::restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
+                      const SharedBytes& answer) {
+    if (begin(client_key, request_id, request, [](const SharedBytes&) {}) == Verdict::New)
+        finish(client_key, request_id, answer);
+}
+
 void Retries::forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
     const auto found = keys_.find(client_key);
     if (found == keys_.end())

@@ -47,6 +47,10 @@ class Retries {
     /// The answer to a command that was begun: tells all who wait, and keeps it.
     void finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 
+    /// A command that was run before this server started, with its answer.
+    void restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
+                 const SharedBytes& answer);
+
     /// The command was begun and could not be run for now: tells all who wait, and may be sent again.
     void forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer);
 

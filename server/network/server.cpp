@@ -1,8 +1,11 @@
 #include "server/network/server.h"
 
+#include "server/base/assert.h"
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
+#include "server/protocol/commands.h"
 #include "server/protocol/events.h"
+#include "server/protocol/parameters.h"
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -17,6 +20,8 @@ namespace evod::network {
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
+    if (auto opened = server->open_archive(); !opened)
+        return opened.error();
     auto listener = Listener::open(server->context_, server->options_.bind_address, server->options_.port);
     if (!listener)
         return listener.error();
@@ -47,14 +52,106 @@ Server::Server(ServerOptions options)
 
 Server::~Server() = default;
 
+base::Result<void> Server::open_archive() {
+    const std::string& path = options_.data_folder;
+    if (path.empty())
+        return {};
+    auto archive = storage::Archive::open(path, {.durability = options_.durability}, *executor_);
+    if (!archive)
+        return archive.error();
+    archive_ = *std::move(archive);
+    host_.durability =
+        options_.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
+    if (!options_.first_world_asked)
+        return {};
+    const simulation::CreateWorld& wanted = options_.first_world;
+    const storage::RunIdentity* there = archive_->identity_of(wanted.name);
+    const auto differs = [&](const std::string& in_what) {
+        return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
+                             .message = path + " holds a world \"" + wanted.name + "\" that began with other " +
+                                        in_what +
+                                        ": begin elsewhere with another --data, or start without --experiment and "
+                                        "--seed, and reset or delete that world",
+                             .violations = {}};
+    };
+    if (there && !(there->parameters == wanted.parameters))
+        return differs("parameters");
+    if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value)
+        return differs("seed (" + std::to_string(there->seed.value) + ")");
+    return {};
+}
+
+bool Server::creates_first_world() const {
+    if (!archive_)
+        return true;
+    return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->holds_worlds();
+}
+
+std::optional<base::Seed> Server::first_seed() const {
+    if (creates_first_world())
+        return options_.first_world.seed;
+    const storage::RunIdentity* there = archive_->identity_of(options_.first_world.name);
+    return there ? std::optional{there->seed} : std::nullopt;
+}
+
+void Server::begin_first_world() {
+    const simulation::CreateWorld& world = options_.first_world;
+    if (creates_first_world()) {
+        v1::Request request;
+        v1::CreateWorld& create = *request.mutable_create_world();
+        create.set_name(world.name);
+        create.set_seed(world.seed.value);
+        for (const simulation::ParameterDescription& parameter : simulation::parameter_registry()) {
+            const simulation::ParameterValue value = parameter.get(world.parameters);
+            if (value == parameter.default_value())
+                continue;
+            v1::ParameterAssignment& assignment = *create.add_parameters();
+            assignment.set_name(std::string{parameter.name});
+            *assignment.mutable_value() = protocol::to_proto(value);
+        }
+        command_of_own(std::move(request));
+    }
+    if (options_.first_speed) {
+        v1::Request request;
+        request.mutable_set_speed()->set_world(world.name);
+        if (*options_.first_speed)
+            request.mutable_set_speed()->mutable_speed()->set_real_time_factor(**options_.first_speed);
+        else
+            request.mutable_set_speed()->mutable_speed()->set_max(true);
+        command_of_own(std::move(request));
+    }
+    if (options_.first_run) {
+        v1::Request request;
+        request.mutable_run()->set_world(world.name);
+        command_of_own(std::move(request));
+    }
+}
+
+void Server::command_of_own(v1::Request request) {
+    request.set_client_key("evod " + host_.instance_id);
+    request.set_request_id(++own_request_id_);
+    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    EVOD_ASSERT(command.has_value());
+    mailbox_.try_push(runtime::CommandMail{*std::move(command),
+                                           {.client = "evod",
+                                            .client_key = request.client_key(),
+                                            .request_id = request.request_id(),
+                                            .request = request.SerializeAsString()},
+                                           [](const simulation::Laboratory&, const simulation::Command&,
+                                              const base::Result<simulation::Applied>& applied) {
+                                               if (!applied)
+                                                   spdlog::error("cannot begin as asked: {}", to_text(applied.error()));
+                                               return runtime::CommandAnswer{};
+                                           }});
+}
+
 void Server::run() {
-    for (simulation::Command& command : options_.first_commands)
-        mailbox_.try_push(
-            runtime::CommandMail{std::move(command), [](const simulation::Laboratory&, const simulation::Command&,
-                                                        const base::Result<simulation::Applied>& applied) {
-                                     if (!applied)
-                                         spdlog::error("cannot begin as asked: {}", to_text(applied.error()));
-                                 }});
+    simulation::Laboratory worlds;
+    if (archive_) {
+        dispatcher_.restore(archive_->take_answers());
+        worlds = archive_->take_laboratory();
+    }
+    begin_first_world();
     simulation_ = std::make_unique<runtime::SimulationThread>(
         mailbox_, demand_, *executor_, clock_,
         runtime::LoopOutputs{
@@ -67,7 +164,8 @@ void Server::run() {
                             streams_.tell(std::move(told));
                         });
                 },
-            .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }});
+            .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }},
+        std::move(worlds), archive_ ? &archive_->recorder() : nullptr);
 
     signals_.async_wait([this](boost::system::error_code error, int signal) {
         if (error)
@@ -118,6 +216,8 @@ void Server::go_away() {
     dispatcher_.refuse_all();
     // What was admitted is still answered.
     simulation_->stop();
+    if (archive_)
+        archive_->close();
     deliver();
     v1::Event event;
     event.mutable_server_going_away();

@@ -6,6 +6,7 @@
 #include "server/network/dispatcher.h"
 #include "server/network/listener.h"
 #include "server/runtime/simulation_thread.h"
+#include "server/storage/archive.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -19,16 +20,28 @@ namespace evod::network {
 
 struct ServerOptions {
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = wire::default_port;         // 0: any that is free
-    std::size_t threads = 1;                         // of the worker pool
-    std::vector<simulation::Command> first_commands; // applied before any other
+    std::uint16_t port = wire::default_port; // 0: any that is free
+    std::size_t threads = 1;                 // of the worker pool
+    std::string data_folder;                 // where runs are kept; empty: nowhere
+    storage::Durability durability = storage::Durability::Full;
+
+    simulation::CreateWorld first_world; // made if there is none of its name
+    bool first_world_asked = false;      // otherwise it is made only if there is no world at all
+    bool first_seed_asked = false;       // a world that goes on must have begun with the seed of first_world
+    // Then applied to first_world, before any other command.
+    std::optional<simulation::Speed> first_speed;
+    bool first_run = false; // without end
 };
 
 class Server {
   public:
-    /// Takes the port. Refuses with a sentence for the person who started it.
+    /// Brings back the worlds of the data folder, and takes the port. Refuses with a sentence for the person who
+    /// started it.
     static base::Result<std::unique_ptr<Server>> open(ServerOptions options);
     ~Server();
+
+    /// The seed of the first world; nothing if there is none of that name, as others go on.
+    std::optional<base::Seed> first_seed() const;
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_->endpoint(); }
 
@@ -40,6 +53,11 @@ class Server {
 
   private:
     explicit Server(ServerOptions options);
+    base::Result<void> open_archive();
+    /// The commands that options ask for.
+    bool creates_first_world() const;
+    void begin_first_world();
+    void command_of_own(v1::Request request);
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
     void go_away();
@@ -50,6 +68,7 @@ class Server {
     std::optional<Listener> listener_;
 
     std::unique_ptr<base::Executor> executor_;
+    std::unique_ptr<storage::Archive> archive_; // nullptr: nothing is kept
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;
     runtime::Demand demand_;
@@ -62,6 +81,7 @@ class Server {
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses
+    std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };
 

@@ -193,6 +193,7 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_instance_id(host_.instance_id);
     welcome.add_features("codec:columns");
     *welcome.mutable_limits() = limits_message();
+    welcome.set_durability(host_.durability);
     enqueue(encode_control(message), Kind::Unasked);
 }
 

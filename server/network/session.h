@@ -35,6 +35,7 @@ using SessionPtr = std::shared_ptr<Session>;
 /// What a session needs of the rest of the server.
 struct SessionHost {
     std::string instance_id; // 32 hexadecimal digits
+    v1::Durability durability = v1::DURABILITY_NONE;
     std::function<void(Session&, v1::Request)> handle;
     std::function<void(Session&)> ended; // called once
 };

@@ -7,6 +7,7 @@
 #include "server/base/result.h"
 #include "server/runtime/clock.h"
 #include "server/simulation/laboratory.h"
+#include "server/storage/records.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -20,15 +21,22 @@ namespace evod::runtime {
 
 constexpr std::size_t mailbox_commands_max = 1024;
 
+/// The answer to a command, and how to give it to whoever waits for it.
+struct CommandAnswer {
+    std::string frame;
+    std::function<void()> give; // called on the simulation thread or the storage thread; must not block
+};
+
 /// Called on the simulation thread as soon as the command is applied or refused: what it reads of the laboratory is the
-/// state in which the command begins to hold.
+/// state in which the command begins to hold. The answer is given at once, or when the command is on the disk.
 ///
 /// command  as applied: it names its world.
-using CommandReply = std::function<void(const simulation::Laboratory&, const simulation::Command& command,
-                                        const base::Result<simulation::Applied>&)>;
+using CommandReply = std::function<CommandAnswer(const simulation::Laboratory&, const simulation::Command& command,
+                                                 const base::Result<simulation::Applied>&)>;
 
 struct CommandMail {
     simulation::Command command;
+    storage::Origin origin;
     CommandReply reply;
 };
 

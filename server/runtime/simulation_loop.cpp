@@ -13,16 +13,34 @@ Clock::duration seconds(double s) {
 
 constexpr std::chrono::milliseconds measuring_time{1000};
 
+void give(const CommandAnswer& answer) {
+    if (answer.give)
+        answer.give();
+}
+
+bool changes_something(const simulation::Command& command) {
+    const auto* set = std::get_if<simulation::SetParameters>(&command);
+    return set == nullptr || !set->dry_run;
+}
+
 } // namespace
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                               LoopOutputs outputs)
-    : mailbox_{mailbox}, demand_{demand}, executor_{executor}, clock_{clock}, outputs_{std::move(outputs)} {}
+                               LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder)
+    : mailbox_{mailbox}
+    , demand_{demand}
+    , executor_{executor}
+    , clock_{clock}
+    , outputs_{std::move(outputs)}
+    , laboratory_{std::move(laboratory)}
+    , recorder_{recorder} {}
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
     mind_mail();
     mind_demand();
     follow_worlds();
+    if (recorder_ && !recorder_->has_room())
+        return clock_.now() + slice; // the disk does not keep up: every world waits
 
     // Paced worlds first: they have a time to keep.
     std::optional<Clock::time_point> next;
@@ -79,12 +97,52 @@ void SimulationLoop::apply(CommandMail& mail) {
             }
         },
         mail.command);
-    const auto applied = laboratory_.apply(mail.command);
+    std::optional<RunBefore> before;
+    std::visit(
+        [&](const auto& command) {
+            if constexpr (requires { command.world; })
+                if (const auto entry = std::as_const(laboratory_).find(command.world))
+                    before = {(*entry)->run_id, (*entry)->world.moment().tick};
+        },
+        mail.command);
+    const auto applied = apply(mail.command);
     tell_events();
-    mail.reply(laboratory_, mail.command, applied);
+    CommandAnswer answer = mail.reply(laboratory_, mail.command, applied);
+    if (recorder_ && applied && changes_something(mail.command))
+        record(mail, *applied, std::move(answer), before);
+    else
+        give(answer);
     if (applied)
         if (const auto track = tracks_.find(applied->world); track != tracks_.end())
             track->second.changed = true;
+}
+
+base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
+    if (recorder_ && changes_something(command))
+        if (auto refused = recorder_->refusal())
+            return *refused;
+    return laboratory_.apply(command);
+}
+
+void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
+                            const std::optional<RunBefore>& before) {
+    const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
+    const bool begins = std::holds_alternative<simulation::CreateWorld>(mail.command) ||
+                        std::holds_alternative<simulation::ResetWorld>(mail.command);
+    if (std::holds_alternative<simulation::ResetWorld>(mail.command))
+        recorder_->end(applied.world, before->run_id, before->tick);
+    const auto entry = std::as_const(laboratory_).find(applied.world);
+    storage::RunRecorder& run = begins ? recorder_->begin(**entry) : *recorder_->of(applied.world);
+    run.journal(applied.tick, ends ? simulation::RunControl{} : (*entry)->control, std::move(mail.origin),
+                std::move(answer.frame), std::move(answer.give));
+    if (ends)
+        recorder_->end(applied.world, before->run_id, before->tick);
+}
+
+void SimulationLoop::close() {
+    mind_mail();
+    if (recorder_)
+        recorder_->close_all(laboratory_);
 }
 
 void SimulationLoop::mind_demand() {
@@ -115,6 +173,8 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
             found->second.watch = &watch->second;
     }
     Track& track = found->second;
+    if (recorder_)
+        track.recorder = recorder_->of(entry.name);
     const bool wants_tick = entry.wants_tick();
     const double tick_s = entry.world.parameters().active.tick_s;
     const bool anew = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
@@ -141,6 +201,8 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
     const bool paced = entry.control.speed.has_value();
     do {
         laboratory_.advance(entry, executor_);
+        if (track.recorder)
+            track.recorder->follow(entry.world);
         ++track.ticks;
         const bool stopped = !entry.wants_tick();
         if (stopped) {

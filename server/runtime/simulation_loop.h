@@ -17,6 +17,7 @@
 #include "server/runtime/mailbox.h"
 #include "server/runtime/snapshot.h"
 #include "server/simulation/laboratory.h"
+#include "server/storage/recorder.h"
 
 #include <functional>
 #include <map>
@@ -37,20 +38,26 @@ class SimulationLoop {
     static constexpr std::chrono::milliseconds catch_up_max{50};
 
     /// Everything handed in outlives the loop.
-    SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs);
+    ///
+    /// laboratory  with the worlds that are there from the beginning.
+    /// recorder    what is done is written down there, and commands are answered once they are; nullptr: nothing is.
+    SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
+                   simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr);
 
     /// Minds the mail and advances what is due, for about a slice per world. Returns when it wants to be called again
     /// if nothing comes; nullopt: not until then.
     std::optional<Clock::time_point> pass();
 
-    /// Minds the mail that waits and advances nothing: at the end.
     void mind_mail();
+    /// At the end: minds the mail that waits, and closes what is recorded.
+    void close();
 
     const simulation::Laboratory& laboratory() const { return laboratory_; }
 
   private:
     /// What is known of a world here; by name, and forgotten when the run id is another.
     struct Track {
+        storage::RunRecorder* recorder = nullptr;
         simulation::RunId run_id;
         simulation::Speed speed;
         double tick_s = 0;
@@ -68,6 +75,15 @@ class SimulationLoop {
     };
 
     void apply(CommandMail& mail);
+    base::Result<simulation::Applied> apply(const simulation::Command& command);
+    /// The run of a command's world before the command.
+    struct RunBefore {
+        simulation::RunId run_id;
+        std::uint64_t tick;
+    };
+    /// Writes down a command that was applied.
+    void record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
+                const std::optional<RunBefore>& before);
     void mind_demand();
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
@@ -83,6 +99,7 @@ class SimulationLoop {
     Clock& clock_;
     const LoopOutputs outputs_;
     simulation::Laboratory laboratory_;
+    storage::Recorder* recorder_;
     std::map<std::string, Track, std::less<>> tracks_;
     Watches watches_;
     SnapshotPool pool_;

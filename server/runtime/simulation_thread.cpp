@@ -7,15 +7,17 @@
 namespace evod::runtime {
 
 SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                                   LoopOutputs outputs)
-    : mailbox_{mailbox}, loop_{mailbox, demand, executor, clock, std::move(outputs)}, thread_{[this] {
+                                   LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder)
+    : mailbox_{mailbox}
+    , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder}
+    , thread_{[this] {
         pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
             if (!next || !mailbox_.pending())
                 mailbox_.wait(next);
         }
-        loop_.mind_mail();
+        loop_.close();
     }} {}
 
 void SimulationThread::stop() {

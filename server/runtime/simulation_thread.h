@@ -11,7 +11,8 @@ namespace evod::runtime {
 class SimulationThread {
   public:
     /// Starts. Everything handed in outlives the thread.
-    SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs);
+    SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
+                     simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr);
     ~SimulationThread() { stop(); }
 
     /// Minds the mail that waits and ends; returns when it has.

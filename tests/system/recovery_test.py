@@ -1,0 +1,271 @@
+"""Real servers that keep their runs, killed and started again: nothing that was answered is lost or done twice.
+
+    EVOD=… MESSAGES=… recovery_test.py      how often it kills: KILLS (25)
+"""
+import os
+import pathlib
+import random
+import re
+import secrets
+import signal
+import socket
+import sqlite3
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+sys.path.insert(0, os.environ["MESSAGES"])
+from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w  # noqa: E402
+
+evod, kills = os.environ["EVOD"], int(os.environ.get("KILLS", "25"))
+patience_s = 60
+
+
+def until(condition, what):
+    end = time.monotonic() + patience_s
+    while time.monotonic() < end:
+        if value := condition():
+            return value
+        time.sleep(0.002)
+    raise AssertionError(f"did not happen within {patience_s} s: {what}")
+
+
+class Server:
+    def __init__(self, *options):
+        self.log = tempfile.TemporaryFile()
+        self.process = subprocess.Popen([evod, "--port", "0", *options], stdout=self.log, stderr=self.log)
+        until(lambda: self.process.poll() is not None or "listening on" in self.output(), "ready")
+        if self.process.poll() is not None:
+            raise AssertionError("evod ended at once:\n" + self.output())
+        self.port = int(re.search(r"listening on 127\.0\.0\.1:(\d+)", self.output())[1])
+
+    def output(self):
+        return os.pread(self.log.fileno(), 1 << 20, 0).decode(errors="replace")
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(patience_s)
+
+    def end(self):
+        self.process.send_signal(signal.SIGTERM)
+        assert self.process.wait(patience_s) == 0, self.output()
+
+
+class Client:
+    """Asks one thing after another; EOFError when the server has gone."""
+
+    def __init__(self, server, key):
+        self.key, self.socket = key, socket.create_connection(("127.0.0.1", server.port))
+        self.socket.settimeout(patience_s)
+        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="kills")))
+        assert self.receive().HasField("welcome")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.socket.close()
+
+    def send(self, message):
+        body = message.SerializeToString()
+        try:
+            self.socket.sendall(b"EV\x01\x01" + struct.pack("<I", len(body)) + body)
+        except (BrokenPipeError, ConnectionResetError) as gone:
+            raise EOFError from gone
+
+    def read(self, count):
+        data = b""
+        while len(data) < count:
+            try:
+                more = self.socket.recv(count - len(data))
+            except ConnectionResetError:
+                more = b""
+            if not more:
+                raise EOFError
+            data += more
+        return data
+
+    def receive(self):
+        while True:
+            _, _, channel, length = struct.unpack("<2sBBI", self.read(8))
+            body = self.read(length)
+            if channel == 1:
+                return session_pb2.ServerMessage.FromString(body)
+
+    def call(self, request_id, **request):
+        self.send(session_pb2.ClientMessage(request=c.Request(request_id=request_id, client_key=self.key, **request)))
+        while True:
+            message = self.receive()
+            if message.HasField("response") and message.response.request_id == request_id:
+                return message.response
+
+    def world(self, name=""):
+        worlds = self.call(1 << 40, list_worlds=c.ListWorlds()).worlds.worlds
+        return next((x for x in worlds if not name or x.name == name), None)
+
+
+def set_parameter(name, value, world=""):
+    return {"set_parameters": c.SetParameters(world=world, parameters=[
+        w.ParameterAssignment(name=name, value=w.ParameterValue(real=value))])}
+
+
+def journal(data, world="default"):
+    with sqlite3.connect(f"file:{data}/{world}.evod?mode=ro", uri=True) as run:
+        return run.execute("SELECT number, tick, client_key, request_id FROM journal ORDER BY number").fetchall()
+
+
+class Recovery(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.data = self.folder.name
+        self.servers = []
+
+    def tearDown(self):
+        for server in self.servers:
+            if server.process.poll() is None:
+                server.kill()
+            server.log.close()
+        self.folder.cleanup()
+
+    def serve(self, *options):
+        self.servers.append(Server("--data", self.data, *options))
+        return self.servers[-1]
+
+    def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
+        chance, key, answered, request_id = random.Random(3), secrets.token_hex(8), {}, 0
+        options = ["--seed", "11", "--speed", "max", "--start"]
+        for kill in range(kills):
+            server = self.serve("--threads", str(1 + kill % 3), *(options if kill == 0 else []))
+            threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
+            try:
+                with Client(server, key) as client:
+                    # What had been answered before is answered the same, and what had not may have been done or not.
+                    for known in sorted(answered)[-3:]:
+                        again = client.call(known, **set_parameter("food_health", answered[known][1]))
+                        self.assertEqual(again.applied_tick, answered[known][0])
+                    while True:
+                        request_id += 1
+                        value = chance.uniform(1, 9)
+                        try:
+                            response = client.call(request_id, **set_parameter("food_health", value))
+                        except EOFError:
+                            answered[request_id] = (None, value)
+                            raise
+                        self.assertEqual(response.status.code, 0, response)
+                        answered[request_id] = (response.applied_tick, value)
+            except EOFError:
+                pass
+            server.process.wait(patience_s)
+            # Sent again to the next server, the last one is done now if it was not.
+            if request_id in answered and answered[request_id][0] is None:
+                server = self.serve()
+                with Client(server, key) as client:
+                    response = client.call(request_id, **set_parameter("food_health", answered[request_id][1]))
+                    answered[request_id] = (response.applied_tick, answered[request_id][1])
+                server.kill()
+        # Every request is in the journal once, at the tick it was answered with.
+        kept = [row for row in journal(self.data) if row[2] == key]
+        self.assertEqual([row[3] for row in kept], sorted(answered))
+        self.assertEqual([row[1] for row in kept], [answered[i][0] for i in sorted(answered)])
+
+        # A run that was never stopped, with the same commands at the same ticks, has the same hashes.
+        server = self.serve()
+        with Client(server, key) as client:
+            self.assertEqual(client.call(request_id + 1, pause=c.Pause()).status.code, 0)
+            last = client.world()
+        server.end()
+        with tempfile.TemporaryDirectory() as other:
+            whole = Server("--data", other, "--seed", "11", "--speed", "max")
+            self.servers.append(whole)
+            number = 0
+            with Client(whole, "again") as client:
+                def run_to(tick):
+                    nonlocal number
+                    number += 1
+                    client.call(number, run_until_tick=c.RunUntilTick(tick=tick))
+                    until(lambda: client.world().tick == tick, f"tick {tick}")
+                for i in sorted(answered):
+                    tick, value = answered[i]
+                    run_to(tick)
+                    number += 1
+                    self.assertEqual(client.call(number, **set_parameter("food_health", value)).applied_tick, tick)
+                run_to(last.tick)
+                self.assertEqual(client.world().state_hash, last.state_hash)
+            whole.end()
+
+    def test_a_closed_server_goes_on_where_it_stood_and_as_it_was_told(self):
+        server = self.serve("--seed", "5", "--speed", "max")
+        with Client(server, "k") as client:
+            client.call(1, run=c.Run(generations=3))
+            until(lambda: client.world().generation == 3 and client.world().state == w.RUN_STATE_WAITING, "3 generations")
+            client.call(2, run_until_tick=c.RunUntilTick(tick=7777))
+            until(lambda: client.world().tick == 7777, "tick 7777")
+            client.call(3, create_world=c.CreateWorld(name="second", seed=2))
+            before = {x.name: x for x in client.call(99, list_worlds=c.ListWorlds()).worlds.worlds}
+        server.end()
+        server = self.serve("--threads", "3")
+        with Client(server, "k") as client:
+            after = {x.name: x for x in client.call(99, list_worlds=c.ListWorlds()).worlds.worlds}
+            self.assertEqual(set(after), {"default", "second"})
+            for name in before:
+                for field in ("tick", "generation", "state_hash", "state", "run_id", "seed", "speed"):
+                    self.assertEqual(getattr(after[name], field), getattr(before[name], field), f"{name}: {field}")
+        server.end()
+
+    def test_reset_and_delete_put_the_run_aside_and_are_done_once(self):
+        server = self.serve("--seed", "5", "--speed", "max")
+        with Client(server, "k") as client:
+            first_run = client.world().run_id
+            client.call(1, run_until_tick=c.RunUntilTick(tick=100))
+            until(lambda: client.world().tick == 100, "tick 100")
+            reset = client.call(2, reset_world=c.ResetWorld())
+            second_run = client.world().run_id
+            client.call(3, delete_world=c.DeleteWorld(world="default"))
+            client.call(4, create_world=c.CreateWorld(name="default", seed=9))
+            third_run = client.world().run_id
+        server.kill()
+        files = {x.name for x in pathlib.Path(self.data).glob("*.evod")}
+        self.assertEqual(files, {"default.evod", f"default.{first_run}.evod", f"default.{second_run}.evod"})
+        server = self.serve()
+        with Client(server, "k") as client:
+            again = client.call(3, delete_world=c.DeleteWorld(world="default"))
+            self.assertEqual(again.status.code, 0)
+            self.assertEqual(client.world().run_id, third_run)
+            self.assertEqual(reset.status.code, 0)
+        server.end()
+
+    def test_an_experiment_goes_on_only_if_it_is_the_same(self):
+        path = pathlib.Path(self.data) / "plate.json"
+        path.write_text('{"population_size": 20, "seed": 4}')
+        self.serve("--experiment", str(path), "--speed", "max", "--start").end()
+        self.serve("--experiment", str(path), "--seed", "4").end()
+        for options, why in ((["--seed", "5"], "seed"), ([], "parameters")):
+            if not options:
+                path.write_text('{"population_size": 21, "seed": 4}')
+            refused = subprocess.run([evod, "--port", "0", "--data", self.data, "--experiment", str(path), *options],
+                                     capture_output=True, text=True, timeout=patience_s)
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn(f'a world "plate" that began with other {why}', refused.stderr)
+            self.assertIn("--data", refused.stderr)
+
+    def test_a_second_server_and_a_damaged_file_are_refused_by_name(self):
+        server = self.serve("--seed", "5")
+        refused = subprocess.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True,
+                                 timeout=patience_s)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("another server is using it", refused.stderr)
+        server.end()
+        with sqlite3.connect(f"{self.data}/default.evod") as run:
+            run.execute("UPDATE population SET chromosomes = zeroblob(1200)")
+        refused = subprocess.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True,
+                                 timeout=patience_s)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
