@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <iostream>
 #include <thread>
 
@@ -29,6 +30,7 @@ struct ServeOptions {
     std::string speed;
     bool start = false;
     std::string data_folder;
+    bool keep_nothing = false;
     std::string durability = "full";
 };
 
@@ -36,6 +38,17 @@ struct ServeOptions {
 int fail(const std::string& why) {
     std::cerr << "evod: " << why << '\n';
     return 1;
+}
+
+/// Where runs are kept if nobody says where: the XDG Base Directory Specification's place for what a user's programs
+/// remember. Nothing if the environment names no such place.
+std::optional<std::string> state_folder() {
+    // A path that is not absolute is to be ignored.
+    if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/')
+        return std::string{state} + "/evod";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+        return std::string{home} + "/.local/state/evod";
+    return std::nullopt;
 }
 
 /// "max" or a factor of real time; nullopt: neither.
@@ -70,11 +83,19 @@ int serve(const ServeOptions& options) {
     if (options.seed)
         create.seed = base::Seed{*options.seed};
 
+    std::string data_folder = options.data_folder;
+    if (data_folder.empty() && !options.keep_nothing) {
+        const auto folder = state_folder();
+        if (!folder)
+            return fail("neither XDG_STATE_HOME nor HOME says where runs could be kept: name a folder with --data, or "
+                        "give --keep-nothing");
+        data_folder = *folder;
+    }
     const std::string name = create.name;
     network::ServerOptions server_options{.bind_address = options.bind_address,
                                           .port = options.port,
                                           .threads = options.threads,
-                                          .data_folder = options.data_folder,
+                                          .data_folder = data_folder,
                                           .durability = options.durability == "relaxed" ? storage::Durability::Relaxed
                                                                                         : storage::Durability::Full,
                                           .first_world = std::move(create),
@@ -88,6 +109,8 @@ int serve(const ServeOptions& options) {
     const auto server = network::Server::open(std::move(server_options));
     if (!server)
         return fail(server.error().message);
+    if (!data_folder.empty())
+        spdlog::info("runs are kept in {}", data_folder);
     const auto endpoint = (*server)->endpoint();
     if (!endpoint.address().is_loopback())
         spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
@@ -120,8 +143,10 @@ int main(int argument_count, char** arguments) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
         });
     app.add_flag("--start", options.start, "Run at once, without end");
-    app.add_option("--data", options.data_folder,
-                   "Folder for the run files: worlds found there go on; without it nothing is kept");
+    CLI::Option* data = app.add_option("--data", options.data_folder,
+                                       "Folder where runs are kept, a file each; worlds found there go on. Otherwise "
+                                       "$XDG_STATE_HOME/evod, or ~/.local/state/evod");
+    app.add_flag("--keep-nothing", options.keep_nothing, "Keep no files: runs end with the server")->excludes(data);
     app.add_option(
            "--durability", options.durability,
            "When a command is answered. full: once it is on the disk; relaxed: before, so that it survives evod, "

@@ -80,7 +80,7 @@ class Client:
 
 def start(*arguments):
     began = time.perf_counter()
-    process = subprocess.Popen([options.evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([options.evod, "--port", "0", "--keep-nothing", *arguments], stdout=subprocess.PIPE, text=True)
     line = process.stdout.readline()
     port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
     Client(port)

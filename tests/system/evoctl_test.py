@@ -18,8 +18,10 @@ class WithServer(unittest.TestCase):
     options = ["--seed", "1", "--speed", "max"]
 
     def setUp(self):
-        self.server = subprocess.Popen([EVOD, "--port", "0", *self.options], stdout=subprocess.PIPE,
-                                       stderr=subprocess.STDOUT, text=True)
+        data = tempfile.TemporaryDirectory()
+        self.addCleanup(data.cleanup)
+        self.server = subprocess.Popen([EVOD, "--port", "0", "--data", data.name, *self.options],
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(self.end_server)
         for line in self.server.stdout:
             if found := re.search(r"listening on 127\.0\.0\.1:(\d+)", line):

@@ -48,8 +48,9 @@ def until(condition, what, pause_s=0.005):
 
 class Server:
     def __init__(self, *options, **popen):
-        self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([evod_path, "--port", "0", *options], stdout=self.log, stderr=self.log, **popen)
+        self.log, self.data = tempfile.TemporaryFile(), tempfile.TemporaryDirectory()
+        self.process = subprocess.Popen([evod_path, "--port", "0", "--data", self.data.name, *options],
+                                        stdout=self.log, stderr=self.log, **popen)
         line = until(lambda: self.process.poll() is not None or
                      re.search(r"listening on 127\.0\.0\.1:(\d+), world \"(\S+)\", seed (\d+)", self.output()), "ready")
         if line is True:

@@ -35,9 +35,9 @@ def until(condition, what):
 
 
 class Server:
-    def __init__(self, *options):
+    def __init__(self, *options, **popen):
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([evod, "--port", "0", *options], stdout=self.log, stderr=self.log)
+        self.process = subprocess.Popen([evod, "--port", "0", *options], stdout=self.log, stderr=self.log, **popen)
         until(lambda: self.process.poll() is not None or "listening on" in self.output(), "ready")
         if self.process.poll() is not None:
             raise AssertionError("evod ended at once:\n" + self.output())
@@ -251,6 +251,22 @@ class Recovery(unittest.TestCase):
             self.assertEqual(refused.returncode, 1)
             self.assertIn(f'a world "plate" that began with other {why}', refused.stderr)
             self.assertIn("--data", refused.stderr)
+
+    def test_runs_are_kept_in_the_users_state_folder_unless_told_otherwise(self):
+        for variable, folder in (("XDG_STATE_HOME", f"{self.data}/evod"), ("HOME", f"{self.data}/.local/state/evod")):
+            server = Server(env={variable: self.data})
+            self.servers.append(server)
+            server.end()
+            self.assertIn(f"runs are kept in {folder}", server.output())
+            self.assertTrue(os.path.exists(f"{folder}/default.evod"))
+        refused = subprocess.run([evod, "--port", "0"], env={}, capture_output=True, text=True, timeout=patience_s)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("--data", refused.stderr)
+        before = set(pathlib.Path(self.data).rglob("*"))
+        server = Server("--keep-nothing", env={"HOME": self.data})
+        self.servers.append(server)
+        server.end()
+        self.assertEqual(set(pathlib.Path(self.data).rglob("*")), before)
 
     def test_a_second_server_and_a_damaged_file_are_refused_by_name(self):
         server = self.serve("--seed", "5")

@@ -132,7 +132,7 @@ class RealServer {
 
   private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), {"--port", "0"});
+        arguments.insert(arguments.end(), {"--port", "0", "--keep-nothing"});
         return arguments;
     }
     Process process_;
