@@ -1,6 +1,7 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
 #include "server/console/check.h"
 #include "server/console/experiment_file.h"
+#include "server/console/fork.h"
 #include "server/console/parameter_list.h"
 #include "server/console/run.h"
 #include "server/network/random_ids.h"
@@ -175,6 +176,18 @@ int main(int argument_count, char** arguments) {
     CLI::App& check = *app.add_subcommand("check", "Say what an experiment file changes, or what is wrong with it");
     check.add_option("experiment", checked_file, "JSON file")->required();
 
+    console::ForkOptions fork_options;
+    CLI::App& fork = *app.add_subcommand("fork", "Make a second world from a past generation of a run file");
+    fork.add_option("run", fork_options.run_file, "Run file, of a server that runs or not")->required();
+    fork.add_option("--at-generation", fork_options.at_generation, "Begins with its first tick")
+        ->required()
+        ->check(whole_number);
+    fork.add_option("--name", fork_options.name, "Of the new world")->required();
+    fork.add_option("--data", fork_options.data_folder,
+                    "Folder to make it in, which no server may be using; otherwise where a server keeps its runs");
+    fork.footer(
+        "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
+
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
 
@@ -188,6 +201,14 @@ int main(int argument_count, char** arguments) {
         return console::run(run_options);
     if (check.parsed())
         return console::check(checked_file);
+    if (fork.parsed()) {
+        if (fork_options.data_folder.empty())
+            fork_options.data_folder = state_folder().value_or("");
+        if (fork_options.data_folder.empty())
+            return fail("neither XDG_STATE_HOME nor HOME says where runs are kept: name a folder with --data");
+        fork_options.run_id = network::draw_run_id();
+        return console::fork(fork_options);
+    }
     if (parameters.parsed()) {
         std::cout << console::parameter_list();
         return 0;

@@ -23,6 +23,9 @@ struct RunIdentity {
     std::string evod_version = EVOD_VERSION;
     std::uint32_t model_version = simulation::model_version;
     std::int64_t began_unix_ms = 0; // the clock on the wall, for people; nothing depends on it
+    // A fork begins with a generation of another run; `parameters` are those that were asked for there.
+    std::uint64_t first_generation = 1;
+    std::optional<simulation::RunId> forked_from = std::nullopt;
 };
 
 /// Who asked for a command, and how.

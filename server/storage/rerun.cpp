@@ -36,7 +36,8 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     auto begun = file.beginning_of(generation);
     if (!begun)
         return begun.error();
-    if (!*begun && generation != 1)
+    const std::uint64_t first_generation = file.identity().first_generation;
+    if (!*begun && !(generation == 1 && first_generation == 1))
         return Refusal{.code = RefusalCode::NotFound,
                        .message = file.path() + " holds no generation " + std::to_string(generation),
                        .violations = {}};
@@ -44,7 +45,7 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     const std::uint64_t begun_tick = *begun ? (*begun)->opening.moment.tick : 0;
     std::vector<Change> changes;
     for (const JournalEntry& entry : *journal) {
-        if (generation == 1 ? false : entry.tick <= begun_tick)
+        if (generation != first_generation && entry.tick <= begun_tick)
             continue;
         auto command = command_of(entry.origin.request);
         if (!command)
@@ -91,7 +92,7 @@ void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
 
 Result<Recovered> recover(RunFile& file, base::Executor& executor) {
     const std::uint64_t last_tick = file.contents().tick;
-    auto rerun = Rerun::at(file, std::max<std::uint64_t>(1, file.last_generation()), executor);
+    auto rerun = Rerun::at(file, std::max(file.identity().first_generation, file.last_generation()), executor);
     if (!rerun)
         return rerun.error();
     const std::uint64_t from = rerun->world().moment().tick;

@@ -13,8 +13,8 @@ namespace evod::storage {
 
 class Rerun {
   public:
-    /// At the first moment of a generation whose beginning the file holds; 1 is always held. Refused if the file is
-    /// damaged there, follows another model, or has no such generation.
+    /// At the first moment of a generation whose beginning the file holds; its first is always held. Refused if the
+    /// file is damaged there, follows another model, or has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
 
     const simulation::World& world() const { return world_; }

@@ -72,6 +72,14 @@ std::optional<T> number_from(const std::string& text, int base = 10) {
     return read.ec == std::errc{} && read.ptr == text.data() + text.size() ? std::optional{value} : std::nullopt;
 }
 
+std::optional<simulation::RunId> run_id_from(const std::string& text) {
+    if (text.size() != 32)
+        return std::nullopt;
+    const auto high = number_from<std::uint64_t>(text.substr(0, 16), 16);
+    const auto low = number_from<std::uint64_t>(text.substr(16), 16);
+    return high && low ? std::optional{simulation::RunId{*high, *low}} : std::nullopt;
+}
+
 std::optional<std::int64_t> as_stored(const std::optional<std::uint64_t>& value) {
     return value ? std::optional{static_cast<std::int64_t>(*value)} : std::nullopt;
 }
@@ -122,13 +130,15 @@ Refusal RunFile::damaged(const std::string& what) const {
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
-                                                 const Options& options) {
+                                                 const Options& options, const GenerationBegun* beginning) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
     if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
     file->begin();
     file->create_tables();
     file->write_identity(identity);
+    if (beginning != nullptr)
+        file->write(*beginning);
     if (auto committed = file->commit(); !committed)
         return committed.error();
     file->identity_ = identity;
@@ -191,6 +201,8 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("evod_version", identity.evod_version);
     put("model_version", std::to_string(identity.model_version));
     put("began_unix_ms", std::to_string(identity.began_unix_ms));
+    put("first_generation", std::to_string(identity.first_generation));
+    put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
 }
 
 Result<void> RunFile::read_identity() {
@@ -230,11 +242,12 @@ Result<void> RunFile::read_identity() {
         if (key == "name") {
             identity_.name = value;
         } else if (key == "run_id") {
-            good = value.size() == 32;
-            if (good)
-                take(number_from<std::uint64_t>(value.substr(0, 16), 16), identity_.run_id.high);
-            if (good)
-                take(number_from<std::uint64_t>(value.substr(16), 16), identity_.run_id.low);
+            take(run_id_from(value), identity_.run_id);
+        } else if (key == "forked_from") {
+            identity_.forked_from = run_id_from(value);
+            good = value.empty() || identity_.forked_from;
+        } else if (key == "first_generation") {
+            take(number_from<std::uint64_t>(value), identity_.first_generation);
         } else if (key == "seed") {
             take(number_from<std::uint64_t>(value), identity_.seed.value);
         } else if (key == "parameters") {
@@ -257,7 +270,7 @@ Result<void> RunFile::read_identity() {
     }
     if (database_.failed())
         return failure();
-    constexpr std::size_t keys = 7;
+    constexpr std::size_t keys = 9;
     if (known != keys)
         return damaged("its table run");
     return {};
@@ -435,7 +448,8 @@ Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generat
 Result<simulation::World::History> RunFile::history(std::size_t count) {
     simulation::World::History history;
     const auto last = static_cast<std::int64_t>(last_generation_ended());
-    const std::int64_t first = std::max<std::int64_t>(1, last - static_cast<std::int64_t>(count) + 1);
+    const std::int64_t first =
+        std::max(static_cast<std::int64_t>(identity_.first_generation), last - static_cast<std::int64_t>(count) + 1);
     RowReader numbers{
         database_, "statistics", statistics_columns(), "generation >= ? ORDER BY generation, island", {first}};
     while (numbers.next()) {
@@ -506,12 +520,15 @@ Result<void> RunFile::check() {
     if (auto entries = journal(); !entries)
         return entries.error();
     const std::uint64_t last = last_generation();
-    for (std::uint64_t generation = 1; generation <= last; ++generation) {
+    std::uint64_t first_tick = 0;
+    for (std::uint64_t generation = identity_.first_generation; generation <= last; ++generation) {
         const auto begun = beginning_of(generation);
         if (!begun)
             return begun.error();
         if (!*begun)
             return damaged(row_of("generation", generation));
+        if (generation == identity_.first_generation)
+            first_tick = (*begun)->opening.moment.tick;
         const auto ended = outcome_of(generation);
         if (!ended)
             return ended.error();
@@ -522,9 +539,10 @@ Result<void> RunFile::check() {
     const auto chain = links(0, found.tick);
     if (!chain)
         return chain.error();
-    for (std::size_t i = 0; i < chain->size(); ++i)
-        if ((*chain)[i].tick != (i + 1) * ticks_per_link)
-            return damaged(row_of("state_hash", (i + 1) * ticks_per_link));
+    std::uint64_t expected = first_tick / ticks_per_link * ticks_per_link;
+    for (const HashLink& link : *chain)
+        if (link.tick != (expected += ticks_per_link))
+            return damaged(row_of("state_hash", expected));
     const auto mark = end_mark();
     if (!mark)
         return mark.error();

@@ -34,8 +34,11 @@ class RunFile {
     };
 
     /// A new file; refused if there is one.
+    ///
+    /// beginning  of identity.first_generation; may follow later for a run that begins with generation 1.
     static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
-                                                         const Options& options);
+                                                         const Options& options,
+                                                         const GenerationBegun* beginning = nullptr);
     /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
     /// was to create it did not come to the end of it.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);

@@ -44,7 +44,8 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/runtime",
      {"server/storage", "server/protocol", "server/simulation", "server/evolution", "server/physics", "server/base",
       "proto/wire", "proto/evod", "tests/support"}}, // the tsan preset's worker pool is that of tests/support
-    {"server/console", {"server/runtime", "server/simulation", "server/evolution", "server/physics", "server/base"}},
+    {"server/console",
+     {"server/runtime", "server/storage", "server/simulation", "server/evolution", "server/physics", "server/base"}},
     {"server/network",
      {"server/runtime", "server/storage", "server/protocol", "server/simulation", "server/evolution", "server/base",
       "proto/wire",

@@ -1097,7 +1097,9 @@ class Queries(WithServer):
 
 class StartAndEnd(unittest.TestCase):
     def start_refused(self, *options, status=1):
-        ended = subprocess.run([evod_path, *options], capture_output=True, text=True, timeout=patience_s)
+        with tempfile.TemporaryDirectory() as state:
+            ended = subprocess.run([evod_path, *options], capture_output=True, text=True, timeout=patience_s,
+                                   env={**os.environ, "XDG_STATE_HOME": state})
         self.assertEqual(ended.returncode, status, ended.stderr)
         return ended.stderr
 
@@ -1177,7 +1179,7 @@ class StartAndEnd(unittest.TestCase):
                 self.assertLess(time.monotonic() - began, 10)
 
     def test_it_outlives_the_reader_of_its_log(self):
-        process = subprocess.Popen([evod_path, "--port", "0"], stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen([evod_path, "--port", "0", "--keep-nothing"], stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.wait, patience_s)
         self.addCleanup(process.terminate)
         line = process.stdout.readline()

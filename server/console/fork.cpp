@@ -1,0 +1,34 @@
+#include "server/console/fork.h"
+
+#include "server/simulation/world_name.h"
+#include "server/storage/data_folder.h"
+#include "server/storage/fork.h"
+
+#include <iostream>
+
+namespace evod::console {
+
+int fork(const ForkOptions& options) {
+    const auto fail = [](const std::string& why) {
+        std::cerr << "evod fork: " << why << '\n';
+        return 1;
+    };
+    if (!simulation::is_world_name(options.name))
+        return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
+    // Only read, so a server may be writing it.
+    const auto origin = storage::RunFile::open_read_only(options.run_file);
+    if (!origin)
+        return fail(to_text(origin.error()));
+    const auto folder = storage::DataFolder::open(options.data_folder);
+    if (!folder)
+        return fail(to_text(folder.error()));
+    const std::string path = folder->file_of(options.name);
+    if (const auto forked = storage::fork(**origin, options.at_generation, path, options.name, options.run_id); !forked)
+        return fail(to_text(forked.error()));
+    std::cout << "world \"" << options.name << "\" begins with generation " << options.at_generation << " of "
+              << options.run_file << "; a server with --data " << options.data_folder
+              << " finds it, and lets it wait\n";
+    return 0;
+}
+
+} // namespace evod::console

@@ -1,0 +1,17 @@
+// Fork: a run that begins with a generation of another one: the same seed, organisms and parameters, so that whatever
+// then becomes different follows from what is changed there (common random numbers).
+#pragma once
+
+#include "server/storage/run_file.h"
+
+namespace evod::storage {
+
+/// Makes the file `path` for a run that begins with the first moment of a generation of `origin`. It needs no other
+/// file: it holds none of the commands of its origin, and waits to be told to run.
+///
+/// Refused where the origin does not hold that generation's beginning, is damaged there or follows another model, and
+/// where there is a file already.
+base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::string& path, const std::string& name,
+                        const simulation::RunId& run_id);
+
+} // namespace evod::storage

@@ -1,0 +1,106 @@
+#include "server/storage/fork.h"
+
+#include "server/storage/archive.h"
+#include "server/storage/rerun.h"
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::storage {
+namespace {
+
+using testing::HasSubstr;
+
+class ForkTest : public testing::Test {
+  protected:
+    /// Six generations and a half; a change in the second, one in the fifth.
+    ForkTest() : data{*DataFolder::open(folder.path())} {
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        for (int tick = 0; tick < 780; ++tick) {
+            if (tick == 150)
+                run.command(set_parameter("mutation_chance", 0.4));
+            if (tick == 500)
+                run.command(set_parameter("food_health", 1.0));
+            hashes.push_back(run.world().hash());
+            run.advance(1);
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    base::Result<void> fork_at(std::uint64_t generation, const std::string& name) {
+        const auto origin = RunFile::open_read_only(data->file_of("w"));
+        return fork(**origin, generation, data->file_of(name), name, {generation, 3});
+    }
+
+    TemporaryFolder folder;
+    std::optional<DataFolder> data;
+    base::InlineExecutor executor;
+    std::vector<base::StateHash> hashes; // by tick
+};
+
+TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
+    for (const std::uint64_t generation : {1u, 3u, 4u}) {
+        const std::string name = "fork" + std::to_string(generation);
+        const auto forked = fork_at(generation, name);
+        ASSERT_TRUE(forked) << to_text(forked.error());
+        const auto file = RunFile::open_read_only(data->file_of(name));
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_EQ((*file)->identity().forked_from, (simulation::RunId{1, 2}));
+        auto recovered = recover(**file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        simulation::World& world = recovered->world;
+        EXPECT_EQ(world.moment().generation, generation);
+        EXPECT_EQ(world.moment().generation_tick, 0u);
+        EXPECT_FALSE(recovered->control.endless);
+        // The origin's next change does not come with it.
+        for (const std::uint64_t last = generation < 2 ? 240 : 500; world.moment().tick < last;) {
+            world.advance_tick(executor);
+            ASSERT_EQ(world.hash(), hashes[world.moment().tick]) << world.moment().tick;
+        }
+    }
+}
+
+TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
+    ASSERT_TRUE(fork_at(3, "fork"));
+    std::filesystem::remove(data->file_of("w"));
+    data.reset();
+    base::StateHash hash;
+    for (const std::uint64_t tick : {240u, 530u, 820u}) {
+        const auto archive = Archive::open(folder.path(), {}, executor);
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        simulation::Entry& entry = **laboratory.find("fork");
+        EXPECT_EQ(entry.world.moment().tick, tick);
+        EXPECT_EQ(entry.state(), simulation::RunState::Waiting);
+        if (tick > 240) {
+            EXPECT_EQ(entry.world.hash(), hash);
+        }
+        for (int i = 0; i < 290; ++i) {
+            laboratory.advance(entry, executor);
+            (*archive)->recorder().of("fork")->follow(entry.world);
+        }
+        hash = entry.world.hash();
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+        const auto file = RunFile::open_read_only(folder.path() + "/fork.evod");
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+    }
+    data.emplace(*DataFolder::open(folder.path()));
+    // A fork of a fork; what is before the first is not there.
+    const auto origin = RunFile::open_read_only(data->file_of("fork"));
+    EXPECT_TRUE(fork(**origin, 5, data->file_of("second"), "second", {}));
+    EXPECT_EQ(fork(**origin, 2, data->file_of("third"), "third", {}).error().code, base::RefusalCode::NotFound);
+}
+
+TEST_F(ForkTest, IsRefusedWhereThereIsNothingToBeginWithOrAFileAlready) {
+    const auto refused = fork_at(8, "fork").error();
+    EXPECT_EQ(refused.code, base::RefusalCode::NotFound);
+    EXPECT_THAT(to_text(refused), HasSubstr("got 8, allowed 1 to 7"));
+    EXPECT_FALSE(std::filesystem::exists(data->file_of("fork")));
+    ASSERT_TRUE(fork_at(2, "fork"));
+    EXPECT_EQ(fork_at(2, "fork").error().code, base::RefusalCode::AlreadyExists);
+}
+
+} // namespace
+} // namespace evod::storage
