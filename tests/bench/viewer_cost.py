@@ -7,12 +7,9 @@ The same ticks of the same run are simulated again and again at full speed on on
 """
 import argparse
 import json
-import os
 import re
-import secrets
 import socket
 import statistics
-import struct
 import subprocess
 import sys
 import threading
@@ -27,71 +24,21 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
 
-from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w  # noqa: E402
+from bench_client import Client, assignments, benchmark_world, thread_s  # noqa: E402
+from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 
-area_px2 = options.organisms * 46_080
-parameters = {"population_size": options.organisms, "food_count": options.organisms * 3,
-              "poison_count": options.organisms * 2,
-              "island_width_px": (area_px2 * 16 / 9) ** 0.5, "island_height_px": (area_px2 * 9 / 16) ** 0.5}
+parameters = benchmark_world(options.organisms)
 first_tick, last_tick = 60, 60 + max(100, 6_000_000 // options.organisms)
-
-
-class Client:
-    def __init__(self, port):
-        self.socket = socket.create_connection(("127.0.0.1", port))
-        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self.key, self.id = secrets.token_hex(8), 0
-        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="viewer_cost")))
-        self.frame()
-
-    def send(self, message):
-        body = message.SerializeToString()
-        self.socket.sendall(b"EV\x01\x01" + struct.pack("<I", len(body)) + body)
-
-    def read(self, count):
-        data = bytearray(count)
-        view, got = memoryview(data), 0
-        while got < count:
-            more = self.socket.recv_into(view[got:])
-            if more == 0:
-                raise EOFError
-            got += more
-        return data
-
-    def frame(self):
-        header = self.read(8)
-        return header[3], self.read(struct.unpack("<I", header[4:])[0])
-
-    def call(self, **request):
-        self.id += 1
-        self.send(session_pb2.ClientMessage(request=c.Request(request_id=self.id, client_key=self.key, **request)))
-        while True:
-            channel, body = self.frame()
-            if channel == 1:
-                response = session_pb2.ServerMessage.FromString(bytes(body)).response
-                assert response.status.code == 0, response.status
-                return response
-
-    def run_to(self, tick):
-        self.call(run_until_tick=c.RunUntilTick(world="w", tick=tick))
-        while next(x for x in self.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == "w").tick < tick:
-            time.sleep(0.005)
 
 
 def start(*arguments):
     began = time.perf_counter()
-    process = subprocess.Popen([options.evod, "--port", "0", "--keep-nothing", *arguments], stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([options.evod, "--port", "0", "--keep-nothing", *arguments],
+                               stdout=subprocess.PIPE, text=True)
     line = process.stdout.readline()
     port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
     Client(port)
     return process, port, time.perf_counter() - began
-
-
-def simulation_thread_s(pid):
-    for task in os.listdir(f"/proc/{pid}/task"):
-        if open(f"/proc/{pid}/task/{task}/comm").read().strip() == "simulation":
-            return int(open(f"/proc/{pid}/task/{task}/schedstat").read().split()[0]) / 1e9
-    raise RuntimeError("no simulation thread")
 
 
 class Reader(threading.Thread):
@@ -155,9 +102,9 @@ def measure_viewer(process, port, control):
             viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=30))
             reader = Reader(viewer)
         control.run_to(first_tick)
-        before = simulation_thread_s(process.pid)
+        before = thread_s(process.pid, "simulation")
         control.run_to(last_tick)
-        per_tick[watched].append((simulation_thread_s(process.pid) - before) / (last_tick - first_tick))
+        per_tick[watched].append((thread_s(process.pid, "simulation") - before) / (last_tick - first_tick))
         if reader:
             reader.finish()
             pictures += reader.pictures
@@ -182,9 +129,7 @@ def measure():
     memory_bytes = measure_memory()
     process, port, _ = start("--threads", "1")
     control = Client(port)
-    control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=[
-        w.ParameterAssignment(name=n, value=w.ParameterValue(**{"count" if isinstance(v, int) else "real": v}))
-        for n, v in parameters.items()]))
+    control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(parameters)))
     control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
     per_tick, pictures, picture_bytes = measure_viewer(process, port, control)
     control.call(run=c.Run(world="w"))

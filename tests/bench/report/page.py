@@ -275,16 +275,25 @@ class Page:
 
     def server(self):
         figures = self.results["server"]
-        rise = figures["viewer_rise_percent"]
+        rise, storage = figures["viewer_rise_percent"], figures["storage"]
+
+        def percent(spread):
+            return minus(f"{spread['median']:+.2f} % ({spread['min']:+.2f} – {spread['max']:+.2f} %)")
         return table(["", "median (least – greatest)"], [
             ["from exec to the first accepted client's welcome, ms", with_spread(figures["start_ms"])],
             [f"a viewer at 30 pictures/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, "
              "free running: rise of the simulation thread's processor time per tick",
-             minus(f"{rise['median']:+.2f} % ({rise['min']:+.2f} – {rise['max']:+.2f} %)")],
+             percent(rise)],
+            [f"keeping the run of {count(storage['organisms'])} organisms, free running: the same rise",
+             percent(storage["simulation_rise_percent"])],
+            ["processor time of the storage thread, over that of the simulation thread",
+             percent(storage["storage_share_percent"])],
             ["one of its pictures, bytes", count(figures["picture_bytes"])],
-            ["a command to a server at rest, ms", with_spread(figures["command_at_rest_ms"])],
+            ["a command to a server at rest that keeps nothing, ms", with_spread(figures["command_at_rest_ms"])],
             ["a command beside that world at full speed, ms", with_spread(figures["command_beside_ms"])],
-            ["a query beside it, ms", with_spread(figures["query_beside_ms"])]])
+            ["a query beside it, ms", with_spread(figures["query_beside_ms"])],
+            ["a command to a server that keeps its runs, on the disk before it is answered, ms",
+             with_spread(storage["command_ms"])]])
 
     def drawing(self):
         return table(["organisms", "ms of processor time a drawn frame, OpenGL in software included"],

@@ -179,8 +179,10 @@ def drawing(bench):
 
 
 def server(bench):
-    return programs.run_json(python, bench.root / "tests/bench/viewer_cost.py", bench.program("evod"),
-                             bench.build / "tests/system", "--json", *(["--runs", 2] if bench.quick else []))
+    def measured(program):
+        return programs.run_json(python, bench.root / "tests/bench" / program, bench.program("evod"),
+                                 bench.build / "tests/system", "--json", *(["--runs", 2] if bench.quick else []))
+    return {**measured("viewer_cost.py"), "storage": measured("storage_cost.py")}
 
 
 def evod_run(bench, *arguments):

@@ -1,0 +1,84 @@
+"""What keeping a run costs the simulation, and how long a command waits for the disk, on a real evod.
+
+    storage_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
+
+The same ticks of the same run are simulated again and again at full speed on one thread, by turns by a server that keeps
+its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the storage
+thread's processor time, both over the simulation thread's time where nothing is kept.
+"""
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("evod", help="the program")
+parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("--organisms", type=int, default=10_000)
+parser.add_argument("--runs", type=int, default=9, help="pairs of runs")
+parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+options = parser.parse_args()
+sys.path.insert(0, options.messages)
+
+from bench_client import Client, assignments, benchmark_world, thread_s  # noqa: E402
+from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
+
+first_tick, ticks = 60, max(4_900, 60_000_000 // options.organisms)  # two ends of a generation at least
+
+
+def measure_run(*arguments):
+    """Seconds of the simulation thread and of the storage thread for the ticks; seconds of some commands."""
+    server = subprocess.Popen([options.evod, "--port", "0", "--threads", "1", *arguments], stdout=subprocess.PIPE, text=True)
+    for line in server.stdout:
+        if "listening on " in line:
+            break
+    control = Client(int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1]))
+    control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(benchmark_world(options.organisms))))
+    control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+    control.run_to(first_tick)
+    before = thread_s(server.pid, "simulation"), thread_s(server.pid, "storage")
+    control.run_to(first_tick + ticks)
+    after = thread_s(server.pid, "simulation"), thread_s(server.pid, "storage")
+    commands = []
+    for _ in range(100):
+        began = time.perf_counter()
+        control.call(pause=c.Pause(world="w"))
+        commands.append(time.perf_counter() - began)
+    server.terminate()
+    server.communicate()
+    return after[0] - before[0], after[1] - before[1], commands
+
+
+def spread(values):
+    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
+
+
+def measure():
+    rises, shares, costs, commands = [], [], [], []
+    for _ in range(options.runs):
+        alone, _, _ = measure_run("--keep-nothing")
+        with tempfile.TemporaryDirectory() as data:
+            kept, storage, waited = measure_run("--data", data)
+        rises.append(100 * (kept / alone - 1))
+        shares.append(100 * storage / alone)
+        costs.append(rises[-1] + shares[-1])
+        commands += waited
+    return {"organisms": options.organisms, "ticks": ticks, "pairs": options.runs,
+            "simulation_rise_percent": spread(rises), "storage_share_percent": spread(shares),
+            "cost_percent": spread(costs), "command_ms": spread([1e3 * s for s in commands])}
+
+
+def main():
+    figures = measure()
+    if options.json:
+        print(json.dumps(figures))
+        return
+    for name, value in figures.items():
+        parts = value.items() if isinstance(value, dict) else [("", value)]
+        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))
+
+
+main()
