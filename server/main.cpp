@@ -33,6 +33,7 @@ struct ServeOptions {
     std::string data_folder;
     bool keep_nothing = false;
     std::string durability = "full";
+    std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
 };
 
 /// Says why evod cannot start, and what to do.
@@ -97,8 +98,11 @@ int serve(const ServeOptions& options) {
                                           .port = options.port,
                                           .threads = options.threads,
                                           .data_folder = data_folder,
-                                          .durability = options.durability == "relaxed" ? storage::Durability::Relaxed
-                                                                                        : storage::Durability::Full,
+                                          .run_files = {.durability = options.durability == "relaxed"
+                                                                          ? storage::Durability::Relaxed
+                                                                          : storage::Durability::Full,
+                                                        .vfs = nullptr,
+                                                        .file_bytes_max = options.file_bytes_max},
                                           .first_world = std::move(create),
                                           .first_world_asked = !options.experiment_file.empty() || options.seed,
                                           .first_seed_asked = options.seed.has_value(),
@@ -153,6 +157,12 @@ int main(int argument_count, char** arguments) {
            "When a command is answered. full: once it is on the disk; relaxed: before, so that it survives evod, "
            "but perhaps not the machine")
         ->check(CLI::IsMember({"full", "relaxed"}))
+        ->capture_default_str();
+    app.add_option(
+           "--file-bytes-max", options.file_bytes_max,
+           "From this size on a run file holds fewer and fewer of its older generations whole; they can still be "
+           "simulated again, and statistics are kept")
+        ->check(CLI::Range(std::int64_t{1} << 20, std::int64_t{1} << 50))
         ->capture_default_str();
     app.footer("Without a subcommand evod is a server.");
 

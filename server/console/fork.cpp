@@ -1,5 +1,6 @@
 #include "server/console/fork.h"
 
+#include "server/base/inline_executor.h"
 #include "server/simulation/world_name.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/fork.h"
@@ -23,7 +24,10 @@ int fork(const ForkOptions& options) {
     if (!folder)
         return fail(to_text(folder.error()));
     const std::string path = folder->file_of(options.name);
-    if (const auto forked = storage::fork(**origin, options.at_generation, path, options.name, options.run_id); !forked)
+    base::InlineExecutor executor;
+    if (const auto forked =
+            storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
+        !forked)
         return fail(to_text(forked.error()));
     std::cout << "world \"" << options.name << "\" begins with generation " << options.at_generation << " of "
               << options.run_file << "; a server with --data " << options.data_folder

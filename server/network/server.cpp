@@ -56,12 +56,12 @@ base::Result<void> Server::open_archive() {
     const std::string& path = options_.data_folder;
     if (path.empty())
         return {};
-    auto archive = storage::Archive::open(path, {.durability = options_.durability}, *executor_);
+    auto archive = storage::Archive::open(path, options_.run_files, *executor_);
     if (!archive)
         return archive.error();
     archive_ = *std::move(archive);
     host_.durability =
-        options_.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
+        options_.run_files.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
     if (!options_.first_world_asked)
         return {};
     const simulation::CreateWorld& wanted = options_.first_world;

@@ -23,7 +23,7 @@ struct ServerOptions {
     std::uint16_t port = wire::default_port; // 0: any that is free
     std::size_t threads = 1;                 // of the worker pool
     std::string data_folder;                 // where runs are kept; empty: nowhere
-    storage::Durability durability = storage::Durability::Full;
+    storage::RunFile::Options run_files;
 
     simulation::CreateWorld first_world; // made if there is none of its name
     bool first_world_asked = false;      // otherwise it is made only if there is no world at all

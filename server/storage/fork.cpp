@@ -1,34 +1,37 @@
 #include "server/storage/fork.h"
 
+#include "server/storage/rerun.h"
+
 #include <chrono>
 
 namespace evod::storage {
 
 base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::string& path, const std::string& name,
-                        const simulation::RunId& run_id) {
-    if (auto refused = origin.other_model())
-        return *refused;
-    const auto begun = origin.beginning_of(generation);
-    if (!begun)
-        return begun.error();
-    if (!*begun)
+                        const simulation::RunId& run_id, base::Executor& executor) {
+    if (generation < origin.identity().first_generation || generation > origin.last_generation())
         return base::Refusal{.code = base::RefusalCode::NotFound,
                              .message = origin.path() + " does not hold the beginning of that generation",
                              .violations = {{"generation",
                                              std::to_string(origin.identity().first_generation) + " to " +
                                                  std::to_string(origin.last_generation()),
                                              std::to_string(generation)}}};
+    const auto there = Rerun::at(origin, generation, executor);
+    if (!there)
+        return there.error();
+    GenerationBegun begun{.opening = there->world().opening(), .born = {}};
+    for (const simulation::Island& island : there->world().islands())
+        begun.born.push_back(island.born());
     using namespace std::chrono;
     const auto file =
         RunFile::create(path,
                         {.name = name,
                          .run_id = run_id,
                          .seed = origin.identity().seed,
-                         .parameters = (*begun)->opening.parameters.requested,
+                         .parameters = begun.opening.parameters.requested,
                          .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
                          .first_generation = generation,
                          .forked_from = origin.identity().run_id},
-                        {}, &**begun);
+                        {}, &begun);
     if (!file)
         return file.error();
     return {};

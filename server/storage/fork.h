@@ -9,9 +9,9 @@ namespace evod::storage {
 /// Makes the file `path` for a run that begins with the first moment of a generation of `origin`. It needs no other
 /// file: it holds none of the commands of its origin, and waits to be told to run.
 ///
-/// Refused where the origin does not hold that generation's beginning, is damaged there or follows another model, and
-/// where there is a file already.
+/// Refused where the origin has no such generation, is damaged there or follows another model, and where there is a
+/// file already.
 base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::string& path, const std::string& name,
-                        const simulation::RunId& run_id);
+                        const simulation::RunId& run_id, base::Executor& executor);
 
 } // namespace evod::storage

@@ -18,10 +18,8 @@ void RunRecorder::hand_over(const simulation::World& world) {
     }
     const bool new_tick = moment.tick > written_.tick;
     written_.tick = std::max(written_.tick, moment.tick);
-    if (new_tick && moment.tick % ticks_per_link == 0) {
+    if (new_tick && moment.tick % ticks_per_link == 0)
         thread_.write(number_, HashLink{moment.tick, world.hash()});
-        ++written_.links;
-    }
     if (world.generation_over() && generations_ended_ != moment.generation) {
         GenerationEnded ended{.generation = moment.generation, .outcomes = {}, .statistics = world.history().back()};
         for (std::size_t i = 0; i < world.islands().size(); ++i) {

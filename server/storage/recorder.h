@@ -40,7 +40,7 @@ class RunRecorder {
 
     StorageThread& thread_;
     StorageThread::RunNumber number_;
-    EndMark written_; // what an end mark would say now
+    EndMark written_; // what has been handed over; its links are not counted
     std::uint64_t generations_ended_ = 0;
 };
 

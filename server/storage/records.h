@@ -72,6 +72,13 @@ struct HashLink {
 /// After every tick that is a multiple of this.
 constexpr std::uint64_t ticks_per_link = 60;
 
+/// Which generations are no longer held whole, so that a file does not grow without end.
+struct Thinning {
+    // Up to this generation, and to the tick that ended it, only each keep_every-th is: generations as counted from the
+    // file's first, links as counted from tick 0.
+    std::uint64_t keep_every = 1, until_generation = 0, until_tick = 0;
+};
+
 /// How a file was left. Absent while a server has it open, and after one that did not end in order.
 struct EndMark {
     bool ended = false;     // reset or deleted: no world any more; else closed, to be gone on with

@@ -33,7 +33,8 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     const auto journal = file.journal();
     if (!journal)
         return journal.error();
-    auto begun = file.beginning_of(generation);
+    const std::uint64_t held = file.held_at_or_before(generation);
+    auto begun = file.beginning_of(held);
     if (!begun)
         return begun.error();
     const std::uint64_t first_generation = file.identity().first_generation;
@@ -45,7 +46,7 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     const std::uint64_t begun_tick = *begun ? (*begun)->opening.moment.tick : 0;
     std::vector<Change> changes;
     for (const JournalEntry& entry : *journal) {
-        if (generation != first_generation && entry.tick <= begun_tick)
+        if (held != first_generation && entry.tick <= begun_tick)
             continue;
         auto command = command_of(entry.origin.request);
         if (!command)
@@ -61,12 +62,18 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     auto history = file.history(simulation::World::history_generations_kept);
     if (!history)
         return history.error();
-    while (!history->empty() && history->back().front().generation >= generation)
+    while (!history->empty() && history->back().front().generation >= held)
         history->pop_back();
     Rerun rerun{simulation::World{file.identity().seed, (*begun)->opening, std::move((*begun)->born),
                                   *std::move(history), executor},
                 std::move(changes)};
     rerun.make_changes();
+    while (rerun.world_.moment().generation < generation) {
+        if (rerun.world_.generation_over())
+            rerun.world_.turn_over(executor);
+        else
+            rerun.advance_tick(executor);
+    }
     return rerun;
 }
 

@@ -13,8 +13,9 @@ namespace evod::storage {
 
 class Rerun {
   public:
-    /// At the first moment of a generation whose beginning the file holds; its first is always held. Refused if the
-    /// file is damaged there, follows another model, or has no such generation.
+    /// At the first moment of a generation that the run has begun; if its beginning is not held any more, it is
+    /// simulated from the last one before it that is. Refused if the file is damaged there, follows another model, or
+    /// has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
 
     const simulation::World& world() const { return world_; }

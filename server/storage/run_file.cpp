@@ -31,6 +31,7 @@ const Columns population_columns = {"generation",     "island",        "organism
 const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
 const Columns link_columns = {"tick", "low", "high"};
 const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
+const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
 const Columns run_columns = {"key", "value"};
 
 Columns statistics_columns() {
@@ -103,13 +104,14 @@ struct RunFile::Writers {
         , outcome{database, "outcome", outcome_columns}
         , statistics{database, "statistics", statistics_columns()}
         , link{database, "state_hash", link_columns}
-        , end{database, "end_mark", end_columns} {}
+        , end{database, "end_mark", end_columns}
+        , thinned{database, "thinned", thinned_columns} {}
 
-    RowWriter journal, parameters, generation, population, outcome, statistics, link, end;
+    RowWriter journal, parameters, generation, population, outcome, statistics, link, end, thinned;
 };
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
-    : path_{path}, database_{path, mode, options.vfs} {
+    : path_{path}, database_{path, mode, options.vfs}, file_bytes_max_{options.file_bytes_max} {
     if (mode == Database::Mode::Read)
         return;
     database_.run("PRAGMA journal_mode = WAL");
@@ -184,6 +186,8 @@ CREATE TABLE outcome (generation INTEGER NOT NULL, island INTEGER NOT NULL, fitn
     PRIMARY KEY (generation, island)) STRICT;
 CREATE TABLE state_hash (tick INTEGER PRIMARY KEY, low INTEGER NOT NULL, high INTEGER NOT NULL,
     checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE thinned (number INTEGER PRIMARY KEY, keep_every INTEGER NOT NULL, until_generation INTEGER NOT NULL,
+    until_tick INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
 CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEGER NOT NULL,
     journal_entries INTEGER NOT NULL, generations INTEGER NOT NULL, links INTEGER NOT NULL,
     checksum INTEGER NOT NULL) STRICT;
@@ -273,7 +277,31 @@ Result<void> RunFile::read_identity() {
     constexpr std::size_t keys = 9;
     if (known != keys)
         return damaged("its table run");
+    return read_thinning();
+}
+
+Result<void> RunFile::read_thinning() {
+    RowReader thinned{database_, "thinned", thinned_columns, "1 ORDER BY number"};
+    for (std::uint64_t number = 1; thinned.next(); ++number) {
+        const bool in_order = thinned.natural() == number;
+        thinning_ = {
+            .keep_every = thinned.natural(), .until_generation = thinned.natural(), .until_tick = thinned.natural()};
+        if (!thinned.sound() || !in_order || thinning_.keep_every == 0)
+            return damaged(row_of("thinned", number));
+    }
+    if (database_.failed())
+        return failure();
     return {};
+}
+
+bool RunFile::is_held(std::uint64_t generation) const {
+    return generation > thinning_.until_generation ||
+           (generation - identity_.first_generation) % thinning_.keep_every == 0;
+}
+
+std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
+    return is_held(generation) ? generation
+                               : generation - (generation - identity_.first_generation) % thinning_.keep_every;
 }
 
 std::optional<Refusal> RunFile::other_model() const {
@@ -378,6 +406,8 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
     if (!set)
         return set.error();
     opening.parameters = *set;
+    if (!is_held(generation))
+        return std::optional<GenerationBegun>{};
 
     RowReader rows{database_, "population", population_columns, "generation = ? ORDER BY island", {key}};
     const auto bad = [&] {
@@ -438,6 +468,8 @@ Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generat
     }
     if (database_.failed())
         return failure();
+    if (ended.outcomes.empty() && !is_held(generation))
+        return std::optional<GenerationEnded>{};
     if (ended.outcomes.size() != ended.statistics.size())
         return bad("the outcome");
     if (ended.outcomes.empty())
@@ -525,14 +557,14 @@ Result<void> RunFile::check() {
         const auto begun = beginning_of(generation);
         if (!begun)
             return begun.error();
-        if (!*begun)
+        if (!*begun && is_held(generation))
             return damaged(row_of("generation", generation));
         if (generation == identity_.first_generation)
             first_tick = (*begun)->opening.moment.tick;
         const auto ended = outcome_of(generation);
         if (!ended)
             return ended.error();
-        if (!*ended && generation < last)
+        if (!*ended && generation < last && is_held(generation))
             return damaged("the outcome of generation " + std::to_string(generation));
     }
     const EndMark found = contents();
@@ -540,9 +572,13 @@ Result<void> RunFile::check() {
     if (!chain)
         return chain.error();
     std::uint64_t expected = first_tick / ticks_per_link * ticks_per_link;
-    for (const HashLink& link : *chain)
-        if (link.tick != (expected += ticks_per_link))
+    for (const HashLink& link : *chain) {
+        do
+            expected += ticks_per_link;
+        while (expected <= thinning_.until_tick && expected / ticks_per_link % thinning_.keep_every != 0);
+        if (link.tick != expected)
             return damaged(row_of("state_hash", expected));
+    }
     const auto mark = end_mark();
     if (!mark)
         return mark.error();
@@ -655,7 +691,11 @@ void RunFile::write(const HashLink& link) {
     writers().link.natural(link.tick).natural(link.hash.low).natural(link.hash.high).finish();
 }
 
-void RunFile::write(const EndMark& mark) {
+void RunFile::write(EndMark mark) {
+    const EndMark found = contents();
+    mark.journal_entries = found.journal_entries;
+    mark.generations = found.generations;
+    mark.links = found.links;
     writers()
         .end.integer(std::int64_t{1})
         .text(mark.ended ? "ended" : "closed")
@@ -671,6 +711,43 @@ Result<void> RunFile::commit() {
     if (database_.failed())
         return failure();
     marked_ = false;
+    return {};
+}
+
+bool RunFile::is_large() {
+    return (database_.number("PRAGMA page_count") - database_.number("PRAGMA freelist_count")) *
+               database_.number("PRAGMA page_size") >
+           file_bytes_max_;
+}
+
+Result<void> RunFile::thin_if_large() {
+    const std::uint64_t last = last_generation();
+    // The last two may still be written to.
+    if (!is_large() || last < identity_.first_generation + 2 || last - 2 <= thinning_.until_generation)
+        return {};
+    // Once only the first is left of the older ones, there is nothing to halve.
+    const std::uint64_t twice = thinning_.keep_every > last ? 1 : 2;
+    Thinning next{.keep_every = twice * thinning_.keep_every, .until_generation = last - 2, .until_tick = 0};
+    const std::string until = std::to_string(next.until_generation), every = std::to_string(next.keep_every);
+    next.until_tick = static_cast<std::uint64_t>(database_.number(
+        ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));
+    begin();
+    for (const char* table : {"population", "outcome"})
+        database_.run(("DELETE FROM " + std::string{table} + " WHERE generation <= " + until + " AND (generation - " +
+                       std::to_string(identity_.first_generation) + ") % " + every + " != 0")
+                          .c_str());
+    database_.run(("DELETE FROM state_hash WHERE tick <= " + std::to_string(next.until_tick) + " AND tick / " +
+                   std::to_string(ticks_per_link) + " % " + every + " != 0")
+                      .c_str());
+    writers()
+        .thinned.integer(1 + database_.number("SELECT max(number) FROM thinned"))
+        .natural(next.keep_every)
+        .natural(next.until_generation)
+        .natural(next.until_tick)
+        .finish();
+    if (auto committed = commit(); !committed)
+        return committed;
+    thinning_ = next;
     return {};
 }
 

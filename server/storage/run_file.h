@@ -30,7 +30,8 @@ class RunFile {
 
     struct Options {
         Durability durability = Durability::Full;
-        const char* vfs = nullptr; // as Database takes it
+        const char* vfs = nullptr;                           // as Database takes it
+        std::int64_t file_bytes_max = std::int64_t{2} << 30; // see thin_if_large()
     };
 
     /// A new file; refused if there is one.
@@ -57,9 +58,11 @@ class RunFile {
     base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1);
     /// Of generations whose beginning is held; 0 if none is yet.
     std::uint64_t last_generation();
-    /// Nothing if the generation's beginning is not held.
+    /// Nothing if the generation's beginning is not held, or not any more.
     base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
-    /// Nothing if the generation has not ended, or its outcome is not held.
+    /// The last generation up to this one whose beginning is held.
+    std::uint64_t held_at_or_before(std::uint64_t generation) const;
+    /// Nothing if the generation has not ended, or its outcome is not held any more.
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
     /// Of the newest `count` generations that have ended, oldest first.
     base::Result<simulation::World::History> history(std::size_t count);
@@ -80,9 +83,18 @@ class RunFile {
     void write(const GenerationBegun& begun);
     void write(const GenerationEnded& ended);
     void write(const HashLink& link);
-    void write(const EndMark& mark);
+    /// What the mark counts is counted here.
+    void write(EndMark mark);
     /// Refused with the reason; then it is unknown whether what was written since begin() is there.
     base::Result<void> commit();
+
+    /// If the file takes more than Options::file_bytes_max, half of the older generations' populations and outcomes,
+    /// and half of the older hashes, are taken out, evenly; again next time. The first generation, the last ones, the
+    /// journal and all statistics stay, so a very long run may pass the bound all the same. Not between begin() and
+    /// commit().
+    base::Result<void> thin_if_large();
+    /// Whether it takes more than that.
+    bool is_large();
 
   private:
     struct Writers;
@@ -90,6 +102,8 @@ class RunFile {
     void create_tables();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
+    base::Result<void> read_thinning();
+    bool is_held(std::uint64_t generation) const;
     base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
     std::int64_t number_of(const simulation::ParameterSet& parameters);
     /// What the database says has gone wrong, with the path.
@@ -104,6 +118,8 @@ class RunFile {
     std::optional<simulation::ParameterSet> last_parameters_; // written, under parameter_sets_
     std::int64_t parameter_sets_ = 0;
     bool marked_ = false; // there may be an end mark
+    Thinning thinning_;
+    std::int64_t file_bytes_max_;
 
   public:
     ~RunFile();

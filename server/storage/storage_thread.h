@@ -67,7 +67,7 @@ class StorageThread {
         std::optional<RunIdentity> to_create;
         std::unique_ptr<RunFile> file; // nullptr: to be opened, or created
         std::vector<Item> waiting;
-        bool closing = false;
+        bool closing = false, said_large = false;
     };
 
     void work();

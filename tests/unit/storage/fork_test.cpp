@@ -29,7 +29,7 @@ class ForkTest : public testing::Test {
     }
     base::Result<void> fork_at(std::uint64_t generation, const std::string& name) {
         const auto origin = RunFile::open_read_only(data->file_of("w"));
-        return fork(**origin, generation, data->file_of(name), name, {generation, 3});
+        return fork(**origin, generation, data->file_of(name), name, {generation, 3}, executor);
     }
 
     TemporaryFolder folder;
@@ -89,8 +89,9 @@ TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
     data.emplace(*DataFolder::open(folder.path()));
     // A fork of a fork; what is before the first is not there.
     const auto origin = RunFile::open_read_only(data->file_of("fork"));
-    EXPECT_TRUE(fork(**origin, 5, data->file_of("second"), "second", {}));
-    EXPECT_EQ(fork(**origin, 2, data->file_of("third"), "third", {}).error().code, base::RefusalCode::NotFound);
+    EXPECT_TRUE(fork(**origin, 5, data->file_of("second"), "second", {}, executor));
+    EXPECT_EQ(fork(**origin, 2, data->file_of("third"), "third", {}, executor).error().code,
+              base::RefusalCode::NotFound);
 }
 
 TEST_F(ForkTest, IsRefusedWhereThereIsNothingToBeginWithOrAFileAlready) {
