@@ -3,6 +3,7 @@
 #include <boost/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 
 namespace evod::simulation {
@@ -18,6 +19,7 @@ std::size_t line_of(std::string_view text, std::size_t offset) {
 struct Field {
     std::string_view name;
     std::size_t line;
+    std::string_view from_value; // the text from its value on
 };
 
 /// The fields of the object that `text` is, in the order in which they stand; `text` is JSON.
@@ -36,7 +38,8 @@ std::vector<Field> fields_of(std::string_view text) {
             i += text[i] == '\\' ? 2 : 1;
         const std::size_t after = text.find_first_not_of(" \t\r\n", i + 1);
         if (depth == 1 && after != std::string_view::npos && text[after] == ':')
-            fields.push_back({text.substr(begin, i - begin), line});
+            fields.push_back({text.substr(begin, i - begin), line,
+                              text.substr(std::min(text.find_first_not_of(" \t\r\n", after + 1), text.size()))});
     }
     return fields;
 }
@@ -51,19 +54,34 @@ std::string with_line(const std::vector<Field>& fields, std::string_view field) 
     return with_line(field, found == fields.end() ? 1 : found->line);
 }
 
+/// Nothing for a name that is written with escapes, which is no parameter's.
+std::string_view from_value_of(const std::vector<Field>& fields, std::string_view name) {
+    const auto found = std::ranges::find(fields, name, &Field::name);
+    return found == fields.end() ? std::string_view{} : found->from_value;
+}
+
 base::Refusal refusal(std::string message) {
     return {.code = base::RefusalCode::InvalidArgument, .message = std::move(message), .violations = {}};
 }
 
+/// A number as it is written, to the last bit, which Boost.JSON does not promise.
+double exact(double nearly, std::string_view text) {
+    double number = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+    return read.ec == std::errc{} ? number : nearly;
+}
+
 /// A JSON value as a parameter value; numbers without a fraction are counts where they fit one.
-std::optional<ParameterValue> to_parameter_value(const json::value& value) {
+///
+/// from_value  the text from the value on.
+std::optional<ParameterValue> to_parameter_value(const json::value& value, std::string_view from_value) {
     constexpr std::uint64_t count_max = base::count_max;
     if (value.is_bool())
         return ParameterValue{value.get_bool()};
     if (value.is_string())
         return ParameterValue{std::string{value.get_string()}};
     if (value.is_double())
-        return ParameterValue{value.get_double()};
+        return ParameterValue{exact(value.get_double(), from_value)};
     if (value.is_int64() && value.get_int64() >= 0 && static_cast<std::uint64_t>(value.get_int64()) <= count_max)
         return ParameterValue{static_cast<std::uint32_t>(value.get_int64())};
     if (value.is_number())
@@ -110,7 +128,7 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
                 experiment.description = std::string{value.get_string()};
             else
                 violations.push_back({with_line(fields, name), "a text", json::serialize(value)});
-        } else if (auto parameter = to_parameter_value(value)) {
+        } else if (auto parameter = to_parameter_value(value, from_value_of(fields, name))) {
             reference_given |= name == "reference_population";
             assignments.push_back({name, std::move(*parameter)});
         } else {

@@ -129,5 +129,18 @@ TEST(ExperimentsOfTheRepository, AreAllAccepted) {
     EXPECT_GE(count, 5);
 }
 
+TEST(Experiment, GivesBackEveryBitOfANumber) {
+    base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    for (int trial = 0; trial < 2000; ++trial) {
+        Parameters parameters;
+        parameters.mutation_chance = random.uniform();
+        parameters.food_health = 0.1 + trial * 1e-5;
+        const auto read = parse_experiment(to_experiment_text(parameters, Written::Everything));
+        ASSERT_TRUE(read) << to_text(read.error());
+        ASSERT_EQ(read->parameters.mutation_chance, parameters.mutation_chance);
+        ASSERT_EQ(read->parameters.food_health, parameters.food_health);
+    }
+}
+
 } // namespace
 } // namespace evod::simulation
