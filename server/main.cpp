@@ -1,9 +1,11 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
 #include "server/console/check.h"
 #include "server/console/experiment_file.h"
+#include "server/console/export.h"
 #include "server/console/fork.h"
 #include "server/console/parameter_list.h"
 #include "server/console/run.h"
+#include "server/console/verify.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
 #include "server/protocol/refusals.h"
@@ -198,6 +200,28 @@ int main(int argument_count, char** arguments) {
     fork.footer(
         "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
 
+    console::VerifyOptions verify_options;
+    verify_options.threads = options.threads;
+    CLI::App& verify = *app.add_subcommand("verify", "Simulate the run of a run file again and compare everything");
+    verify.add_option("run", verify_options.run, "Run file, NAME.evod; the run need not be over")->required();
+    verify.add_option("--threads", verify_options.threads, "Threads that simulate")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    verify.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
+
+    console::ExportOptions export_options;
+    CLI::App& export_ = *app.add_subcommand("export", "Write what a run file holds as rows for other programs");
+    export_.add_option("run", export_options.run, "Run file, NAME.evod; the run need not be over")->required();
+    export_
+        .add_option("--what", export_options.what,
+                    "generations: their statistics; organisms: parents, genes and fate of each; events: the commands")
+        ->check(CLI::IsMember({"generations", "organisms", "events"}))
+        ->required();
+    export_.add_option("--format", export_options.format, "csv, or jsonl: an object of JSON a line")
+        ->check(CLI::IsMember({"csv", "jsonl"}))
+        ->capture_default_str();
+    export_.add_option("--output", export_options.output, "File; without it, standard output");
+
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
 
@@ -219,6 +243,10 @@ int main(int argument_count, char** arguments) {
         fork_options.run_id = network::draw_run_id();
         return console::fork(fork_options);
     }
+    if (verify.parsed())
+        return console::verify(verify_options);
+    if (export_.parsed())
+        return console::export_run(export_options);
     if (parameters.parsed()) {
         std::cout << console::parameter_list();
         return 0;

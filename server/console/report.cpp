@@ -1,16 +1,9 @@
 #include "server/console/report.h"
 
-#include <charconv>
 #include <cstdio>
-#include <type_traits>
 
 namespace evod::console {
 namespace {
-
-std::string exact(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 template <class... Values>
 std::string formatted(const char* format, Values... values) {
@@ -36,24 +29,16 @@ std::string table_row(const simulation::GenerationStatistics& s, bool with_islan
                      static_cast<unsigned long long>(s.poison_eaten), s.diversity);
 }
 
-std::string csv_heading() {
-    std::string line;
-    simulation::for_each_number(simulation::GenerationStatistics{}, [&](const std::string& name, auto) {
-        line += (line.empty() ? "" : ",") + name;
-    });
-    return line;
+std::vector<std::string> statistics_columns() {
+    std::vector<std::string> columns;
+    simulation::for_each_number(simulation::GenerationStatistics{},
+                                [&](const std::string& name, auto) { columns.push_back(name); });
+    return columns;
 }
 
-std::string csv_row(const simulation::GenerationStatistics& s) {
-    std::string line;
-    simulation::for_each_number(s, [&](const std::string&, auto value) {
-        line += line.empty() ? "" : ",";
-        if constexpr (std::is_floating_point_v<decltype(value)>)
-            line += exact(value);
-        else
-            line += std::to_string(value);
-    });
-    return line;
+void write_row(Table& table, const simulation::GenerationStatistics& statistics) {
+    simulation::for_each_number(statistics, [&](const std::string&, auto value) { table.number(value); });
+    table.end_row();
 }
 
 } // namespace evod::console

@@ -1,9 +1,11 @@
-// Report: the statistics of generations as a table on a terminal and as CSV.
+// Report: the statistics of generations for people on a terminal, and for other programs.
 #pragma once
 
+#include "server/console/table.h"
 #include "server/simulation/statistics.h"
 
 #include <string>
+#include <vector>
 
 namespace evod::console {
 
@@ -11,8 +13,8 @@ namespace evod::console {
 std::string table_heading(bool with_island);
 std::string table_row(const simulation::GenerationStatistics& statistics, bool with_island);
 
-/// Column names and one line of CSV with every statistic, numbers so that they read back exactly; no line end.
-std::string csv_heading();
-std::string csv_row(const simulation::GenerationStatistics& statistics);
+/// The columns of a Table with every statistic, and one row of it.
+std::vector<std::string> statistics_columns();
+void write_row(Table& table, const simulation::GenerationStatistics& statistics);
 
 } // namespace evod::console

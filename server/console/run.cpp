@@ -2,11 +2,10 @@
 
 #include "server/console/experiment_file.h"
 #include "server/console/interview.h"
+#include "server/console/progress_line.h"
 #include "server/console/report.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
-
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -57,27 +56,14 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
     return experiment;
 }
 
-/// One line on a terminal's stderr that is overwritten, at most ten times a second.
-class ProgressLine {
-  public:
-    void show(const simulation::World& world) {
-        if (!on_terminal_ || seconds_since(shown_) < 0.1)
-            return;
-        shown_ = Clock::now();
-        std::fprintf(stderr, "\rgeneration %llu  %.1f s  %llu alive \x1b[K",
-                     static_cast<unsigned long long>(world.moment().generation),
-                     static_cast<double>(world.moment().generation_tick) * world.parameters().active.tick_s,
-                     static_cast<unsigned long long>(world.alive_count()));
-    }
-    void clear() const {
-        if (on_terminal_)
-            std::fprintf(stderr, "\r\x1b[K");
-    }
-
-  private:
-    bool on_terminal_ = isatty(STDERR_FILENO) != 0;
-    Clock::time_point shown_{};
-};
+std::string progress_of(const simulation::World& world) {
+    char text[96];
+    std::snprintf(text, sizeof text, "generation %llu  %.1f s  %llu alive",
+                  static_cast<unsigned long long>(world.moment().generation),
+                  static_cast<double>(world.moment().generation_tick) * world.parameters().active.tick_s,
+                  static_cast<unsigned long long>(world.alive_count()));
+    return text;
+}
 
 void print_summary(const simulation::World& world, const Cost& cost) {
     std::printf("%llu generations, %llu ticks, %.1f simulated s; state %s\n",
@@ -121,10 +107,11 @@ int run(const RunOptions& options) {
         return RunError;
     }
     std::ofstream csv;
+    std::optional<Table> table;
     if (!options.csv.empty()) {
         csv.open(options.csv);
-        csv << csv_heading() << '\n' << std::flush;
-        if (!csv) {
+        table.emplace(csv, Table::Format::Csv, statistics_columns());
+        if (!csv.flush()) {
             std::cerr << "evod run: --csv: cannot write " << options.csv << '\n';
             return RunError;
         }
@@ -150,7 +137,7 @@ int run(const RunOptions& options) {
         do {
             cost.organism_ticks += world.has_bodies() ? world.alive_count() : 0;
             world.advance_tick(*executor);
-            progress.show(world);
+            progress.show([&] { return progress_of(world); });
         } while (!interrupted && !world.generation_over());
         cost.tick_s += seconds_since(began);
         world.take_events();
@@ -159,11 +146,11 @@ int run(const RunOptions& options) {
         progress.clear();
         for (const simulation::GenerationStatistics& statistics : world.history().back()) {
             std::puts(table_row(statistics, several_islands).c_str());
-            if (csv.is_open())
-                csv << csv_row(statistics) << '\n';
+            if (table)
+                write_row(*table, statistics);
         }
         std::fflush(stdout);
-        if (csv.is_open() && !csv.flush()) {
+        if (table && !csv.flush()) {
             std::cerr << "evod run: --csv: cannot write " << options.csv << ", the disk may be full\n";
             return RunError;
         }

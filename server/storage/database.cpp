@@ -4,16 +4,34 @@
 
 namespace evod::storage {
 
+namespace {
+
+/// A path as a URI of SQLite, with which options can be given.
+std::string uri_of(const std::string& path, const char* options) {
+    std::string uri = "file:";
+    for (const char c : path)
+        if (c == '%' || c == '?' || c == '#')
+            uri += c == '%' ? "%25" : c == '?' ? "%3f" : "%23";
+        else
+            uri += c;
+    return uri + options;
+}
+
+} // namespace
+
 void Database::Close::operator()(sqlite3* handle) const {
     sqlite3_close_v2(handle);
 }
 
 Database::Database(const std::string& path, Mode mode, const char* vfs) {
     int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-    flags |= mode == Mode::Read ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
+    const bool reads = mode == Mode::Read || mode == Mode::ReadAtRest;
+    flags |= reads ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     flags |= mode == Mode::Create ? SQLITE_OPEN_CREATE : 0;
+    flags |= mode == Mode::ReadAtRest ? SQLITE_OPEN_URI : 0;
+    const std::string name = mode == Mode::ReadAtRest ? uri_of(path, "?immutable=1") : path;
     sqlite3* handle = nullptr;
-    const int code = sqlite3_open_v2(path.c_str(), &handle, flags, vfs);
+    const int code = sqlite3_open_v2(name.c_str(), &handle, flags, vfs);
     handle_.reset(handle);
     check(code);
     if (failed())

@@ -23,6 +23,7 @@ class Database {
         Create, // a new file; fails if there is one
         Write,
         Read,
+        ReadAtRest, // a file to which nobody writes, wherever it lies: no lock is taken
     };
     /// vfs  SQLite's name of the way to the disk; nullptr is the usual one.
     Database(const std::string& path, Mode mode, const char* vfs = nullptr);

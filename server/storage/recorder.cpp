@@ -8,27 +8,23 @@
 namespace evod::storage {
 
 void RunRecorder::hand_over(const simulation::World& world) {
+    // Together, so that a file tells of a tick all there is to tell or nothing.
+    std::vector<StorageThread::Record> records;
     const simulation::Moment& moment = world.moment();
     if (moment.generation != written_.generations) {
-        GenerationBegun begun{.opening = world.opening(), .born = {}};
-        for (const simulation::Island& island : world.islands())
-            begun.born.push_back(island.born());
-        thread_.write(number_, std::move(begun));
+        records.emplace_back(beginning_of(world));
         written_.generations = moment.generation;
     }
     const bool new_tick = moment.tick > written_.tick;
     written_.tick = std::max(written_.tick, moment.tick);
     if (new_tick && moment.tick % ticks_per_link == 0)
-        thread_.write(number_, HashLink{moment.tick, world.hash()});
+        records.emplace_back(HashLink{moment.tick, world.hash()});
     if (world.generation_over() && generations_ended_ != moment.generation) {
-        GenerationEnded ended{.generation = moment.generation, .outcomes = {}, .statistics = world.history().back()};
-        for (std::size_t i = 0; i < world.islands().size(); ++i) {
-            const simulation::Fate& fate = world.islands()[i].fate();
-            ended.outcomes.push_back({world.fitness()[i], fate.lived_ticks, fate.cause});
-        }
-        thread_.write(number_, std::move(ended));
+        records.emplace_back(end_of(world));
         generations_ended_ = moment.generation;
     }
+    if (!records.empty())
+        thread_.write(number_, std::move(records));
 }
 
 void RunRecorder::journal(std::uint64_t tick, const simulation::RunControl& control, Origin origin, std::string answer,

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evod::storage {
@@ -50,6 +51,8 @@ struct GenerationBegun {
     simulation::Opening opening;
     std::vector<evolution::NextGeneration> born; // one per island
 };
+/// The beginning of the generation that a world is in.
+GenerationBegun beginning_of(const simulation::World& world);
 
 /// What became of a generation's organisms on one island, by id.
 struct IslandOutcome {
@@ -63,6 +66,10 @@ struct GenerationEnded {
     std::vector<IslandOutcome> outcomes;                      // one per island
     std::vector<simulation::GenerationStatistics> statistics; // one per island
 };
+/// world  whose generation is over.
+GenerationEnded end_of(const simulation::World& world);
+/// "alive", "starved", "poisoned"; "unknown" for a number that is no cause.
+std::string_view name_of(simulation::CauseOfDeath cause);
 
 /// The state hash after a tick.
 struct HashLink {

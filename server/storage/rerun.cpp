@@ -1,8 +1,8 @@
 #include "server/storage/rerun.h"
 
-#include "server/base/assert.h"
 #include "server/protocol/commands.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace evod::storage {
@@ -27,14 +27,34 @@ std::optional<simulation::Command> command_of(const std::string& request) {
 
 } // namespace
 
+Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file, std::span<const JournalEntry> journal) {
+    std::vector<ParameterChange> changes;
+    std::uint64_t tick = 0;
+    for (const JournalEntry& entry : journal) {
+        auto command = command_of(entry.origin.request);
+        if (!command)
+            return damaged(file, "entry " + std::to_string(entry.number) + " of its journal is no command");
+        if (entry.tick < tick)
+            return damaged(file, "entry " + std::to_string(entry.number) +
+                                     " of its journal is from an earlier tick than the one before");
+        tick = entry.tick;
+        if (auto* change = std::get_if<simulation::SetParameters>(&*command))
+            changes.push_back({entry.number, entry.tick, std::move(change->assignments)});
+    }
+    return changes;
+}
+
 Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor& executor) {
     if (auto refused = file.other_model())
         return *refused;
     const auto journal = file.journal();
     if (!journal)
         return journal.error();
+    const auto changes = parameter_changes(file, *journal);
+    if (!changes)
+        return changes.error();
     const std::uint64_t held = file.held_at_or_before(generation);
-    auto begun = file.beginning_of(held);
+    const auto begun = file.beginning_of(held);
     if (!begun)
         return begun.error();
     const std::uint64_t first_generation = file.identity().first_generation;
@@ -42,49 +62,55 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
         return Refusal{.code = RefusalCode::NotFound,
                        .message = file.path() + " holds no generation " + std::to_string(generation),
                        .violations = {}};
-    // A change that came between the end of a generation and the beginning of the next is in that beginning already.
-    const std::uint64_t begun_tick = *begun ? (*begun)->opening.moment.tick : 0;
-    std::vector<Change> changes;
-    for (const JournalEntry& entry : *journal) {
-        if (held != first_generation && entry.tick <= begun_tick)
-            continue;
-        auto command = command_of(entry.origin.request);
-        if (!command)
-            return damaged(file, "entry " + std::to_string(entry.number) + " of its journal is no command");
-        if (auto* change = std::get_if<simulation::SetParameters>(&*command))
-            changes.push_back({entry.tick, std::move(*change)});
-    }
-    if (!*begun) {
-        Rerun rerun{simulation::World{file.identity().parameters, file.identity().seed}, std::move(changes)};
-        rerun.make_changes();
-        return rerun;
-    }
+    if (!*begun)
+        return with_changes(file, simulation::World{file.identity().parameters, file.identity().seed}, *changes);
     auto history = file.history(simulation::World::history_generations_kept);
     if (!history)
         return history.error();
     while (!history->empty() && history->back().front().generation >= held)
         history->pop_back();
-    Rerun rerun{simulation::World{file.identity().seed, (*begun)->opening, std::move((*begun)->born),
-                                  *std::move(history), executor},
-                std::move(changes)};
-    rerun.make_changes();
-    while (rerun.world_.moment().generation < generation) {
-        if (rerun.world_.generation_over())
-            rerun.world_.turn_over(executor);
+    auto rerun = from(file, **begun, *changes, *std::move(history), executor);
+    while (rerun && rerun->world_.moment().generation < generation) {
+        if (rerun->world_.generation_over())
+            rerun->turn_over(executor);
         else
-            rerun.advance_tick(executor);
+            rerun->advance_tick(executor);
     }
     return rerun;
 }
 
-void Rerun::make_changes() {
-    for (; next_ < changes_.size() && changes_[next_].tick <= world_.moment().tick; ++next_) {
-        // It was accepted then, and the same rules hold.
-        const auto requested =
-            simulation::assign(world_.parameters().requested, changes_[next_].command.assignments, "");
-        EVOD_ASSERT(requested.has_value());
-        world_.request_parameters(*requested);
+Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, std::span<const ParameterChange> changes,
+                          simulation::World::History history, base::Executor& executor) {
+    return with_changes(
+        file, simulation::World{file.identity().seed, begun.opening, begun.born, std::move(history), executor},
+        changes);
+}
+
+Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,
+                                  std::span<const ParameterChange> changes) {
+    // A change that came between the end of a generation and the beginning of the next is in that beginning already.
+    const simulation::Moment& begun = world.moment();
+    const auto first = begun.generation == file.identity().first_generation
+                           ? changes.begin()
+                           : std::ranges::upper_bound(changes, begun.tick, {}, &ParameterChange::tick);
+    const simulation::Parameters& active = world.parameters().active;
+    simulation::Parameters requested = world.parameters().requested;
+    std::vector<Request> requests;
+    for (const ParameterChange& change : std::span{first, changes.end()}) {
+        // As Laboratory accepted it: whenever generations begin, what waits for a reset stays as it is.
+        const auto assigned = simulation::assign(requested, change.assignments);
+        if (!assigned || !validate(taking_effect(active, *assigned, base::Effect::NextGeneration)).empty())
+            return damaged(file, "entry " + std::to_string(change.entry) +
+                                     " of its journal asks for parameters that no world can have");
+        requested = *assigned;
+        requests.push_back({change.tick, requested});
     }
+    return Rerun{std::move(world), std::move(requests)};
+}
+
+void Rerun::make_changes() {
+    for (; next_ < requests_.size() && requests_[next_].tick <= world_.moment().tick; ++next_)
+        world_.request_parameters(requests_[next_].parameters);
 }
 
 void Rerun::advance_tick(base::Executor& executor) {

@@ -7,9 +7,21 @@
 #include "server/base/executor.h"
 #include "server/storage/run_file.h"
 
+#include <span>
 #include <vector>
 
 namespace evod::storage {
+
+/// A change of parameters that a journal tells of.
+struct ParameterChange {
+    std::uint64_t entry = 0; // its number in the journal
+    std::uint64_t tick = 0;  // after which it came
+    std::vector<simulation::Assignment> assignments;
+};
+
+/// Those of a file's journal, in order of ticks. Refused where an entry is no command, or earlier than the one before.
+base::Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file,
+                                                             std::span<const JournalEntry> journal);
 
 class Rerun {
   public:
@@ -17,6 +29,13 @@ class Rerun {
     /// simulated from the last one before it that is. Refused if the file is damaged there, follows another model, or
     /// has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
+    /// The same from what has been read; of the file only its identity is looked at.
+    ///
+    /// begun    what can be the beginning of a generation; the run's own model is this program's.
+    /// changes  in order of ticks; those that `begun` has in it already are left out.
+    static base::Result<Rerun> from(const RunFile& file, const GenerationBegun& begun,
+                                    std::span<const ParameterChange> changes, simulation::World::History history,
+                                    base::Executor& executor);
 
     const simulation::World& world() const { return world_; }
     /// Ends the rerun: the world as it is.
@@ -24,20 +43,27 @@ class Rerun {
 
     /// One tick, then the changes of parameters that came after it. Not to be called where the run was over.
     void advance_tick(base::Executor& executor);
+    /// From a generation that is over to the first moment of the next.
+    void turn_over(base::Executor& executor) { world_.turn_over(executor); }
     /// Until that tick is over, or the run is.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
-    struct Change {
-        std::uint64_t tick; // after which it came
-        simulation::SetParameters command;
+    /// What was asked for, all in all, after a change.
+    struct Request {
+        std::uint64_t tick;
+        simulation::Parameters parameters;
     };
-    Rerun(simulation::World world, std::vector<Change> changes)
-        : world_{std::move(world)}, changes_{std::move(changes)} {}
+    Rerun(simulation::World world, std::vector<Request> requests)
+        : world_{std::move(world)}, requests_{std::move(requests)} {
+        make_changes();
+    }
+    static base::Result<Rerun> with_changes(const RunFile& file, simulation::World world,
+                                            std::span<const ParameterChange> changes);
     void make_changes();
 
     simulation::World world_;
-    std::vector<Change> changes_; // in order, from next_ to come
+    std::vector<Request> requests_; // in order, from next_ to come
     std::size_t next_ = 0;
 };
 

@@ -89,6 +89,17 @@ std::optional<std::uint64_t> as_read(const std::optional<std::int64_t>& value) {
     return value ? std::optional{static_cast<std::uint64_t>(*value)} : std::nullopt;
 }
 
+simulation::GenerationStatistics read_statistics(RowReader& row) {
+    simulation::GenerationStatistics statistics;
+    simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
+        if constexpr (std::is_floating_point_v<T>)
+            value = row.real();
+        else
+            value = static_cast<T>(row.integer());
+    });
+    return statistics;
+}
+
 std::string row_of(const char* table, std::uint64_t key) {
     return std::string{"the row "} + std::to_string(key) + " of its table " + table;
 }
@@ -112,7 +123,7 @@ struct RunFile::Writers {
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
     : path_{path}, database_{path, mode, options.vfs}, file_bytes_max_{options.file_bytes_max} {
-    if (mode == Database::Mode::Read)
+    if (mode == Database::Mode::Read || mode == Database::Mode::ReadAtRest)
         return;
     database_.run("PRAGMA journal_mode = WAL");
     database_.run(options.durability == Durability::Full ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
@@ -156,8 +167,22 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!exists(status))
+        return refusal(RefusalCode::NotFound, path + ": there is no such file");
+    if (is_directory(status))
+        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file");
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
-    if (auto read = file->read_identity(); !read)
+    auto read = file->read_identity();
+    // Whoever reads takes part in the log beside the file, so SQLite has to write there. Where that cannot be, a file
+    // with nothing in its log is read by itself.
+    const auto log_bytes = std::filesystem::file_size(path + "-wal", error);
+    if (!read && read.error().code == RefusalCode::Unavailable && (error || log_bytes == 0)) {
+        file.reset(new RunFile{path, Database::Mode::ReadAtRest, {}});
+        read = file->read_identity();
+    }
+    if (!read)
         return read.error();
     return file;
 }
@@ -299,6 +324,17 @@ bool RunFile::is_held(std::uint64_t generation) const {
            (generation - identity_.first_generation) % thinning_.keep_every == 0;
 }
 
+bool RunFile::is_link_held(std::uint64_t tick) const {
+    return tick > thinning_.until_tick || tick / ticks_per_link % thinning_.keep_every == 0;
+}
+
+std::uint64_t RunFile::held_after(std::uint64_t generation) const {
+    do
+        ++generation;
+    while (!is_held(generation));
+    return generation;
+}
+
 std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
     return is_held(generation) ? generation
                                : generation - (generation - identity_.first_generation) % thinning_.keep_every;
@@ -333,10 +369,13 @@ Result<std::optional<EndMark>> RunFile::end_mark() {
     return mark;
 }
 
-Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first) {
+Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uint32_t count) {
     std::vector<JournalEntry> entries;
-    RowReader reader{
-        database_, "journal", journal_columns, "number >= ? ORDER BY number", {static_cast<std::int64_t>(first)}};
+    RowReader reader{database_,
+                     "journal",
+                     journal_columns,
+                     "number >= ? ORDER BY number LIMIT ?",
+                     {static_cast<std::int64_t>(first), count}};
     while (reader.next()) {
         JournalEntry entry;
         entry.number = reader.natural();
@@ -360,11 +399,24 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first) {
     return entries;
 }
 
+void RunFile::hold_still() {
+    database_.run("BEGIN");
+}
+
 std::uint64_t RunFile::last_generation() {
     return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM generation"));
 }
 
+std::uint64_t RunFile::first_tick() {
+    const std::string sql =
+        "SELECT first_tick FROM generation WHERE generation = " + std::to_string(identity_.first_generation);
+    return static_cast<std::uint64_t>(database_.number(sql.c_str()));
+}
+
 Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
+    // Most generations have those of the one before.
+    if (read_parameters_ && read_parameters_number_ == number)
+        return *read_parameters_;
     RowReader reader{database_, "parameters", parameters_columns, "number = ?", {number}};
     const auto bad = [&] { return damaged(row_of("parameters", static_cast<std::uint64_t>(number))); };
     if (!reader.next())
@@ -378,6 +430,8 @@ Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
         return bad();
     set.active = active->parameters;
     set.requested = requested->parameters;
+    read_parameters_ = set;
+    read_parameters_number_ = number;
     return set;
 }
 
@@ -423,7 +477,8 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
         born.clamped_count = rows.natural();
         const std::string genes = rows.bytes(), parents = rows.bytes();
         if (!rows.sound() || island != begun.born.size() ||
-            genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents))
+            genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents) ||
+            (!born.parents.empty() && born.parents.size() != organisms)) // the first generation has none
             return bad();
         born.genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
         std::memcpy(born.genes.data(), genes.data(), genes.size());
@@ -439,9 +494,7 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
 Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generation) {
     const auto key = static_cast<std::int64_t>(generation);
     GenerationEnded ended{.generation = generation, .outcomes = {}, .statistics = {}};
-    const auto bad = [&](const char* what) {
-        return damaged(std::string{what} + " of generation " + std::to_string(generation));
-    };
+    const auto bad = [&] { return damaged("the outcome of generation " + std::to_string(generation)); };
     RowReader rows{database_, "outcome", outcome_columns, "generation = ? ORDER BY island", {key}};
     while (rows.next()) {
         (void)rows.integer();
@@ -449,32 +502,42 @@ Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generat
         IslandOutcome outcome;
         const std::string fitness = rows.bytes(), lived = rows.bytes(), cause = rows.bytes();
         if (!rows.sound() || island != ended.outcomes.size() || !read_into(outcome.fitness, fitness) ||
-            !read_into(outcome.lived_ticks, lived) || !read_into(outcome.cause, cause))
-            return bad("the outcome");
+            !read_into(outcome.lived_ticks, lived) || !read_into(outcome.cause, cause) ||
+            outcome.lived_ticks.size() != outcome.fitness.size() || outcome.cause.size() != outcome.fitness.size())
+            return bad();
         ended.outcomes.push_back(std::move(outcome));
-    }
-    RowReader numbers{database_, "statistics", statistics_columns(), "generation = ? ORDER BY island", {key}};
-    while (numbers.next()) {
-        simulation::GenerationStatistics statistics;
-        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
-            if constexpr (std::is_floating_point_v<T>)
-                value = numbers.real();
-            else
-                value = static_cast<T>(numbers.integer());
-        });
-        if (!numbers.sound() || statistics.island != ended.statistics.size())
-            return bad("a row of the statistics");
-        ended.statistics.push_back(statistics);
     }
     if (database_.failed())
         return failure();
+    auto statistics = statistics_of(generation);
+    if (!statistics)
+        return statistics.error();
     if (ended.outcomes.empty() && !is_held(generation))
         return std::optional<GenerationEnded>{};
+    ended.statistics = *std::move(statistics);
     if (ended.outcomes.size() != ended.statistics.size())
-        return bad("the outcome");
+        return bad();
     if (ended.outcomes.empty())
         return std::optional<GenerationEnded>{};
     return ended;
+}
+
+Result<std::vector<simulation::GenerationStatistics>> RunFile::statistics_of(std::uint64_t generation) {
+    std::vector<simulation::GenerationStatistics> statistics;
+    RowReader rows{database_,
+                   "statistics",
+                   statistics_columns(),
+                   "generation = ? ORDER BY island",
+                   {static_cast<std::int64_t>(generation)}};
+    while (rows.next()) {
+        const simulation::GenerationStatistics island = read_statistics(rows);
+        if (!rows.sound() || island.island != statistics.size())
+            return damaged("a row of the statistics of generation " + std::to_string(generation));
+        statistics.push_back(island);
+    }
+    if (database_.failed())
+        return failure();
+    return statistics;
 }
 
 Result<simulation::World::History> RunFile::history(std::size_t count) {
@@ -485,13 +548,7 @@ Result<simulation::World::History> RunFile::history(std::size_t count) {
     RowReader numbers{
         database_, "statistics", statistics_columns(), "generation >= ? ORDER BY generation, island", {first}};
     while (numbers.next()) {
-        simulation::GenerationStatistics statistics;
-        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
-            if constexpr (std::is_floating_point_v<T>)
-                value = numbers.real();
-            else
-                value = static_cast<T>(numbers.integer());
-        });
+        const simulation::GenerationStatistics statistics = read_statistics(numbers);
         const std::uint64_t expected = static_cast<std::uint64_t>(first) + history.size();
         const bool begins = statistics.island == 0;
         if (!numbers.sound() || statistics.generation != (begins ? expected : expected - 1))
@@ -528,9 +585,12 @@ Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t 
 
 EndMark RunFile::contents() {
     std::int64_t last = 0;
+    // A generation that was bred is written down once its first tick is over; the run's first is there before.
+    const std::string bred =
+        "SELECT max(first_tick + 1) FROM generation WHERE generation > " + std::to_string(identity_.first_generation);
     for (const char* sql :
          {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
-          "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
+          bred.c_str(), "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
         last = std::max(last, database_.number(sql));
     const auto count = [&](const char* sql) { return static_cast<std::uint64_t>(database_.number(sql)); };
     return {.ended = false,
@@ -552,15 +612,12 @@ Result<void> RunFile::check() {
     if (auto entries = journal(); !entries)
         return entries.error();
     const std::uint64_t last = last_generation();
-    std::uint64_t first_tick = 0;
     for (std::uint64_t generation = identity_.first_generation; generation <= last; ++generation) {
         const auto begun = beginning_of(generation);
         if (!begun)
             return begun.error();
         if (!*begun && is_held(generation))
             return damaged(row_of("generation", generation));
-        if (generation == identity_.first_generation)
-            first_tick = (*begun)->opening.moment.tick;
         const auto ended = outcome_of(generation);
         if (!ended)
             return ended.error();
@@ -568,16 +625,19 @@ Result<void> RunFile::check() {
             return damaged("the outcome of generation " + std::to_string(generation));
     }
     const EndMark found = contents();
-    const auto chain = links(0, found.tick);
-    if (!chain)
-        return chain.error();
-    std::uint64_t expected = first_tick / ticks_per_link * ticks_per_link;
-    for (const HashLink& link : *chain) {
-        do
-            expected += ticks_per_link;
-        while (expected <= thinning_.until_tick && expected / ticks_per_link % thinning_.keep_every != 0);
-        if (link.tick != expected)
-            return damaged(row_of("state_hash", expected));
+    constexpr std::uint64_t ticks_at_once = 100'000 * ticks_per_link;
+    std::uint64_t linked = first_tick() / ticks_per_link * ticks_per_link; // up to there every link is there
+    for (std::uint64_t after = linked; after < found.tick; after += ticks_at_once) {
+        const auto chain = links(after, std::min(found.tick, after + ticks_at_once));
+        if (!chain)
+            return chain.error();
+        for (const HashLink& link : *chain) {
+            do
+                linked += ticks_per_link;
+            while (!is_link_held(linked));
+            if (link.tick != linked)
+                return damaged(row_of("state_hash", linked));
+        }
     }
     const auto mark = end_mark();
     if (!mark)

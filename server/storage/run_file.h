@@ -53,17 +53,27 @@ class RunFile {
 
     // Reading. DATA_LOSS names the row that is not as it was written.
 
+    /// From now on what is there now is read, whatever a server writes meanwhile.
+    void hold_still();
     base::Result<std::optional<EndMark>> end_mark();
-    /// The entries from number `first` on.
-    base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1);
+    /// The entries from number `first` on, at most `count`.
+    base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1, std::uint32_t count = ~0u);
     /// Of generations whose beginning is held; 0 if none is yet.
     std::uint64_t last_generation();
+    /// After which the first generation began; 0 if its beginning is not held.
+    std::uint64_t first_tick();
     /// Nothing if the generation's beginning is not held, or not any more.
     base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
     /// The last generation up to this one whose beginning is held.
     std::uint64_t held_at_or_before(std::uint64_t generation) const;
+    /// The first after it.
+    std::uint64_t held_after(std::uint64_t generation) const;
+    /// Whether the state hash of a tick, a multiple of ticks_per_link, has not been taken out.
+    bool is_link_held(std::uint64_t tick) const;
     /// Nothing if the generation has not ended, or its outcome is not held any more.
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
+    /// One entry per island; nothing if the generation has not ended, or its statistics are not held.
+    base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
     /// Of the newest `count` generations that have ended, oldest first.
     base::Result<simulation::World::History> history(std::size_t count);
     /// In order of ticks, those after `after` up to `until`.
@@ -117,6 +127,8 @@ class RunFile {
     std::unique_ptr<Writers> writers_;
     std::optional<simulation::ParameterSet> last_parameters_; // written, under parameter_sets_
     std::int64_t parameter_sets_ = 0;
+    std::optional<simulation::ParameterSet> read_parameters_; // last, under read_parameters_number_
+    std::int64_t read_parameters_number_ = 0;
     bool marked_ = false; // there may be an end mark
     Thinning thinning_;
     std::int64_t file_bytes_max_;

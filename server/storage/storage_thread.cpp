@@ -70,27 +70,46 @@ StorageThread::RunNumber StorageThread::adopt(std::unique_ptr<RunFile> file) {
 }
 
 void StorageThread::write(RunNumber run, Record record, Done done) {
-    const std::size_t bytes = bytes_of(record);
+    std::vector<Item> items;
+    items.push_back({std::move(record), std::move(done)});
+    hand_over(run, std::move(items));
+}
+
+void StorageThread::write(RunNumber run, std::vector<Record> records) {
+    std::vector<Item> items;
+    for (Record& record : records)
+        items.push_back({std::move(record), {}});
+    hand_over(run, std::move(items));
+}
+
+void StorageThread::close(RunNumber run, const EndMark& mark, std::string renamed, Done done) {
+    std::vector<Item> items;
+    items.push_back({mark, std::move(done)});
+    hand_over(run, std::move(items), std::move(renamed));
+}
+
+void StorageThread::hand_over(RunNumber run, std::vector<Item> items, std::optional<std::string> closing_as) {
+    bool somebody_waits = closing_as.has_value();
+    std::size_t bytes = 0;
+    for (Item& item : items) {
+        item.bytes = bytes_of(item.record);
+        bytes += item.bytes;
+        somebody_waits |= item.done != nullptr;
+    }
     waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
     bool wake = false;
     {
         const std::lock_guard lock{mutex_};
         // Somebody who waits, and the first of what is gathered.
-        wake = done != nullptr || urgent_ || handed_over_.empty();
-        urgent_ |= done != nullptr;
-        handed_over_[run].push_back({std::move(record), std::move(done), bytes});
+        urgent_ |= somebody_waits;
+        wake = urgent_ || handed_over_.empty();
+        std::vector<Item>& waiting = handed_over_[run];
+        waiting.insert(waiting.end(), std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
+        if (closing_as)
+            closing_.emplace(run, *std::move(closing_as));
     }
     if (wake)
         changed_.notify_one();
-}
-
-void StorageThread::close(RunNumber run, const EndMark& mark, std::string renamed, Done done) {
-    {
-        const std::lock_guard lock{mutex_};
-        closing_.emplace(run, std::move(renamed));
-        urgent_ = true;
-    }
-    write(run, mark, std::move(done));
 }
 
 std::optional<std::string> StorageThread::trouble() const {

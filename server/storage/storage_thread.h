@@ -47,6 +47,8 @@ class StorageThread {
     /// A file that is there and has been read.
     RunNumber adopt(std::unique_ptr<RunFile> file);
     void write(RunNumber run, Record record, Done done = {});
+    /// All in one transaction, or none.
+    void write(RunNumber run, std::vector<Record> records);
     /// The end mark; then the file is closed, and renamed if `renamed` is given.
     void close(RunNumber run, const EndMark& mark, std::string renamed = {}, Done done = {});
 
@@ -70,6 +72,8 @@ class StorageThread {
         bool closing = false, said_large = false;
     };
 
+    /// In one go, so that the storage thread takes all of it or nothing.
+    void hand_over(RunNumber run, std::vector<Item> items, std::optional<std::string> closing_as = std::nullopt);
     void work();
     /// Writes what waits for a run; false if that failed.
     bool write_out(Run& run);

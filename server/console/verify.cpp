@@ -1,0 +1,70 @@
+#include "server/console/verify.h"
+
+#include "server/console/progress_line.h"
+#include "server/runtime/worker_pool.h"
+#include "server/storage/verify.h"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <mutex>
+
+namespace evod::console {
+namespace {
+
+using storage::Difference;
+using storage::StoredMoment;
+using storage::VerifyProgress;
+
+std::string text_of(const StoredMoment& moment) {
+    return "generation " + std::to_string(moment.generation) + ", tick " + std::to_string(moment.tick);
+}
+
+void print_difference(const std::string& path, const Difference& difference) {
+    std::cerr << "evod verify: " << path << " tells of another run than the one that begins as it does\n"
+              << "last moment that agrees: "
+              << (difference.agrees ? text_of(*difference.agrees) + ": " + difference.agreeing_part : "none") << '\n'
+              << "first that does not: " << text_of(difference.differs) << ": " << difference.part << ": stored "
+              << difference.stored << ", simulated again " << difference.simulated << '\n';
+}
+
+} // namespace
+
+int verify(const VerifyOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto fail = [](const base::Refusal& why) {
+        std::cerr << "evod verify: " << base::to_text(why) << '\n';
+        return 1;
+    };
+    const auto file = storage::RunFile::open_read_only(options.run);
+    if (!file)
+        return fail(file.error());
+
+    ProgressLine progress;
+    std::mutex progress_mutex; // guards the line, which any thread may write
+    const auto executor = runtime::make_executor(options.threads);
+    const auto verified = storage::verify(**file, *executor, [&](const VerifyProgress& now) {
+        const std::unique_lock lock{progress_mutex, std::try_to_lock};
+        if (lock)
+            progress.show([&] {
+                return std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) + " ticks simulated again";
+            });
+    });
+    progress.clear();
+    if (!verified)
+        return fail(verified.error());
+    if (verified->difference) {
+        print_difference(options.run, *verified->difference);
+        return 1;
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes compared in %.2f s, %.0f × real "
+                "time\n",
+                options.run.c_str(), static_cast<unsigned long long>(verified->generations),
+                static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
+                seconds, verified->simulated_s / seconds);
+    return 0;
+}
+
+} // namespace evod::console

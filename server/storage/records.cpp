@@ -1,0 +1,37 @@
+#include "server/storage/records.h"
+
+#include "server/base/assert.h"
+
+namespace evod::storage {
+
+GenerationBegun beginning_of(const simulation::World& world) {
+    GenerationBegun begun{.opening = world.opening(), .born = {}};
+    for (const simulation::Island& island : world.islands())
+        begun.born.push_back(island.born());
+    return begun;
+}
+
+GenerationEnded end_of(const simulation::World& world) {
+    EVOD_ASSERT(world.generation_over());
+    GenerationEnded ended{
+        .generation = world.moment().generation, .outcomes = {}, .statistics = world.history().back()};
+    for (std::size_t i = 0; i < world.islands().size(); ++i) {
+        const simulation::Fate& fate = world.islands()[i].fate();
+        ended.outcomes.push_back({world.fitness()[i], fate.lived_ticks, fate.cause});
+    }
+    return ended;
+}
+
+std::string_view name_of(simulation::CauseOfDeath cause) {
+    switch (cause) {
+    case simulation::CauseOfDeath::Alive:
+        return "alive";
+    case simulation::CauseOfDeath::Starved:
+        return "starved";
+    case simulation::CauseOfDeath::Poisoned:
+        return "poisoned";
+    }
+    return "unknown";
+}
+
+} // namespace evod::storage

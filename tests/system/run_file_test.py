@@ -1,0 +1,302 @@
+"""evod verify and evod export, on runs that real servers have written. EVOD and EVOCTL name the programs."""
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import sqlite3
+import struct
+import subprocess
+import tempfile
+import unittest
+
+EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
+EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
+GENES = ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"]
+
+
+def evod(*arguments, status=0):
+    done = subprocess.run([EVOD, *map(str, arguments)], capture_output=True, text=True, timeout=100)
+    assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
+    return done.stdout if status == 0 else done.stderr
+
+
+class Server:
+    """A server with the world "small", as a context; ended in order when that is left."""
+
+    def __init__(self, folder, seed):
+        experiment = pathlib.Path(folder) / "small.json"
+        experiment.write_text(json.dumps(EXPERIMENT))
+        self.run = pathlib.Path(folder) / "small.evod"
+        self.process = subprocess.Popen(
+            [EVOD, "--data", folder, "--port", "0", "--speed", "max", "--experiment", experiment, "--seed", str(seed)],
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        for line in self.process.stdout:
+            if found := re.search(r"listening on (127\.0\.0\.1:\d+)", line):
+                self.address = found[1]
+                return
+        raise AssertionError("the server did not start")
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end(signal.SIGTERM, 0)
+
+    def end(self, how, status):
+        self.process.send_signal(how)
+        self.process.communicate(timeout=60)
+        assert self.process.returncode == status, self.process.returncode
+
+    def evoctl(self, *words):
+        done = subprocess.run([EVOCTL, "--server", self.address, *words], capture_output=True, text=True, timeout=100)
+        assert done.returncode == 0, f"{words}\n{done.stdout}\n{done.stderr}"
+
+
+def setUpModule():
+    """Three generations and a half with changes; four without any; and the same of another seed."""
+    global folder, changed, plain, other
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    paths = []
+    for name, seed in ("changed", 1), ("plain", 2), ("other", 3):
+        os.mkdir(f"{folder.name}/{name}")
+        with Server(f"{folder.name}/{name}", seed) as server:
+            if name == "changed":
+                server.evoctl("until", "130")
+                server.evoctl("set", "food_health=7", "mutation_chance=0.5")
+                server.evoctl("until", "240")
+                server.evoctl("set", "population_size=15")
+                server.evoctl("until", "421")
+            else:
+                server.evoctl("run", "4", "--wait")
+        paths.append(server.run)
+    changed, plain, other = paths
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        own = tempfile.TemporaryDirectory()
+        self.addCleanup(own.cleanup)
+        self.folder = own.name
+
+    def copy(self, run, *statements):
+        """A copy of a run in which something is changed; `other` is the database of another."""
+        path = f"{self.folder}/copy.evod"
+        shutil.copy(run, path)
+        database = sqlite3.connect(path, isolation_level=None)
+        database.execute(f"ATTACH '{other}' AS other")
+        for statement in statements:
+            self.assertGreater(database.execute(statement).rowcount, 0, statement)
+        database.close()
+        return path
+
+
+class Verify(Case):
+    def test_a_run_agrees_on_any_number_of_threads(self):
+        for run, words in (changed, "4 generations, 421 ticks, 7 state hashes"), (plain, "4 generations, 480 ticks, 8 "):
+            for threads in 1, 2, 7:
+                said = evod("verify", run, "--threads", threads)
+                self.assertIn("all agrees: " + words, said)
+                self.assertRegex(said, r"compared in \d+\.\d\d s, \d+ × real time\n$")
+
+    def test_a_run_agrees_while_a_server_writes_it_and_after_that_was_killed(self):
+        server = Server(self.folder, 4)
+        try:
+            server.evoctl("run")
+            server.evoctl("set", "mutation_chance=0.3")
+            for _ in range(3):
+                self.assertIn("all agrees", evod("verify", server.run))
+                server.evoctl("set", "food_health=20")
+        finally:
+            server.end(signal.SIGKILL, -signal.SIGKILL)
+        self.assertIn("all agrees", evod("verify", server.run))
+
+    def test_a_run_that_was_reset_agrees_and_so_does_the_one_after_it(self):
+        with Server(self.folder, 5) as server:
+            server.evoctl("until", "150")
+            server.evoctl("set", "food_health=7", "population_size=9")
+            server.evoctl("reset", "--seed", "6")
+            server.evoctl("until", "200")
+            server.evoctl("set", "food_health=8")
+            server.evoctl("until", "300")
+        runs = sorted(pathlib.Path(self.folder).glob("*.evod"))
+        self.assertEqual(len(runs), 2)
+        self.assertIn("2 generations, 150 ticks", evod("verify", runs[0]))
+        self.assertIn("3 generations, 300 ticks", evod("verify", runs[1]))
+
+    def test_damage_is_named(self):
+        for statement, words in {
+            "UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 3 AND island = 1": "outcome of generation 3",
+            "UPDATE population SET chromosomes = zeroblob(288) WHERE generation = 2": "population of generation 2",
+            "UPDATE state_hash SET low = low + 1 WHERE tick = 120": "row 120 of its table state_hash",
+            "DELETE FROM journal WHERE number = 1": "row 1 of its table journal",
+        }.items():
+            with self.subTest(statement):
+                self.assertIn(words, evod("verify", self.copy(plain, statement), status=1))
+        path = self.copy(plain)
+        with open(path, "r+b") as file:
+            content = file.read()
+            # A byte of a chromosome: the third generation's first.
+            (genes,) = sqlite3.connect(path).execute(
+                "SELECT chromosomes FROM population WHERE generation = 3 AND island = 0").fetchone()
+            place = content.index(genes[:32])
+            file.seek(place)
+            file.write(bytes([content[place] ^ 1]))
+        self.assertIn("is damaged: the population of generation 3 on island 0", evod("verify", path, status=1))
+
+    def test_a_sound_row_of_another_run_is_told_with_its_moment(self):
+        for table, where, moment, part, agrees in (
+                ("state_hash", "tick = 180", "generation 2, tick 180", "the state hash: stored ",
+                 "generation 2, tick 120: the beginning of the generation"),
+                ("outcome", "generation = 2 AND island = 1", "generation 2, tick 240", "the fitness of organism ",
+                 "generation 2, tick 240: the state hash"),
+                ("population", "generation = 3 AND island = 0", "generation 3, tick 240", "the chromosomes: gene ",
+                 "generation 2, tick 240: the end of the generation"),
+                ("population", "generation = 1 AND island = 0", "generation 1, tick 0", "the chromosomes: gene ", "none"),
+                ("statistics", "generation = 4 AND island = 0", "generation 4, tick 480",
+                 "the statistics: fitness_best on island 0", "generation 4, tick 480: the state hash")):
+            with self.subTest(table=table, where=where):
+                path = self.copy(plain, f"DELETE FROM {table} WHERE {where}",
+                                 f"INSERT INTO {table} SELECT * FROM other.{table} WHERE {where}")
+                said = evod("verify", path, status=1)
+                self.assertIn(f"last moment that agrees: {agrees}\n", said)
+                self.assertIn(f"first that does not: {moment}: {part}", said)
+                self.assertIn(", simulated again ", said)
+
+    def test_what_cannot_be_verified_is_said(self):
+        for path, words in {
+            "/nowhere.evod": "/nowhere.evod: there is no such file",
+            self.folder: "this is a folder",
+            __file__: "not a database",
+        }.items():
+            self.assertIn(words, evod("verify", path, status=1))
+        self.assertIn("--threads", evod("verify", plain, "--threads", 0, status=2))
+        self.assertIn("run is required", evod("verify", status=2))
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become somebody who may read and not write")
+    def test_whoever_may_only_read_can_verify(self):
+        path = pathlib.Path(self.copy(plain))
+        os.chmod(self.folder, 0o755)
+        os.chmod(path, 0o644)
+        try:
+            done = subprocess.run([EVOD, "verify", path], capture_output=True, text=True, user=65534, group=65534)
+        except PermissionError:
+            self.skipTest("the program itself is where nobody else may look")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Export(Case):
+    def rows(self, run, what):
+        """As CSV has them, every value a text; and that JSON Lines say the same."""
+        text = evod("export", run, "--what", what)
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+        objects = [json.loads(line) for line in evod("export", run, "--what", what, "--format", "jsonl").splitlines()]
+        self.assertEqual(len(rows), len(objects))
+        for row, values in zip(rows, objects):
+            self.assertEqual(list(row), list(values))
+            for name, value in values.items():
+                if value is None:
+                    self.assertEqual(row[name], "")
+                elif isinstance(value, (int, float)):
+                    self.assertEqual(float(row[name]), value)
+                elif isinstance(value, dict):
+                    self.assertEqual(json.loads(row[name]), value)
+                else:
+                    self.assertEqual(row[name], value)
+        return rows
+
+    def test_generations_are_those_of_a_run_without_a_network(self):
+        evod("run", plain.with_suffix(".json"), "--seed", 2, "--generations", 4, "--csv", self.folder + "/run.csv")
+        self.assertEqual(evod("export", plain, "--what", "generations"),
+                         pathlib.Path(self.folder + "/run.csv").read_text())
+        self.assertEqual(len(self.rows(changed, "generations")), 3 * 2)
+
+    def test_organisms_are_those_that_are_stored(self):
+        rows = self.rows(changed, "organisms")
+        self.assertEqual(len(rows), 2 * (12 + 12 + 15 + 15))
+        database = sqlite3.connect(f"file:{changed}?mode=ro", uri=True)
+        self.addCleanup(database.close)
+        for generation, island, count, elite, survivors, chromosomes, parents in database.execute(
+                "SELECT generation, island, organism_count, elite_count, survivor_count, chromosomes, parents "
+                "FROM population ORDER BY generation, island"):
+            genes = struct.unpack(f"<{6 * count}f", chromosomes)
+            pairs = struct.unpack(f"<{len(parents) // 4}I", parents)
+            fitness, lived, cause = database.execute(
+                "SELECT fitness, lived_ticks, cause FROM outcome WHERE generation = ? AND island = ?",
+                (generation, island)).fetchone() or (b"", b"", b"")
+            fitness, lived = struct.unpack(f"<{len(fitness) // 8}d", fitness), struct.unpack(f"<{len(lived) // 4}I", lived)
+            for organism in range(count):
+                row = rows.pop(0)
+                self.assertEqual([int(row[x]) for x in ("generation", "island", "organism")], [generation, island, organism])
+                for gene, value in zip(GENES, genes[6 * organism:]):
+                    self.assertEqual(struct.unpack("<f", struct.pack("<f", float(row[gene])))[0], value)
+                    self.assertLessEqual(len(row[gene]), 10)
+                if generation == 1:
+                    self.assertEqual((row["parent_first"], row["parent_second"], row["origin"]), ("", "", "initial"))
+                else:
+                    self.assertEqual((int(row["parent_first"]), int(row["parent_second"])),
+                                     pairs[2 * organism:2 * organism + 2])
+                    self.assertEqual(row["origin"], "elite" if organism < elite else
+                                     "survivor" if organism < survivors else "child")
+                if generation == 4:  # is not over
+                    self.assertEqual((row["fitness"], row["lived_s"], row["cause"]), ("", "", ""))
+                    continue
+                self.assertEqual(float(row["fitness"]), fitness[organism])
+                self.assertEqual(row["cause"], ("alive", "starved", "poisoned")[cause[organism]])
+                alive = row["cause"] == "alive"
+                self.assertAlmostEqual(float(row["lived_s"]), 2 if alive else lived[organism] / 60)
+                if not alive:
+                    self.assertEqual(row["lived_s"], row["fitness"])
+        self.assertEqual(rows, [])
+
+    def test_events_are_the_commands(self):
+        rows = self.rows(changed, "events")
+        self.assertEqual([row["kind"] for row in rows],
+                         ["create_world", "set_speed", "run_until_tick", "set_parameters", "run_until_tick",
+                          "set_parameters", "run_until_tick"])
+        self.assertEqual([int(row["number"]) for row in rows], list(range(1, 8)))
+        self.assertEqual([int(row["tick"]) for row in rows], [0, 0, 0, 130, 130, 240, 240])
+        self.assertEqual(rows[0]["client"], "evod")
+        self.assertIn("evoctl", rows[3]["client"])
+        for row in rows:
+            request = json.loads(row["request"])
+            self.assertEqual((request["client_key"], request["request_id"]), (row["client_key"], row["request_id"]))
+            self.assertIn(row["kind"], request)
+        self.assertEqual(json.loads(rows[3]["request"])["set_parameters"]["parameters"][0],
+                         {"name": "food_health", "value": {"real": 7}})
+
+    def test_a_file_takes_what_stdout_would(self):
+        path = self.folder + "/organisms.jsonl"
+        self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
+        self.assertEqual(pathlib.Path(path).read_text(),
+                         evod("export", plain, "--what", "organisms", "--format", "jsonl"))
+
+    def test_what_is_wrong_is_named(self):
+        path = self.copy(plain)
+        for arguments, words in {
+            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "events"],
+            (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
+            (path,): ["--what is required"],
+        }.items():
+            said = evod("export", *arguments, status=2)
+            for word in words:
+                self.assertIn(word, said)
+        for arguments, words in {
+            ("/nowhere.evod", "--what", "events"): ["/nowhere.evod: there is no such file"],
+            (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No such"],
+            (path, "--what", "events", "--output", path): ["--output: got " + path, "another file than the run file"],
+            (path, "--what", "organisms", "--output", "/dev/full"): ["--output: cannot write /dev/full"],
+        }.items():
+            said = evod("export", *arguments, status=1)
+            for word in words:
+                self.assertIn(word, said)
+        evod("verify", path)  # it is still there
+        damaged = self.copy(plain, "UPDATE statistics SET alive_count = 99 WHERE generation = 2")
+        self.assertIn("statistics of generation 2", evod("export", damaged, "--what", "generations", status=1))
+
+
+unittest.main()
