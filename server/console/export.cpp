@@ -98,7 +98,9 @@ Result<void> export_organisms(RunFile& file, std::ostream& out, Table::Format fo
         const auto ended = file.outcome_of(generation);
         if (!ended)
             return ended.error();
-        if (!*begun || (*ended && (*ended)->outcomes.size() != (*begun)->born.size()))
+        if (!*begun)
+            return {}; // not held any more
+        if (*ended && (*ended)->outcomes.size() != (*begun)->born.size())
             return damaged();
         for (std::size_t i = 0; i < (*begun)->born.size(); ++i) {
             const evolution::NextGeneration& born = (*begun)->born[i];
@@ -166,7 +168,8 @@ Result<void> export_to(const ExportOptions& options) {
     const auto file = RunFile::open_read_only(options.run);
     if (!file)
         return file.error();
-    (*file)->hold_still();
+    if (auto held = (*file)->hold_still(); !held)
+        return held;
     std::ofstream output;
     if (!options.output.empty()) {
         output.open(options.output, std::ios::binary);

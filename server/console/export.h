@@ -1,7 +1,7 @@
 // `evod export`: what a run file holds, as rows for other programs.
 //
 //   generations  statistics, one row per generation and island, as `evod run --csv` writes them
-//   organisms    one row per organism that was born: parents, genes, fitness, death
+//   organisms    one row per organism of the generations that are held whole: parents, genes, fitness, death
 //   events       the journal: one row per command that was applied
 //
 // Rows are written as they are read, a generation at a time.

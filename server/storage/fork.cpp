@@ -18,9 +18,7 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
     const auto there = Rerun::at(origin, generation, executor);
     if (!there)
         return there.error();
-    GenerationBegun begun{.opening = there->world().opening(), .born = {}};
-    for (const simulation::Island& island : there->world().islands())
-        begun.born.push_back(island.born());
+    const GenerationBegun begun = beginning_of(there->world());
     using namespace std::chrono;
     const auto file =
         RunFile::create(path,

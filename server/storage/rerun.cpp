@@ -70,12 +70,11 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     while (!history->empty() && history->back().front().generation >= held)
         history->pop_back();
     auto rerun = from(file, **begun, *changes, *std::move(history), executor);
-    while (rerun && rerun->world_.moment().generation < generation) {
-        if (rerun->world_.generation_over())
+    while (rerun && rerun->world().moment().generation < generation)
+        if (rerun->world().generation_over())
             rerun->turn_over(executor);
         else
             rerun->advance_tick(executor);
-    }
     return rerun;
 }
 

@@ -41,10 +41,10 @@ class Rerun {
     /// Ends the rerun: the world as it is.
     simulation::World take() && { return std::move(world_); }
 
+    /// Breeds the next generation, if one is over, as the next tick would.
+    void turn_over(base::Executor& executor) { world_.turn_over(executor); }
     /// One tick, then the changes of parameters that came after it. Not to be called where the run was over.
     void advance_tick(base::Executor& executor);
-    /// From a generation that is over to the first moment of the next.
-    void turn_over(base::Executor& executor) { world_.turn_over(executor); }
     /// Until that tick is over, or the run is.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 

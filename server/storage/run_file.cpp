@@ -328,13 +328,6 @@ bool RunFile::is_link_held(std::uint64_t tick) const {
     return tick > thinning_.until_tick || tick / ticks_per_link % thinning_.keep_every == 0;
 }
 
-std::uint64_t RunFile::held_after(std::uint64_t generation) const {
-    do
-        ++generation;
-    while (!is_held(generation));
-    return generation;
-}
-
 std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
     return is_held(generation) ? generation
                                : generation - (generation - identity_.first_generation) % thinning_.keep_every;
@@ -399,8 +392,9 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uin
     return entries;
 }
 
-void RunFile::hold_still() {
+Result<void> RunFile::hold_still() {
     database_.run("BEGIN");
+    return read_thinning(); // what holds now
 }
 
 std::uint64_t RunFile::last_generation() {
@@ -435,16 +429,15 @@ Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
     return set;
 }
 
-Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
-    const auto key = static_cast<std::int64_t>(generation);
-    RowReader reader{database_, "generation", generation_columns, "generation = ?", {key}};
+Result<std::optional<simulation::Opening>> RunFile::opening_of(std::uint64_t generation) {
+    RowReader reader{
+        database_, "generation", generation_columns, "generation = ?", {static_cast<std::int64_t>(generation)}};
     if (!reader.next()) {
         if (database_.failed())
             return failure();
-        return std::optional<GenerationBegun>{};
+        return std::optional<simulation::Opening>{};
     }
-    GenerationBegun begun;
-    simulation::Opening& opening = begun.opening;
+    simulation::Opening opening;
     opening.moment.generation = reader.natural();
     opening.moment.tick = reader.natural();
     opening.moment.simulated_s = reader.real();
@@ -460,13 +453,19 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
     if (!set)
         return set.error();
     opening.parameters = *set;
-    if (!is_held(generation))
-        return std::optional<GenerationBegun>{};
+    return opening;
+}
 
-    RowReader rows{database_, "population", population_columns, "generation = ? ORDER BY island", {key}};
+Result<std::vector<evolution::NextGeneration>> RunFile::born_in(const simulation::Opening& opening) {
+    std::vector<evolution::NextGeneration> islands;
+    RowReader rows{database_,
+                   "population",
+                   population_columns,
+                   "generation = ? ORDER BY island",
+                   {static_cast<std::int64_t>(opening.moment.generation)}};
     const auto bad = [&] {
-        return damaged("the population of generation " + std::to_string(generation) + " on island " +
-                       std::to_string(begun.born.size()));
+        return damaged("the population of generation " + std::to_string(opening.moment.generation) + " on island " +
+                       std::to_string(islands.size()));
     };
     while (rows.next()) {
         (void)rows.integer();
@@ -476,19 +475,31 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
         born.survivor_count = static_cast<std::uint32_t>(rows.integer());
         born.clamped_count = rows.natural();
         const std::string genes = rows.bytes(), parents = rows.bytes();
-        if (!rows.sound() || island != begun.born.size() ||
+        if (!rows.sound() || island != islands.size() ||
             genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents) ||
             (!born.parents.empty() && born.parents.size() != organisms)) // the first generation has none
             return bad();
         born.genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
         std::memcpy(born.genes.data(), genes.data(), genes.size());
-        begun.born.push_back(std::move(born));
+        islands.push_back(std::move(born));
     }
     if (database_.failed())
         return failure();
-    if (begun.born.size() != opening.parameters.active.island_count)
+    if (islands.size() != opening.parameters.active.island_count)
         return bad();
-    return begun;
+    return islands;
+}
+
+Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
+    auto opening = opening_of(generation);
+    if (!opening)
+        return opening.error();
+    if (!*opening || !is_held(generation))
+        return std::optional<GenerationBegun>{};
+    auto born = born_in(**opening);
+    if (!born)
+        return born.error();
+    return std::optional{GenerationBegun{.opening = **opening, .born = *std::move(born)}};
 }
 
 Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generation) {
@@ -509,11 +520,11 @@ Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generat
     }
     if (database_.failed())
         return failure();
+    if (ended.outcomes.empty() && !is_held(generation))
+        return std::optional<GenerationEnded>{};
     auto statistics = statistics_of(generation);
     if (!statistics)
         return statistics.error();
-    if (ended.outcomes.empty() && !is_held(generation))
-        return std::optional<GenerationEnded>{};
     ended.statistics = *std::move(statistics);
     if (ended.outcomes.size() != ended.statistics.size())
         return bad();
@@ -616,13 +627,26 @@ Result<void> RunFile::check() {
         const auto begun = beginning_of(generation);
         if (!begun)
             return begun.error();
-        if (!*begun && is_held(generation))
-            return damaged(row_of("generation", generation));
         const auto ended = outcome_of(generation);
         if (!ended)
             return ended.error();
-        if (!*ended && generation < last && is_held(generation))
-            return damaged("the outcome of generation " + std::to_string(generation));
+        if (is_held(generation)) {
+            if (!*begun)
+                return damaged(row_of("generation", generation));
+            if (!*ended && generation < last)
+                return damaged("the outcome of generation " + std::to_string(generation));
+            continue;
+        }
+        const auto opening = opening_of(generation);
+        if (!opening)
+            return opening.error();
+        if (!*opening)
+            return damaged(row_of("generation", generation));
+        const auto statistics = statistics_of(generation);
+        if (!statistics)
+            return statistics.error();
+        if (statistics->size() != (*opening)->parameters.active.island_count)
+            return damaged("the statistics of generation " + std::to_string(generation));
     }
     const EndMark found = contents();
     constexpr std::uint64_t ticks_at_once = 100'000 * ticks_per_link;

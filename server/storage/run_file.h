@@ -54,7 +54,7 @@ class RunFile {
     // Reading. DATA_LOSS names the row that is not as it was written.
 
     /// From now on what is there now is read, whatever a server writes meanwhile.
-    void hold_still();
+    base::Result<void> hold_still();
     base::Result<std::optional<EndMark>> end_mark();
     /// The entries from number `first` on, at most `count`.
     base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1, std::uint32_t count = ~0u);
@@ -62,14 +62,14 @@ class RunFile {
     std::uint64_t last_generation();
     /// After which the first generation began; 0 if its beginning is not held.
     std::uint64_t first_tick();
+    /// Nothing if the generation has not begun.
+    base::Result<std::optional<simulation::Opening>> opening_of(std::uint64_t generation);
     /// Nothing if the generation's beginning is not held, or not any more.
     base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
+    /// Whether the hash after this tick, a multiple of ticks_per_link, is one that is held if it came to be written.
+    bool is_link_held(std::uint64_t tick) const;
     /// The last generation up to this one whose beginning is held.
     std::uint64_t held_at_or_before(std::uint64_t generation) const;
-    /// The first after it.
-    std::uint64_t held_after(std::uint64_t generation) const;
-    /// Whether the state hash of a tick, a multiple of ticks_per_link, has not been taken out.
-    bool is_link_held(std::uint64_t tick) const;
     /// Nothing if the generation has not ended, or its outcome is not held any more.
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
     /// One entry per island; nothing if the generation has not ended, or its statistics are not held.
@@ -114,6 +114,7 @@ class RunFile {
     base::Result<void> read_identity();
     base::Result<void> read_thinning();
     bool is_held(std::uint64_t generation) const;
+    base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
     base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
     std::int64_t number_of(const simulation::ParameterSet& parameters);
     /// What the database says has gone wrong, with the path.

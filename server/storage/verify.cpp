@@ -1,7 +1,7 @@
 #include "server/storage/verify.h"
 
 #include "server/base/inline_executor.h"
-#include "server/protocol/refusals.h"
+#include "server/storage/mismatch.h"
 #include "server/storage/rerun.h"
 
 #include <algorithm>
@@ -17,226 +17,58 @@ using base::Result;
 using evolution::NextGeneration;
 using simulation::World;
 
-// ---- Two records of the same thing -------------------------------------------------------------------------------
-
-/// What differs between them.
-struct Mismatch {
-    std::string part, stored, simulated;
+/// All that a file tells of a generation. Of one that is no longer held whole, `born` and `outcomes` are empty; of one
+/// that has not ended, `outcomes` and `statistics` are.
+struct StoredGeneration {
+    simulation::Opening opening;
+    std::vector<NextGeneration> born;
+    std::vector<IslandOutcome> outcomes;
+    std::vector<simulation::GenerationStatistics> statistics;
+    std::vector<HashLink> links;
+    std::uint64_t last_tick = 0; // that the file tells of, of this generation
 };
-using Found = std::optional<Mismatch>;
 
-std::string text_of(double value) {
-    return protocol::number_text(value + 0.0); // SQLite keeps −0 as 0
-}
-std::string text_of(std::uint64_t value) {
-    return std::to_string(value);
-}
-std::string text_of(std::uint32_t value) {
-    return std::to_string(value);
-}
-std::string text_of(bool value) {
-    return value ? "true" : "false";
-}
-std::string text_of(simulation::CauseOfDeath cause) {
-    return std::string{name_of(cause)};
-}
-std::string text_of(const evolution::Parents& parents) {
-    return std::to_string(parents.first) + " and " + std::to_string(parents.second);
-}
-std::string text_of(const base::StateHash& hash) {
-    return to_text(hash);
-}
-
-template <class T>
-Found compare(const std::string& part, const T& stored, const T& simulated) {
-    if (stored == simulated)
-        return std::nullopt;
-    return Mismatch{part, text_of(stored), text_of(simulated)};
-}
-
-/// of_island  " on island 3"
-/// name       "the fitness"
-template <class T>
-Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
-                        std::span<const T> simulated) {
-    if (stored.size() != simulated.size())
-        return compare(std::string{name} + ": the number of organisms" + of_island, stored.size(), simulated.size());
-    const auto [one, other] = std::ranges::mismatch(stored, simulated);
-    if (one == stored.end())
-        return std::nullopt;
-    return compare(std::string{name} + " of organism " + std::to_string(one - stored.begin()) + of_island, *one,
-                   *other);
-}
-
-Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
-    for (const simulation::ParameterDescription& parameter : simulation::parameter_registry())
-        if (const auto one = parameter.get(stored), other = parameter.get(simulated); one != other)
-            return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which, simulation::to_text(one),
-                            simulation::to_text(other)};
-    return std::nullopt;
-}
-
-Found compare(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
-    const auto genes_of = [](const NextGeneration& born) {
-        return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
-    };
-    const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
-    if (stored_genes.size() != simulated_genes.size())
-        return compare("the number of organisms" + of_island, static_cast<std::uint64_t>(stored.genes.cols()),
-                       static_cast<std::uint64_t>(simulated.genes.cols()));
-    if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
-        const auto place = static_cast<std::size_t>(one - stored_genes.begin());
-        return compare("the chromosomes: gene " + std::string{evolution::gene_names[place % evolution::gene_count]} +
-                           " of organism " + std::to_string(place / evolution::gene_count) + of_island,
-                       double{*one}, double{*other});
-    }
-    if (auto found = compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents))
-        return found;
-    if (auto found = compare("the number of the elite" + of_island, stored.elite_count, simulated.elite_count))
-        return found;
-    if (auto found = compare("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count))
-        return found;
-    return compare("the number of genes put onto their bounds" + of_island, stored.clamped_count,
-                   simulated.clamped_count);
-}
-
-Found compare(const GenerationBegun& stored, const GenerationBegun& simulated) {
-    const simulation::Opening& one = stored.opening;
-    const simulation::Opening& other = simulated.opening;
-    if (auto found = compare("the first tick", one.moment.tick, other.moment.tick))
-        return found;
-    if (auto found = compare("the simulated seconds", one.moment.simulated_s, other.moment.simulated_s))
-        return found;
-    if (auto found = compare("as it held", one.parameters.active, other.parameters.active))
-        return found;
-    if (auto found = compare("as it was asked for", one.parameters.requested, other.parameters.requested))
-        return found;
-    // A run that begins by a reset goes on counting revisions.
-    if (one.moment.generation > 1)
-        if (auto found = compare("the revision of the parameters", one.parameters.revision, other.parameters.revision))
-            return found;
-    const evolution::Progress &before = one.progress, &also = other.progress;
-    if (auto found = compare("the progress: generations over", before.generations, also.generations))
-        return found;
-    if (auto found = compare("the progress: generations without improvement", before.stagnant, also.stagnant))
-        return found;
-    if (auto found = compare("the progress: the best fitness so far", before.best_fitness, also.best_fitness))
-        return found;
-    if (auto found = compare("the progress: the best fitness of the generation before", before.last_best_fitness,
-                             also.last_best_fitness))
-        return found;
-    if (auto found = compare("the progress: whether everyone had died", before.last_died_out, also.last_died_out))
-        return found;
-    if (auto found = compare("the number of islands", stored.born.size(), simulated.born.size()))
-        return found;
-    for (std::size_t island = 0; island < stored.born.size(); ++island)
-        if (auto found = compare(" on island " + std::to_string(island), stored.born[island], simulated.born[island]))
-            return found;
-    return std::nullopt;
-}
-
-Found compare(const std::string& of_island, const simulation::GenerationStatistics& stored,
-              const simulation::GenerationStatistics& simulated) {
-    std::vector<std::string> again;
-    simulation::for_each_number(simulated,
-                                [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
-    Found found;
-    auto simulated_text = again.begin();
-    simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
-        const std::string text = text_of(value); // exact
-        if (!found && text != *simulated_text)
-            found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
-        ++simulated_text;
-    });
-    return found;
-}
-
-Found compare(const GenerationEnded& stored, const GenerationEnded& simulated) {
-    if (auto found = compare("the number of islands", stored.outcomes.size(), simulated.outcomes.size()))
-        return found;
-    for (std::size_t i = 0; i < stored.outcomes.size(); ++i) {
-        const std::string of_island = " on island " + std::to_string(i);
-        const IslandOutcome &one = stored.outcomes[i], &other = simulated.outcomes[i];
-        if (auto found = compare_organisms<double>("the fitness", of_island, one.fitness, other.fitness))
-            return found;
-        if (auto found =
-                compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks))
-            return found;
-        if (auto found =
-                compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause))
-            return found;
-        if (auto found = compare(of_island, stored.statistics[i], simulated.statistics[i]))
-            return found;
-    }
-    return std::nullopt;
-}
+/// A generation that is held whole, and those after it that are not.
+using Stretch = std::vector<StoredGeneration>;
 
 /// Whether a generation can have begun so: the core relies on it. One that cannot is not what the generation before it
 /// gives, and is told as that.
-bool can_be_simulated(const GenerationBegun& begun) {
-    const simulation::Parameters& parameters = begun.opening.parameters.active;
+bool can_be_simulated(const StoredGeneration& generation) {
+    const simulation::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
-    return std::ranges::all_of(begun.born, [&](const NextGeneration& born) {
+    return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
         return born.genes.cols() == parameters.population_size &&
                ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all();
     });
 }
 
-// ---- One generation ----------------------------------------------------------------------------------------------
-
-/// All that a file tells of a generation, and of those after it that have been taken out.
-struct StoredGeneration {
-    GenerationBegun begun;
-    std::optional<GenerationEnded> ended;
-    std::vector<HashLink> links;
-    std::uint64_t last_tick = 0; // that the file tells of, of these generations
-};
-
-class GenerationCheck {
+class StretchCheck {
   public:
-    /// next  the beginning of the next generation as it is stored; nullptr if none is.
-    GenerationCheck(const RunFile& file, const StoredGeneration& stored, const GenerationBegun* next,
-                    base::Executor& executor)
-        : file_{file}
-        , stored_{stored}
-        , next_{next}
-        , executor_{executor}
-        , generation_{stored.begun.opening.moment.generation}
-        , agrees_{generation_, stored.begun.opening.moment.tick} {}
+    /// following  the generation after the stretch; nullptr if there is none.
+    StretchCheck(const RunFile& file, const Stretch& stretch, const StoredGeneration* following,
+                 base::Executor& executor)
+        : file_{file}, stretch_{stretch}, following_{following}, executor_{executor} {}
 
-    /// changes  the run's, up to the generation's last tick.
+    /// changes  the run's, up to the stretch's last tick.
     /// told     called with the number of ticks since it was last called.
     Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> told) {
-        done_.generations = 1;
-        if (generation_ == file_.identity().first_generation)
+        const StoredGeneration& first = stretch_.front();
+        agrees_with_beginning_of(first);
+        if (first.opening.moment.generation == file_.identity().first_generation)
             check_beginning_of_run();
+        if (!done_.difference && !can_be_simulated(first))
+            differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
         if (done_.difference)
             return done_;
-        if (!can_be_simulated(stored_.begun)) {
-            differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
-            return done_;
-        }
-        auto rerun = Rerun::from(file_, stored_.begun, changes, {}, executor_);
+        auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born}, changes, {}, executor_);
         if (!rerun)
             return rerun.error();
-        const simulation::Moment began = rerun->world().moment(), &now = rerun->world().moment();
-        for (;;) {
-            check_hashes(*rerun, told);
-            done_.ticks = now.tick - began.tick;
-            done_.simulated_s = now.simulated_s - began.simulated_s;
-            if (!done_.difference)
-                check_end(rerun->world());
-            if (done_.difference || !next_)
-                return done_;
-            if (now.generation + 1 == next_->opening.moment.generation)
-                break;
-            // The next one has been taken out of the file: its hashes, as far as they are held, and what came of it.
-            if (!check_goes_on(rerun->world()))
-                return done_;
-            rerun->turn_over(executor_);
-            ++done_.generations;
-        }
-        check_next(*rerun);
+        const double began_s = rerun->world().moment().simulated_s;
+        const std::uint64_t began_tick = rerun->world().moment().tick;
+        for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i)
+            check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, told);
+        done_.ticks = rerun->world().moment().tick - began_tick;
+        done_.simulated_s = rerun->world().moment().simulated_s - began_s;
         return done_;
     }
 
@@ -249,90 +81,105 @@ class GenerationCheck {
                                       .stored = std::move(mismatch.stored),
                                       .simulated = std::move(mismatch.simulated)};
     }
+    /// Whether nothing was found.
+    bool same(const StoredMoment& moment, std::optional<Mismatch> mismatch) {
+        if (mismatch)
+            differ(moment, *std::move(mismatch));
+        return !mismatch;
+    }
+    void agrees_with_beginning_of(const StoredGeneration& generation) {
+        agrees_ = {generation.opening.moment.generation, generation.opening.moment.tick};
+        agreeing_part_ = "the beginning of the generation";
+    }
 
     void check_beginning_of_run() {
         const RunIdentity& identity = file_.identity();
-        // What a fork began with, nothing in its file gives again but what was asked for.
-        Found mismatch =
-            identity.first_generation == 1
-                ? compare(stored_.begun, beginning_of(World{identity.parameters, identity.seed}))
-                : compare("as it was asked for", stored_.begun.opening.parameters.requested, identity.parameters);
-        if (!mismatch)
-            return;
-        differ(agrees_, *std::move(mismatch));
-        done_.difference->agrees.reset();
+        const StoredGeneration& first = stretch_.front();
+        if (identity.first_generation == 1) {
+            const World world{identity.parameters, identity.seed};
+            const GenerationBegun begun = beginning_of(world);
+            (void)(same(agrees_, compare(first.opening, begun.opening)) &&
+                   same(agrees_, compare(first.born, begun.born)));
+        } else {
+            // What a fork began with, nothing in its file gives again but what was asked for.
+            (void)same(agrees_, compare_requested(first.opening.parameters.requested, identity.parameters));
+        }
+        if (done_.difference)
+            done_.difference->agrees.reset();
     }
 
-    void check_hashes(Rerun& rerun, base::FunctionRef<void(std::uint64_t)> told) {
+    void check_generation(Rerun& rerun, const StoredGeneration& stored, const StoredGeneration* next,
+                          base::FunctionRef<void(std::uint64_t)> told) {
+        ++done_.generations;
+        agrees_with_beginning_of(stored);
+        check_hashes(rerun, stored, told);
+        if (!done_.difference)
+            check_end(rerun.world(), stored, next != nullptr);
+        if (!done_.difference && next != nullptr)
+            check_next(rerun, *next);
+    }
+
+    void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> told) {
         const World& world = rerun.world();
+        auto link = stored.links.begin();
         std::uint64_t told_tick = world.moment().tick;
-        while (world.moment().tick < stored_.last_tick && !world.generation_over()) {
+        while (world.moment().tick < stored.last_tick && !world.generation_over()) {
             rerun.advance_tick(executor_);
-            const std::uint64_t tick = world.moment().tick;
-            if (tick % ticks_per_link != 0)
+            const StoredMoment now{world.moment().generation, world.moment().tick};
+            if (now.tick % ticks_per_link != 0)
                 continue;
-            told(tick - std::exchange(told_tick, tick));
-            if (!file_.is_link_held(tick))
+            told(now.tick - std::exchange(told_tick, now.tick));
+            if (!file_.is_link_held(now.tick))
                 continue;
-            const StoredMoment now{world.moment().generation, tick};
-            const bool held = link_ < stored_.links.size() && stored_.links[link_].tick == tick;
-            if (!held)
-                return differ(now, {"the state hash", "none", text_of(world.hash())});
-            if (auto mismatch = compare("the state hash", stored_.links[link_].hash, world.hash()))
-                return differ(now, *std::move(mismatch));
+            if (link == stored.links.end() || link->tick != now.tick)
+                return differ(now, {"the state hash", "none", to_text(world.hash())});
+            if (!same(now, compare(link->hash, world.hash())))
+                return;
             agrees_ = now;
             agreeing_part_ = "the state hash";
             ++done_.hashes;
-            ++link_;
+            ++link;
         }
         told(world.moment().tick - told_tick);
     }
 
-    void check_end(const World& world) {
+    void check_end(const World& world, const StoredGeneration& stored, bool goes_on) {
         const StoredMoment now{world.moment().generation, world.moment().tick};
-        const bool own = now.generation == generation_; // not one that has been taken out
-        const bool ends = next_ || stored_.ended;
-        const bool last = !next_ || now.generation + 1 == next_->opening.moment.generation;
-        if (last && now.tick < stored_.last_tick)
+        const bool ended = !stored.statistics.empty();
+        if (now.tick < stored.last_tick)
             return differ(now, {"the generation's end", "later", "at this tick"});
-        if (ends && !world.generation_over())
+        if ((ended || goes_on) && !world.generation_over())
             return differ(now, {"the generation's end", "at this tick", "later"});
-        if (!stored_.ended || !own)
+        if (!ended)
             return;
-        if (auto mismatch = compare(*stored_.ended, end_of(world)))
-            return differ(now, *std::move(mismatch));
+        const GenerationEnded again = end_of(world);
+        if (!stored.outcomes.empty() && !same(now, compare(stored.outcomes, again.outcomes)))
+            return;
+        if (!same(now, compare(stored.statistics, again.statistics)))
+            return;
         agrees_ = now;
         agreeing_part_ = "the end of the generation";
     }
 
-    bool check_goes_on(const World& world) {
+    void check_next(Rerun& rerun, const StoredGeneration& next) {
+        const World& world = rerun.world();
+        const StoredMoment moment{world.moment().generation + 1, world.moment().tick};
         if (world.outcome() != evolution::Outcome::Running)
-            differ({world.moment().generation + 1, world.moment().tick},
-                   {"the run's end", "later", "before this generation"});
-        return !done_.difference;
-    }
-
-    void check_next(Rerun& rerun) {
-        if (!check_goes_on(rerun.world()))
-            return;
+            return differ(moment, {"the run's end", "later", "before this generation"});
         rerun.turn_over(executor_);
-        const simulation::Moment& now = rerun.world().moment();
-        if (auto mismatch = compare(*next_, beginning_of(rerun.world())))
-            differ({now.generation, now.tick}, *std::move(mismatch));
+        const GenerationBegun again = beginning_of(world);
+        if (same(moment, compare(next.opening, again.opening)) && !next.born.empty())
+            (void)same(moment, compare(next.born, again.born));
     }
 
     const RunFile& file_;
-    const StoredGeneration& stored_;
-    const GenerationBegun* next_;
+    const Stretch& stretch_;
+    const StoredGeneration* following_;
     base::Executor& executor_;
-    const std::uint64_t generation_;
     StoredMoment agrees_; // the last moment that does
-    const char* agreeing_part_ = "the beginning of the generation";
-    std::size_t link_ = 0; // the next of stored_.links
+    const char* agreeing_part_ = "";
     Verified done_;
 };
-
-// ---- All of them -------------------------------------------------------------------------------------------------
 
 /// Reads a file's generations in order, each once.
 class Reader {
@@ -341,80 +188,90 @@ class Reader {
 
     const EndMark& contents() const { return contents_; }
 
-    /// The next generations: at most `count`, and no more once there are `organisms` of them; none after the last.
-    Result<std::vector<StoredGeneration>> read(std::size_t count, std::size_t organisms) {
-        std::vector<StoredGeneration> generations;
-        for (std::size_t held = 0; generations.size() < count && held < organisms && next_ <= contents_.generations;) {
-            auto generation = read_next();
-            if (!generation)
-                return generation.error();
-            for (const NextGeneration& born : generation->begun.born)
+    /// The next stretches: at most `count`, and no more once there are `organisms` in them; none after the last.
+    Result<std::vector<Stretch>> read(std::size_t count, std::size_t organisms) {
+        if (!following_ && next_ <= contents_.generations)
+            if (auto read = read_following(); !read)
+                return read.error();
+        std::vector<Stretch> stretches;
+        for (std::size_t held = 0; following_ && stretches.size() < count && held < organisms;) {
+            for (const NextGeneration& born : following_->born)
                 held += static_cast<std::size_t>(born.genes.cols());
-            generations.push_back(*std::move(generation));
+            Stretch& stretch = stretches.emplace_back();
+            do {
+                stretch.push_back(*std::move(following_));
+                if (auto read = read_following(); !read)
+                    return read.error();
+                if (auto read = read_links(stretch.back()); !read)
+                    return read.error();
+            } while (following_ && following_->born.empty());
         }
-        return generations;
+        return stretches;
     }
-    /// The beginning of the generation after those that were read last; nullptr if there is none.
-    const GenerationBegun* following() const { return following_ ? &*following_ : nullptr; }
+    /// The generation after those that were read last; nullptr if there is none.
+    const StoredGeneration* following() const { return following_ ? &*following_ : nullptr; }
 
   private:
-    Result<StoredGeneration> read_next() {
-        StoredGeneration generation;
-        if (!following_)
-            if (auto begun = read_beginning(next_); !begun)
-                return begun.error();
-        generation.begun = std::move(*following_);
+    Result<void> read_following() {
         following_.reset();
-        auto ended = file_.outcome_of(next_);
+        if (next_ > contents_.generations)
+            return {};
+        const std::uint64_t number = next_++;
+        // check() has seen that each is there which must be.
+        StoredGeneration& generation = following_.emplace();
+        auto begun = file_.beginning_of(number);
+        if (!begun)
+            return begun.error();
+        if (*begun) {
+            generation.opening = (*begun)->opening;
+            generation.born = std::move((*begun)->born);
+        } else {
+            const auto opening = file_.opening_of(number);
+            if (!opening)
+                return opening.error();
+            generation.opening = opening->value();
+        }
+        auto ended = file_.outcome_of(number);
         if (!ended)
             return ended.error();
-        generation.ended = *std::move(ended);
-        generation.last_tick = contents_.tick;
-        next_ = file_.held_after(next_);
-        if (next_ <= contents_.generations) {
-            if (auto begun = read_beginning(next_); !begun)
-                return begun.error();
-            generation.last_tick = following_->opening.moment.tick;
-        }
-        auto links = file_.links(generation.begun.opening.moment.tick, generation.last_tick);
+        if (*ended)
+            generation.outcomes = std::move((*ended)->outcomes);
+        auto statistics = file_.statistics_of(number);
+        if (!statistics)
+            return statistics.error();
+        generation.statistics = *std::move(statistics);
+        return {};
+    }
+
+    /// Of a generation, once the one after it has been read.
+    Result<void> read_links(StoredGeneration& generation) {
+        generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
+        auto links = file_.links(generation.opening.moment.tick, generation.last_tick);
         if (!links)
             return links.error();
         generation.links = *std::move(links);
-        return generation;
-    }
-
-    /// Into following_.
-    Result<void> read_beginning(std::uint64_t generation) {
-        auto begun = file_.beginning_of(generation);
-        if (!begun)
-            return begun.error();
-        if (!*begun)
-            return base::Refusal{.code = base::RefusalCode::DataLoss,
-                                 .message =
-                                     file_.path() + " is damaged: it holds no generation " + std::to_string(generation),
-                                 .violations = {}};
-        following_ = *std::move(begun);
         return {};
     }
 
     RunFile& file_;
     const EndMark contents_;
-    std::uint64_t next_;                       // generation to be read
-    std::optional<GenerationBegun> following_; // its beginning, once it has been read
+    std::uint64_t next_; // generation to be read
+    std::optional<StoredGeneration> following_;
 };
 
-void add(Verified& sum, const Verified& generation) {
-    sum.generations += generation.generations;
-    sum.ticks += generation.ticks;
-    sum.hashes += generation.hashes;
-    sum.simulated_s += generation.simulated_s;
-    sum.difference = generation.difference;
+void add(Verified& sum, const Verified& stretch) {
+    sum.generations += stretch.generations;
+    sum.ticks += stretch.ticks;
+    sum.hashes += stretch.hashes;
+    sum.simulated_s += stretch.simulated_s;
+    sum.difference = stretch.difference;
 }
 
 } // namespace
 
 Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionRef<void(const VerifyProgress&)> told) {
-    file.hold_still();
+    if (auto held = file.hold_still(); !held)
+        return held.error();
     if (auto sound = file.check(); !sound)
         return sound.error();
     if (auto refused = file.other_model())
@@ -426,8 +283,8 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
     if (!changes)
         return changes.error();
 
-    // Enough for every thread to be busy though generations take different times, and no more than memory should hold.
-    const std::size_t threads = executor.thread_count(), generations_at_once = 16 * threads;
+    // Enough for every thread to be busy though some take longer, and no more than memory should hold.
+    const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
     constexpr std::size_t organisms_at_once = 1'000'000;
     Reader reader{file};
     const std::uint64_t ticks_in_all = reader.contents().tick - std::min(reader.contents().tick, file.first_tick());
@@ -439,27 +296,27 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
 
     Verified verified;
     while (!verified.difference) {
-        const auto generations = reader.read(generations_at_once, organisms_at_once);
-        if (!generations)
-            return generations.error();
-        if (generations->empty())
+        const auto stretches = reader.read(stretches_at_once, organisms_at_once);
+        if (!stretches)
+            return stretches.error();
+        if (stretches->empty())
             break;
-        std::vector<Result<Verified>> results(generations->size(), Result<Verified>{Verified{}});
+        std::vector<Result<Verified>> results(stretches->size(), Result<Verified>{Verified{}});
         const auto check = [&](std::size_t i, base::Executor& within) {
-            const StoredGeneration& generation = (*generations)[i];
-            const auto later = std::ranges::upper_bound(*changes, generation.last_tick, {}, &ParameterChange::tick);
-            const GenerationBegun* next =
-                i + 1 < generations->size() ? &(*generations)[i + 1].begun : reader.following();
-            results[i] = GenerationCheck{file, generation, next, within}.run({changes->begin(), later}, count);
+            const Stretch& stretch = (*stretches)[i];
+            const auto later = std::ranges::upper_bound(*changes, stretch.back().last_tick, {}, &ParameterChange::tick);
+            const StoredGeneration* following =
+                i + 1 < stretches->size() ? &(*stretches)[i + 1].front() : reader.following();
+            results[i] = StretchCheck{file, stretch, following, within}.run({changes->begin(), later}, count);
         };
-        if (generations->size() >= threads) {
-            executor.parallel_for(generations->size(), 1, [&](base::Range range) {
+        if (stretches->size() >= threads) {
+            executor.parallel_for(stretches->size(), 1, [&](base::Range range) {
                 base::InlineExecutor alone;
                 for (std::size_t i = range.begin; i < range.end; ++i)
                     check(i, alone);
             });
         } else {
-            for (std::size_t i = 0; i < generations->size(); ++i)
+            for (std::size_t i = 0; i < stretches->size(); ++i)
                 check(i, executor);
         }
         for (const Result<Verified>& result : results) {

@@ -1,14 +1,14 @@
 // Verify: a run simulated again, and everything that its file tells of it held against that.
 //
 //   the run's beginning → the first generation, as it is stored
-//   each generation, as it is stored → its state hashes → fitness, deaths, statistics → the next generation, as it is
-//   stored
+//   each generation → its state hashes → fitness, deaths, statistics → the next generation, as it is stored
 //
-// Every generation's beginning is there whole and is itself held against what the one before gives, so generations need
-// not wait for one another.
+// A generation that is held whole is simulated from what is stored, and is itself held against what the one before
+// gives; so stretches from one such generation to the next need not wait for one another. A stretch is one generation,
+// or, where a file has been thinned, several.
 //
-// Owner        one thread, which reads the file: some generations at once, as many as memory should hold.
-// Threads      none of its own. Those generations go to the executor, each to one thread; where they are fewer than its
+// Owner        one thread, which reads the file: some stretches at once, as many as memory should hold.
+// Threads      none of its own. Those stretches go to the executor, each to one thread; where they are fewer than its
 //              threads, as with large worlds, they are simulated one after another, each with the whole executor.
 // Determinism  what is told is the first difference of all, whatever the executor.
 #pragma once

@@ -1,7 +1,5 @@
 #include "server/storage/fork.h"
 #include "server/storage/rerun.h"
-#include "server/storage/verify.h"
-#include "tests/support/thread_executor.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -87,18 +85,6 @@ TEST_F(ThinningTest, WhatWasTakenOutIsSimulatedAgain) {
     ASSERT_TRUE(forked) << to_text(forked.error());
     const auto other = RunFile::open_read_only(data.file_of("fork"));
     EXPECT_TRUE((*other)->beginning_of(8)->has_value());
-}
-
-TEST_F(ThinningTest, WhatIsLeftCanBeVerified) {
-    const auto file = RunFile::open_read_only(data.file_of("w"));
-    support::ThreadExecutor two_threads{2};
-    const auto verified = verify(**file, two_threads, [](const VerifyProgress&) {});
-    ASSERT_TRUE(verified) << to_text(verified.error());
-    EXPECT_FALSE(verified->difference) << verified->difference->part;
-    EXPECT_EQ(verified->generations, 101u);
-    EXPECT_EQ(verified->ticks, 12'050u);
-    EXPECT_LT(verified->hashes, 12'050u / ticks_per_link);
-    EXPECT_GT(verified->hashes, 20u);
 }
 
 TEST_F(ThinningTest, ALinkThatIsMissingWithoutHavingBeenTakenOutIsNamed) {

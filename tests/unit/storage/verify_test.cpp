@@ -222,6 +222,50 @@ TEST_F(VerifyTest, AForkAgreesFromItsBeginningOn) {
     EXPECT_EQ(ticks_in_all, 200u);
 }
 
+TEST_F(VerifyTest, ARunOfWhichNotAllIsHeldAgreesAndWhatIsHeldIsCompared) {
+    const auto record_much = [this] {
+        folder.clear();
+        StorageThread thread{
+            {.durability = Durability::Relaxed, .vfs = nullptr, .file_bytes_max = std::int64_t{230} << 10}};
+        RecordedRun run{data, thread};
+        for (int part = 0; part < 12; ++part) {
+            run.advance(1010);
+            run.command(set_parameter("mutation_chance", 0.1 + 0.01 * part));
+            while (!thread.idle()) { // so that the file is thinned many times
+            }
+        }
+        run.recorder().close_all(run.laboratory());
+    };
+    record_much();
+    constexpr std::uint64_t taken_out = 2;
+    ASSERT_FALSE(*file()->beginning_of(taken_out)) << "nothing was taken out";
+    const auto result = verified(two_threads);
+    ASSERT_TRUE(result) << to_text(result.error());
+    EXPECT_FALSE(result->difference) << result->difference->part;
+    EXPECT_EQ(result->generations, 101u);
+    EXPECT_EQ(result->ticks, 12'120u);
+    EXPECT_EQ(result->hashes, file()->contents().links);
+    EXPECT_LT(result->hashes, 190u);
+
+    GenerationEnded ended{.generation = taken_out, .outcomes = {}, .statistics = *file()->statistics_of(taken_out)};
+    ++ended.statistics[1].food_eaten;
+    write(ended);
+    expect_difference(2, 240, "the statistics: food_eaten on island 1", 120);
+
+    record_much();
+    GenerationBegun begun{.opening = **file()->opening_of(taken_out), .born = {}};
+    begun.opening.progress.best_fitness += 1;
+    write(begun);
+    expect_difference(2, 120, "the best fitness so far", 120);
+
+    record_much();
+    HashLink link = (*file()->links(0, 12'000)).at(2);
+    ASSERT_GT(link.tick, 180u);
+    link.hash.low ^= 1;
+    write(link);
+    expect_difference((link.tick - 1) / 120 + 1, link.tick, "the state hash", difference().agrees->tick);
+}
+
 TEST_F(VerifyTest, AnotherStateHashIsTold) {
     record();
     HashLink link = (*file()->links(120, 180)).at(0);

@@ -1,0 +1,175 @@
+#include "server/storage/mismatch.h"
+
+#include "server/protocol/refusals.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace evod::storage {
+namespace {
+
+using evolution::NextGeneration;
+using Found = std::optional<Mismatch>;
+
+std::string text_of(double value) {
+    return protocol::number_text(value + 0.0); // SQLite keeps −0 as 0
+}
+std::string text_of(std::uint64_t value) {
+    return std::to_string(value);
+}
+std::string text_of(std::uint32_t value) {
+    return std::to_string(value);
+}
+std::string text_of(bool value) {
+    return value ? "true" : "false";
+}
+std::string text_of(simulation::CauseOfDeath cause) {
+    return std::string{name_of(cause)};
+}
+std::string text_of(const evolution::Parents& parents) {
+    return std::to_string(parents.first) + " and " + std::to_string(parents.second);
+}
+std::string text_of(const base::StateHash& hash) {
+    return to_text(hash);
+}
+
+template <class T>
+Found compare(const std::string& part, const T& stored, const T& simulated) {
+    if (stored == simulated)
+        return std::nullopt;
+    return Mismatch{part, text_of(stored), text_of(simulated)};
+}
+
+/// of_island  " on island 3"
+/// name       "the fitness"
+template <class T>
+Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
+                        std::span<const T> simulated) {
+    if (stored.size() != simulated.size())
+        return compare(std::string{name} + ": the number of organisms" + of_island, stored.size(), simulated.size());
+    const auto [one, other] = std::ranges::mismatch(stored, simulated);
+    if (one == stored.end())
+        return std::nullopt;
+    return compare(std::string{name} + " of organism " + std::to_string(one - stored.begin()) + of_island, *one,
+                   *other);
+}
+
+Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
+    for (const simulation::ParameterDescription& parameter : simulation::parameter_registry())
+        if (const auto one = parameter.get(stored), other = parameter.get(simulated); one != other)
+            return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which, simulation::to_text(one),
+                            simulation::to_text(other)};
+    return std::nullopt;
+}
+
+Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
+    const auto genes_of = [](const NextGeneration& born) {
+        return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
+    };
+    const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
+    if (stored_genes.size() != simulated_genes.size())
+        return compare("the number of organisms" + of_island, static_cast<std::uint64_t>(stored.genes.cols()),
+                       static_cast<std::uint64_t>(simulated.genes.cols()));
+    if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
+        const auto place = static_cast<std::size_t>(one - stored_genes.begin());
+        return compare("the chromosomes: gene " + std::string{evolution::gene_names[place % evolution::gene_count]} +
+                           " of organism " + std::to_string(place / evolution::gene_count) + of_island,
+                       double{*one}, double{*other});
+    }
+    if (auto found = compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents))
+        return found;
+    if (auto found = compare("the number of the elite" + of_island, stored.elite_count, simulated.elite_count))
+        return found;
+    if (auto found = compare("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count))
+        return found;
+    return compare("the number of genes put onto their bounds" + of_island, stored.clamped_count,
+                   simulated.clamped_count);
+}
+
+Found compare_island(const std::string& of_island, const IslandOutcome& stored, const IslandOutcome& simulated) {
+    if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness))
+        return found;
+    if (auto found =
+            compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks))
+        return found;
+    return compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause, simulated.cause);
+}
+
+Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
+                     const simulation::GenerationStatistics& simulated) {
+    std::vector<std::string> again;
+    simulation::for_each_number(simulated,
+                                [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
+    Found found;
+    auto simulated_text = again.begin();
+    simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
+        const std::string text = text_of(value); // exact
+        if (!found && text != *simulated_text)
+            found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
+        ++simulated_text;
+    });
+    return found;
+}
+
+template <class T>
+Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
+    if (auto found = compare("the number of islands", stored.size(), simulated.size()))
+        return found;
+    for (std::size_t island = 0; island < stored.size(); ++island)
+        if (auto found = compare_island(" on island " + std::to_string(island), stored[island], simulated[island]))
+            return found;
+    return std::nullopt;
+}
+
+} // namespace
+
+Found compare(const simulation::Opening& stored, const simulation::Opening& simulated) {
+    if (auto found = compare("the first tick", stored.moment.tick, simulated.moment.tick))
+        return found;
+    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s))
+        return found;
+    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active))
+        return found;
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested))
+        return found;
+    // A run that begins by a reset goes on counting revisions.
+    if (stored.moment.generation > 1)
+        if (auto found =
+                compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision))
+            return found;
+    const evolution::Progress &one = stored.progress, &other = simulated.progress;
+    if (auto found = compare("the progress: generations over", one.generations, other.generations))
+        return found;
+    if (auto found = compare("the progress: generations without improvement", one.stagnant, other.stagnant))
+        return found;
+    if (auto found = compare("the progress: the best fitness so far", one.best_fitness, other.best_fitness))
+        return found;
+    if (auto found = compare("the progress: the best fitness of the generation before", one.last_best_fitness,
+                             other.last_best_fitness))
+        return found;
+    return compare("the progress: whether everyone had died", one.last_died_out, other.last_died_out);
+}
+
+Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const std::vector<IslandOutcome>& stored, const std::vector<IslandOutcome>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const std::vector<simulation::GenerationStatistics>& stored,
+              const std::vector<simulation::GenerationStatistics>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const base::StateHash& stored, const base::StateHash& simulated) {
+    return compare("the state hash", stored, simulated);
+}
+
+Found compare_requested(const simulation::Parameters& stored, const simulation::Parameters& simulated) {
+    return compare("as it was asked for", stored, simulated);
+}
+
+} // namespace evod::storage
