@@ -32,7 +32,9 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                         {}, &begun);
     if (!file)
         return file.error();
-    return {};
+    (*file)->begin();
+    (*file)->write(EndMark{.tick = begun.opening.moment.tick});
+    return (*file)->commit();
 }
 
 } // namespace evod::storage

@@ -66,11 +66,11 @@ def setUpModule():
         os.mkdir(f"{folder.name}/{name}")
         with Server(f"{folder.name}/{name}", seed) as server:
             if name == "changed":
-                server.evoctl("until", "130")
+                server.evoctl("until", "130", "--wait")
                 server.evoctl("set", "food_health=7", "mutation_chance=0.5")
-                server.evoctl("until", "240")
+                server.evoctl("until", "240", "--wait")
                 server.evoctl("set", "population_size=15")
-                server.evoctl("until", "421")
+                server.evoctl("until", "421", "--wait")
             else:
                 server.evoctl("run", "4", "--wait")
         paths.append(server.run)
@@ -95,6 +95,34 @@ class Case(unittest.TestCase):
         return path
 
 
+class Documentation(Case):
+    """docs/RUN_FILE.md: what it says is there, and its queries."""
+
+    text = (pathlib.Path(__file__).parents[2] / "docs/RUN_FILE.md").read_text()
+
+    def setUp(self):
+        super().setUp()
+        self.run_file = sqlite3.connect(f"file:{changed}?mode=ro", uri=True)
+        self.addCleanup(self.run_file.close)
+
+    def test_every_table_and_column_is_told(self):
+        words = set(re.findall(r"\w+", self.text))
+        for (table,) in self.run_file.execute("SELECT name FROM sqlite_schema WHERE type = 'table'").fetchall():
+            self.assertIn(table, words)
+            if table == "statistics":  # told to be those of the CSV
+                continue
+            for column in self.run_file.execute(f"SELECT name FROM pragma_table_info('{table}')").fetchall():
+                self.assertIn(column[0], words, table)
+
+    def test_its_queries_answer(self):
+        queries = re.search(r"```sql\n(.*?)```", self.text, re.S)[1].split(";")[:-1]
+        self.assertEqual(len(queries), 3)
+        best, journal, dying = (self.run_file.execute(query).fetchall() for query in queries)
+        self.assertEqual([row[0] for row in best], [1, 2, 3])
+        self.assertEqual([row[0] for row in journal if row[0] > 0], [130, 130, 240, 240])
+        self.assertTrue(all(2 * (starved + poisoned) > born for _, starved, poisoned, born in dying))
+
+
 class Verify(Case):
     def test_a_run_agrees_on_any_number_of_threads(self):
         for run, words in (changed, "4 generations, 421 ticks, 7 state hashes"), (plain, "4 generations, 480 ticks, 8 "):
@@ -117,12 +145,12 @@ class Verify(Case):
 
     def test_a_run_that_was_reset_agrees_and_so_does_the_one_after_it(self):
         with Server(self.folder, 5) as server:
-            server.evoctl("until", "150")
+            server.evoctl("until", "150", "--wait")
             server.evoctl("set", "food_health=7", "population_size=9")
             server.evoctl("reset", "--seed", "6")
-            server.evoctl("until", "200")
+            server.evoctl("until", "200", "--wait")
             server.evoctl("set", "food_health=8")
-            server.evoctl("until", "300")
+            server.evoctl("until", "300", "--wait")
         runs = sorted(pathlib.Path(self.folder).glob("*.evod"))
         self.assertEqual(len(runs), 2)
         self.assertIn("2 generations, 150 ticks", evod("verify", runs[0]))

@@ -46,6 +46,8 @@ TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
         const auto file = RunFile::open_read_only(data->file_of(name));
         ASSERT_TRUE(file) << to_text(file.error());
         EXPECT_EQ((*file)->identity().forked_from, (simulation::RunId{1, 2}));
+        EXPECT_TRUE((*file)->check());
+        EXPECT_TRUE((*file)->end_mark()->has_value()); // closed, to be gone on with
         auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         simulation::World& world = recovered->world;
