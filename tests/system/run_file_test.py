@@ -151,7 +151,7 @@ class Verify(Case):
             server.evoctl("until", "200", "--wait")
             server.evoctl("set", "food_health=8")
             server.evoctl("until", "300", "--wait")
-        runs = sorted(pathlib.Path(self.folder).glob("*.evod"))
+        runs = sorted(pathlib.Path(self.folder).glob("*.evod"), key=lambda run: run.name == "small.evod")
         self.assertEqual(len(runs), 2)
         self.assertIn("2 generations, 150 ticks", evod("verify", runs[0]))
         self.assertIn("3 generations, 300 ticks", evod("verify", runs[1]))
