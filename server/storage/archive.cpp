@@ -55,13 +55,7 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
     if (*mark && (*mark)->ended) {
         // It was to be renamed next.
         file->reset();
-        std::error_code error;
-        std::filesystem::rename(path, folder_.ended_file_of(identity.name, identity.run_id), error);
-        if (error)
-            return base::Refusal{.code = base::RefusalCode::Unavailable,
-                                 .message = path + " cannot be renamed: " + error.message(),
-                                 .violations = {}};
-        return {};
+        return RunFile::rename(path, folder_.ended_file_of(identity.name, identity.run_id));
     }
     auto recovered = recover(**file, executor);
     if (!recovered)

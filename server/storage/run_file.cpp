@@ -166,6 +166,36 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
     return file;
 }
 
+Result<void> RunFile::rename(const std::string& from, const std::string& to) {
+    namespace fs = std::filesystem;
+    std::error_code error, ignored;
+    // While somebody reads, what was committed last may be in the log alone. So the file has it beside it under both
+    // names in between, where links can be made.
+    struct Companion {
+        const char* suffix;
+        bool there = false, linked = false;
+    };
+    Companion companions[] = {{"-wal"}, {"-shm"}};
+    for (Companion& companion : companions) {
+        fs::remove(to + companion.suffix, ignored);
+        companion.there = fs::exists(from + companion.suffix, ignored);
+        fs::create_hard_link(from + companion.suffix, to + companion.suffix, error);
+        companion.linked = !error;
+    }
+    fs::rename(from, to, error);
+    if (error) {
+        for (const Companion& companion : companions)
+            fs::remove(to + companion.suffix, ignored);
+        return refusal(RefusalCode::Unavailable, from + " cannot be renamed to " + to + ": " + error.message());
+    }
+    for (const Companion& companion : companions)
+        if (companion.there && !companion.linked)
+            fs::rename(from + companion.suffix, to + companion.suffix, ignored);
+        else
+            fs::remove(from + companion.suffix, ignored);
+    return {};
+}
+
 Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);

@@ -211,12 +211,9 @@ bool StorageThread::write_out(Run& run) {
     std::vector<Item> written = std::exchange(run.waiting, {});
     if (run.closing) {
         run.file.reset();
-        if (!run.renamed.empty()) {
-            std::error_code error;
-            std::filesystem::rename(run.path, run.renamed, error);
-            if (error)
-                spdlog::error("{} could not be renamed to {}: {}", run.path, run.renamed, error.message());
-        }
+        if (!run.renamed.empty())
+            if (const auto moved = RunFile::rename(run.path, run.renamed); !moved)
+                spdlog::error("{}", moved.error().message);
     }
     for (const Item& item : written) {
         bytes += item.bytes;

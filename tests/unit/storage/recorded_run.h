@@ -78,6 +78,13 @@ class RecordedRun {
         }
     }
 
+    /// Begins again in a file of its own, once the run has been ended.
+    bool reset(base::Seed seed, const simulation::RunId& run_id) {
+        const bool done = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id}).has_value();
+        recorder_.begin(entry());
+        return done;
+    }
+
     void command(
         v1::Request request, StorageThread::Done done = [] {}) {
         request.set_client_key("test");

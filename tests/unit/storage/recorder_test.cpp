@@ -29,5 +29,46 @@ TEST_F(RecorderTest, AGenerationThatWasBredIsToldOfWithItsFirstTick) {
     EXPECT_EQ(world.moment().generation_tick, 1u);
 }
 
+TEST_F(RecorderTest, ARunThatEndsWhileSomebodyReadsItIsKeptWhole) {
+    auto data = DataFolder::open(folder.path());
+    const std::string path = data->file_of("w"), ended_path = data->ended_file_of("w", {1, 2});
+    base::StateHash ended_hash, hash;
+    std::unique_ptr<RunFile> reading;
+    {
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.advance(150);
+        while (!thread.idle()) {
+        }
+        reading = *RunFile::open_read_only(path);
+        ASSERT_TRUE(reading->hold_still());
+        EXPECT_EQ(reading->last_generation(), 2u);
+        run.advance(150); // is in the log alone, as long as somebody reads
+        ended_hash = run.world().hash();
+        run.recorder().end("w", {1, 2}, 300);
+        ASSERT_TRUE(run.reset({9}, {3, 4}));
+        run.advance(50);
+        hash = run.world().hash();
+        run.recorder().close_all(run.laboratory());
+    }
+    EXPECT_EQ(reading->last_generation(), 2u) << "what it held still has changed";
+    const auto expect_whole = [&](const std::string& at, std::uint64_t tick, const base::StateHash& last) {
+        const auto file = RunFile::open_read_only(at);
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        EXPECT_TRUE((*file)->end_mark()->has_value());
+        const auto recovered = recover(**file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        EXPECT_EQ(recovered->world.moment().tick, tick);
+        EXPECT_EQ(recovered->world.hash(), last);
+    };
+    expect_whole(ended_path, 300, ended_hash);
+    expect_whole(path, 50, hash);
+    reading.reset();
+    expect_whole(ended_path, 300, ended_hash);
+    expect_whole(path, 50, hash);
+}
+
 } // namespace
 } // namespace evod::storage
