@@ -59,11 +59,12 @@ int verify(const VerifyOptions& options) {
         return 1;
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes compared in %.2f s, %.0f × real "
+    const double factor = verified->simulated_s / seconds;
+    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes compared in %.2f s, %.*f × real "
                 "time\n",
                 options.run.c_str(), static_cast<unsigned long long>(verified->generations),
                 static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
-                seconds, verified->simulated_s / seconds);
+                seconds, factor < 10 ? 1 : 0, factor);
     return 0;
 }
 
