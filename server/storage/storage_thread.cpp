@@ -198,17 +198,17 @@ bool StorageThread::write_out(Run& run) {
     if (auto committed = run.file->commit(); !committed)
         return fail(committed.error());
 
+    std::size_t bytes = 0;
+    std::vector<Item> written = std::exchange(run.waiting, {});
     // Not after an end mark, which counts the rows. What is written stays written if this fails.
+    bool sound = true;
     if (!run.closing)
         if (const auto thinned = run.file->thin_if_large(); !thinned)
-            return fail(thinned.error());
-    if (!run.said_large && run.file->is_large()) {
+            sound = fail(thinned.error());
+    if (run.file && !run.said_large && run.file->is_large()) {
         spdlog::warn("{} is larger than it should be: what is kept for good takes more", run.path);
         run.said_large = true;
     }
-
-    std::size_t bytes = 0;
-    std::vector<Item> written = std::exchange(run.waiting, {});
     if (run.closing) {
         run.file.reset();
         if (!run.renamed.empty())
@@ -221,7 +221,7 @@ bool StorageThread::write_out(Run& run) {
             item.done();
     }
     waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
-    return true;
+    return sound;
 }
 
 } // namespace evod::storage
