@@ -1,6 +1,7 @@
 #include "client/viewer/run_control.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -53,6 +54,7 @@ std::optional<evod::v1::Request> RunControl::pause_or_resume() {
     case evod::v1::RUN_STATE_RUNNING:
         request.mutable_pause()->set_world(world_);
         state_ = evod::v1::RUN_STATE_PAUSED;
+        pausing_ = true;
         break;
     case evod::v1::RUN_STATE_PAUSED:
         request.mutable_resume()->set_world(world_);
@@ -67,12 +69,17 @@ std::optional<evod::v1::Request> RunControl::pause_or_resume() {
         return std::nullopt;
     }
     step_target_ = 0;
+    held_step_ = 0;
     ++unanswered_count_;
     return request;
 }
 
 std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
     if (state_ == evod::v1::RUN_STATE_UNSPECIFIED || state_ == evod::v1::RUN_STATE_TERMINATED) {
+        return std::nullopt;
+    }
+    if (pausing_) {
+        held_step_ += ticks; // only the answer knows the tick at which the world stopped
         return std::nullopt;
     }
     step_target_ = std::max(step_target_, tick_) + ticks;
@@ -127,6 +134,8 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
     unanswered_count_ -= unanswered_count_ > 0;
     const bool resumed = resuming_ && unanswered_count_ == 0;
     resuming_ = resuming_ && !resumed;
+    pausing_ = pausing_ && unanswered_count_ > 0;
+    const std::uint64_t step_ticks = pausing_ ? 0 : std::exchange(held_step_, 0);
     if (response == nullptr || response->status().code() != evod::v1::CODE_OK || !response->has_world()) {
         // Not done, or nobody knows: ask how things stand.
         if (!known()) {
@@ -138,6 +147,9 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
         return request;
     }
     see(response->world());
+    if (step_ticks > 0) {
+        return step(step_ticks);
+    }
     // A world that was only stepped has nothing to go on with; who says "go on" means "run".
     return resumed && state_ == evod::v1::RUN_STATE_WAITING ? pause_or_resume() : std::nullopt;
 }

@@ -27,7 +27,8 @@ class RunControl {
     /// Running: pause; paused: go on; waiting: run until paused. Nullopt when the run has ended, or nothing is known
     /// yet.
     std::optional<evod::v1::Request> pause_or_resume();
-    /// So many ticks more than there are, or than an unfinished step has asked for.
+    /// So many ticks more than there are, or than an unfinished step has asked for. Nullopt as above, and while a pause
+    /// is unanswered: answered() then returns the step.
     std::optional<evod::v1::Request> step(std::uint64_t ticks);
     /// Twice or half the speed; down from the highest is the speed before.
     std::optional<evod::v1::Request> faster();
@@ -64,7 +65,9 @@ class RunControl {
     evod::v1::Speed speed_;
     double factor_ = 1; // the last that was not max
     unsigned unanswered_count_ = 0;
-    bool resuming_ = false; // a Resume is among the unanswered
+    bool resuming_ = false;       // a Resume is among the unanswered
+    bool pausing_ = false;        // a Pause is
+    std::uint64_t held_step_ = 0; // ticks to step when the Pause is answered
 };
 
 } // namespace evod::viewer

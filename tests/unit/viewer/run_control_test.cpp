@@ -110,6 +110,32 @@ TEST(RunControl, AStepAfterAPauseCountsFromWhereItStopped) {
     EXPECT_EQ(control.step(1)->run_until_tick().tick(), 121u);
 }
 
+TEST(RunControl, AStepWaitsForThePauseBeforeItWhichKnowsWhereTheWorldStopped) {
+    RunControl control;
+    control.see(world(running, 1));
+    control.pause_or_resume();
+    EXPECT_FALSE(control.step(1));
+    EXPECT_FALSE(control.step(60));
+    const auto response = answer(world(paused, 2)); // one tick more than was known here
+    const auto step = control.answered(&response);
+    ASSERT_TRUE(step && step->has_run_until_tick());
+    EXPECT_EQ(step->run_until_tick().tick(), 63u);
+    const auto stepped = answer(world(paused, 63));
+    EXPECT_FALSE(control.answered(&stepped));
+}
+
+TEST(RunControl, GoingOnForgetsAStepThatWaitsForAPause) {
+    RunControl control;
+    control.see(world(running, 1));
+    control.pause_or_resume();
+    control.step(1);
+    control.pause_or_resume();
+    const auto stopped = answer(world(paused, 2)), going = answer(world(running, 2));
+    EXPECT_FALSE(control.answered(&stopped));
+    EXPECT_FALSE(control.answered(&going));
+    EXPECT_EQ(control.state(), running);
+}
+
 TEST(RunControl, GoingOnWithAWorldThatWasOnlySteppedRunsIt) {
     RunControl control;
     control.see(world(paused, 5));
