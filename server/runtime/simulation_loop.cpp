@@ -127,16 +127,20 @@ base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Comman
 void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
                             const std::optional<RunBefore>& before) {
     const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
-    const bool begins = std::holds_alternative<simulation::CreateWorld>(mail.command) ||
-                        std::holds_alternative<simulation::ResetWorld>(mail.command);
-    if (std::holds_alternative<simulation::ResetWorld>(mail.command))
-        recorder_->end(applied.world, before->run_id, before->tick);
     const auto entry = std::as_const(laboratory_).find(applied.world);
-    storage::RunRecorder& run = begins ? recorder_->begin(**entry) : *recorder_->of(applied.world);
-    run.journal(applied.tick, ends ? simulation::RunControl{} : (*entry)->control, std::move(mail.origin),
-                std::move(answer.frame), std::move(answer.give));
+    storage::CommandRecord command{.tick = applied.tick,
+                                   .control = ends ? simulation::RunControl{} : (*entry)->control,
+                                   .origin = std::move(mail.origin),
+                                   .answer = std::move(answer.frame),
+                                   .done = std::move(answer.give)};
     if (ends)
-        recorder_->end(applied.world, before->run_id, before->tick);
+        recorder_->end(applied.world, before->run_id, std::move(command));
+    else if (std::holds_alternative<simulation::CreateWorld>(mail.command))
+        recorder_->begin(**entry, std::move(command));
+    else if (std::holds_alternative<simulation::ResetWorld>(mail.command))
+        recorder_->begin_again(**entry, before->run_id, before->tick, std::move(command));
+    else
+        recorder_->of(applied.world)->journal(std::move(command));
 }
 
 void SimulationLoop::close() {

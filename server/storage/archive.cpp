@@ -16,12 +16,51 @@ Archive::Archive(DataFolder folder, const RunFile::Options& options)
     , thread_{std::make_unique<StorageThread>(options)}
     , recorder_{std::make_unique<Recorder>(folder_, *thread_)} {}
 
+namespace {
+
+/// Whether a run's file has the end mark of one that is over.
+Result<bool> is_over(RunFile& file) {
+    const auto mark = file.end_mark();
+    if (!mark)
+        return mark.error();
+    return *mark && (*mark)->ended;
+}
+
+/// A world was to begin again. Once the run that it had has its end mark, the one that waits beside it is whole and
+/// takes its place; before that it is as if nobody had asked.
+Result<void> finish_replacing(const DataFolder& folder, const std::string& path) {
+    const std::string next = DataFolder::next_file_of(path);
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) {
+        auto old = RunFile::open_read_only(path);
+        if (!old)
+            return old.error();
+        const auto over = is_over(**old);
+        if (!over)
+            return over.error();
+        if (!*over)
+            return RunFile::remove(next);
+        const RunIdentity identity = (*old)->identity();
+        old->reset();
+        if (auto moved = RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id)); !moved)
+            return moved;
+    }
+    return RunFile::rename(next, path);
+}
+
+} // namespace
+
 Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const RunFile::Options& options,
                                                base::Executor& executor) {
     auto folder = DataFolder::open(path);
     if (!folder)
         return folder.error();
-    const auto files = folder->files();
+    auto files = folder->files();
+    for (const std::string& file : files ? files->replaced : std::vector<std::string>{})
+        if (auto finished = finish_replacing(*folder, file); !finished)
+            return finished.error();
+    if (files && !files->replaced.empty())
+        files = folder->files();
     if (!files)
         return files.error();
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
@@ -31,7 +70,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
         const auto file = RunFile::open_read_only(ended);
         if (!file)
             continue; // no world depends on it; whoever opens it is told
-        if (auto last = (*file)->journal((*file)->contents().journal_entries))
+        if (auto last = (*file)->journal((*file)->last_journal_entry()))
             archive->answers_.insert(archive->answers_.end(), last->begin(), last->end());
     }
     for (const std::string& file : files->of_worlds)
@@ -49,14 +88,15 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
         return file.error();
     }
     const RunIdentity identity = (*file)->identity();
-    const auto mark = (*file)->end_mark();
-    if (!mark)
-        return mark.error();
-    if (*mark && (*mark)->ended) {
+    const auto over = is_over(**file);
+    if (!over)
+        return over.error();
+    if (*over) {
         // It was to be renamed next.
         file->reset();
         return RunFile::rename(path, folder_.ended_file_of(identity.name, identity.run_id));
     }
+    const bool was_closed = (*file)->end_mark()->has_value();
     auto recovered = recover(**file, executor);
     if (!recovered)
         return recovered.error();
@@ -64,7 +104,7 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
     spdlog::info("world \"{}\" goes on from generation {}, tick {}{}", identity.name,
                  recovered->world.moment().generation, recovered->world.moment().tick,
-                 *mark ? "" : ", where its file was left without being closed");
+                 was_closed ? "" : ", where its file was left without being closed");
     const auto name = std::filesystem::path{path}.stem().string();
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});

@@ -65,6 +65,9 @@ base::Result<DataFolder::Files> DataFolder::files() const {
     std::error_code error;
     for (fs::directory_iterator file{path_, error}, end; !error && file != end; file.increment(error)) {
         const std::string name = file->path().filename().string();
+        const std::string next = next_file_of(std::string{ending});
+        if (name.ends_with(next) && simulation::is_world_name(name.substr(0, name.size() - next.size())))
+            files.replaced.push_back(path_ + "/" + name.substr(0, name.size() - next.size()) + std::string{ending});
         if (!name.ends_with(ending))
             continue;
         const std::string stem = name.substr(0, name.size() - ending.size());
@@ -76,6 +79,7 @@ base::Result<DataFolder::Files> DataFolder::files() const {
         return unusable(path_, error.message());
     std::sort(files.of_worlds.begin(), files.of_worlds.end());
     std::sort(files.ended.begin(), files.ended.end());
+    std::sort(files.replaced.begin(), files.replaced.end());
     return files;
 }
 

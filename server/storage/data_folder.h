@@ -1,5 +1,5 @@
 // Data folder: where a server's run files lie. `NAME.evod` is the run of the world NAME; `NAME.RUNID.evod` is one that
-// has ended.
+// has ended; `NAME.evod-next` one that is about to take the place of `NAME.evod`.
 //
 // Owner        one server: a lock on the file `lock` keeps a second one out.
 #pragma once
@@ -24,8 +24,10 @@ class DataFolder {
     const std::string& path() const { return path_; }
     std::string file_of(const std::string& world) const;
     std::string ended_file_of(const std::string& world, const simulation::RunId& run_id) const;
+    static std::string next_file_of(const std::string& file) { return file + "-next"; }
     struct Files {
         std::vector<std::string> of_worlds, ended; // paths, in order
+        std::vector<std::string> replaced;         // those that there is a next_file_of(), be they there or not
     };
     base::Result<Files> files() const;
 

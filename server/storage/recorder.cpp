@@ -7,7 +7,21 @@
 
 namespace evod::storage {
 
-void RunRecorder::hand_over(const simulation::World& world) {
+namespace {
+
+RunIdentity identity_of(const simulation::Entry& entry) {
+    using namespace std::chrono;
+    const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
+    return {.name = entry.name,
+            .run_id = entry.run_id,
+            .seed = entry.world.seed(),
+            .parameters = entry.world.parameters().requested,
+            .began_unix_ms = now.count()};
+}
+
+} // namespace
+
+std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
     // Together, so that a file tells of a tick all there is to tell or nothing.
     std::vector<StorageThread::Record> records;
     const simulation::Moment& moment = world.moment();
@@ -23,26 +37,49 @@ void RunRecorder::hand_over(const simulation::World& world) {
         records.emplace_back(end_of(world));
         generations_ended_ = moment.generation;
     }
-    if (!records.empty())
-        thread_.write(number_, std::move(records));
+    return records;
 }
 
-void RunRecorder::journal(std::uint64_t tick, const simulation::RunControl& control, Origin origin, std::string answer,
-                          StorageThread::Done done) {
-    written_.tick = std::max(written_.tick, tick);
-    thread_.write(number_,
-                  JournalEntry{.number = ++written_.journal_entries,
-                               .tick = tick,
-                               .origin = std::move(origin),
-                               .answer = std::move(answer),
-                               .control = control},
-                  std::move(done));
+void RunRecorder::hand_over(const simulation::World& world) {
+    if (auto records = news(world); !records.empty())
+        thread_.write(number_, {std::move(records), {}});
 }
 
-void RunRecorder::close(std::uint64_t tick, bool ended, std::string renamed) {
+JournalEntry RunRecorder::entry(CommandRecord& command) {
+    written_.tick = std::max(written_.tick, command.tick);
+    return {.number = ++written_.journal_entries,
+            .tick = command.tick,
+            .origin = std::move(command.origin),
+            .answer = std::move(command.answer),
+            .control = command.control};
+}
+
+void RunRecorder::journal(CommandRecord command) {
+    std::vector<StorageThread::Record> records;
+    records.emplace_back(entry(command));
+    thread_.write(number_, {std::move(records), std::move(command.done)});
+}
+
+StorageThread::Batch RunRecorder::first(const simulation::World& world, std::optional<CommandRecord> command) {
+    StorageThread::Batch batch{news(world), {}};
+    if (command) {
+        batch.records.emplace_back(entry(*command));
+        batch.done = std::move(command->done);
+    }
+    return batch;
+}
+
+StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::string renamed,
+                                          std::optional<CommandRecord> command) {
+    StorageThread::Ending ending{.last = {}, .renamed = std::move(renamed)};
+    if (command) {
+        ending.last.records.emplace_back(entry(*command));
+        ending.last.done = std::move(command->done);
+    }
     written_.tick = std::max(written_.tick, tick);
     written_.ended = ended;
-    thread_.close(number_, written_, std::move(renamed));
+    ending.last.records.emplace_back(written_);
+    return ending;
 }
 
 std::optional<base::Refusal> Recorder::refusal() const {
@@ -59,40 +96,50 @@ RunRecorder* Recorder::of(const std::string& world) {
     return found == runs_.end() ? nullptr : &found->second;
 }
 
-RunRecorder& Recorder::begin(const simulation::Entry& entry) {
-    using namespace std::chrono;
-    const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
-    const auto number = thread_.create(folder_.file_of(entry.name), {.name = entry.name,
-                                                                     .run_id = entry.run_id,
-                                                                     .seed = entry.world.seed(),
-                                                                     .parameters = entry.world.parameters().requested,
-                                                                     .began_unix_ms = now.count()});
-    const auto [run, added] = runs_.emplace(entry.name, RunRecorder{thread_, number});
+void Recorder::add(const std::string& world, RunRecorder run) {
+    const bool added = runs_.emplace(world, std::move(run)).second;
     EVOD_ASSERT(added);
-    run->second.follow(entry.world);
-    return run->second;
+}
+
+void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
+    RunRecorder run{thread_};
+    run.number_ =
+        thread_.create(folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+    add(entry.name, std::move(run));
+}
+
+void Recorder::begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+                           std::optional<CommandRecord> command) {
+    const auto old = runs_.find(entry.name);
+    EVOD_ASSERT(old != runs_.end());
+    RunRecorder run{thread_};
+    run.number_ = thread_.replace(
+        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
+        folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+    runs_.erase(old);
+    add(entry.name, std::move(run));
 }
 
 RunRecorder& Recorder::go_on(const std::string& world, std::unique_ptr<RunFile> file, const EndMark& so_far,
                              std::uint64_t generations_ended) {
     const auto number = thread_.adopt(std::move(file));
-    const auto [run, added] = runs_.emplace(world, RunRecorder{thread_, number, so_far, generations_ended});
-    EVOD_ASSERT(added);
-    return run->second;
+    add(world, RunRecorder{thread_, number, so_far, generations_ended});
+    return *of(world);
 }
 
-void Recorder::end(const std::string& world, const simulation::RunId& run_id, std::uint64_t tick) {
+void Recorder::end(const std::string& world, const simulation::RunId& run_id, CommandRecord command) {
     const auto run = runs_.find(world);
-    if (run == runs_.end())
-        return;
-    run->second.close(tick, true, folder_.ended_file_of(world, run_id));
+    EVOD_ASSERT(run != runs_.end());
+    const std::uint64_t tick = command.tick;
+    thread_.close(run->second.number_,
+                  run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command)));
     runs_.erase(run);
 }
 
 void Recorder::close_all(const simulation::Laboratory& laboratory) {
     for (const auto& entry : laboratory.entries())
         if (RunRecorder* run = of(entry->name))
-            run->close(entry->world.moment().tick, false);
+            thread_.close(run->number_, run->ending(entry->world.moment().tick, false));
     runs_.clear();
 }
 

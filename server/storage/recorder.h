@@ -13,11 +13,18 @@
 
 namespace evod::storage {
 
+/// A command that was applied, and who is told once that is on the disk.
+struct CommandRecord {
+    std::uint64_t tick = 0;         // after which it was applied
+    simulation::RunControl control; // as it was then
+    Origin origin;
+    std::string answer;
+    StorageThread::Done done;
+};
+
 /// Of one run.
 class RunRecorder {
   public:
-    /// A run that begins.
-    RunRecorder(StorageThread& thread, StorageThread::RunNumber number) : thread_{thread}, number_{number} {}
     /// A run that goes on.
     RunRecorder(StorageThread& thread, StorageThread::RunNumber number, const EndMark& so_far,
                 std::uint64_t generations_ended)
@@ -29,17 +36,23 @@ class RunRecorder {
         if (moment.generation != written_.generations || moment.tick % ticks_per_link == 0 || world.generation_over())
             hand_over(world);
     }
-    /// A command that was applied, with the answer it got. done: see StorageThread.
-    void journal(std::uint64_t tick, const simulation::RunControl& control, Origin origin, std::string answer,
-                 StorageThread::Done done);
-    /// The run is over, or the server stops, after `tick`; nothing is handed over any more. renamed: see StorageThread.
-    void close(std::uint64_t tick, bool ended, std::string renamed = {});
+    void journal(CommandRecord command);
 
   private:
+    friend class Recorder;
+    explicit RunRecorder(StorageThread& thread) : thread_{thread} {}
     void hand_over(const simulation::World& world);
+    std::vector<StorageThread::Record> news(const simulation::World& world);
+    JournalEntry entry(CommandRecord& command);
+    /// What a run that begins has in its file from the beginning.
+    StorageThread::Batch first(const simulation::World& world, std::optional<CommandRecord> command);
+    /// The end mark of a run that is over, or whose server stops, after `tick`; and before it the command that ended
+    /// it.
+    StorageThread::Ending ending(std::uint64_t tick, bool ended, std::string renamed = {},
+                                 std::optional<CommandRecord> command = {});
 
     StorageThread& thread_;
-    StorageThread::RunNumber number_;
+    StorageThread::RunNumber number_ = 0;
     EndMark written_; // what has been handed over; its links are not counted
     std::uint64_t generations_ended_ = 0;
 };
@@ -57,17 +70,23 @@ class Recorder {
     /// Of a world that has a file; nullptr for another.
     RunRecorder* of(const std::string& world);
 
-    /// A world that has just begun its run.
-    RunRecorder& begin(const simulation::Entry& entry);
+    /// A world that has just begun its run, by this command.
+    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {});
+    /// The same for a world that begins again: the run it had is over, after `tick`, and its file gets the name of one
+    /// that has ended.
+    void begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+                     std::optional<CommandRecord> command = {});
     /// A world that goes on with the run of a file.
     RunRecorder& go_on(const std::string& world, std::unique_ptr<RunFile> file, const EndMark& so_far,
                        std::uint64_t generations_ended);
-    /// Its run is over, after `tick`: its file gets its end mark and the name of one that has ended.
-    void end(const std::string& world, const simulation::RunId& run_id, std::uint64_t tick);
+    /// Its run is over, by this command: its file gets its end mark and the name of one that has ended.
+    void end(const std::string& world, const simulation::RunId& run_id, CommandRecord command);
     /// The server stops: every file gets its end mark.
     void close_all(const simulation::Laboratory& laboratory);
 
   private:
+    void add(const std::string& world, RunRecorder run);
+
     DataFolder& folder_;
     StorageThread& thread_;
     std::map<std::string, RunRecorder, std::less<>> runs_; // by world

@@ -196,6 +196,16 @@ Result<void> RunFile::rename(const std::string& from, const std::string& to) {
     return {};
 }
 
+Result<void> RunFile::remove(const std::string& path) {
+    std::error_code error, ignored;
+    std::filesystem::remove(path, error);
+    if (error)
+        return refusal(RefusalCode::Unavailable, path + " cannot be removed: " + error.message());
+    for (const char* suffix : {"-wal", "-shm"})
+        std::filesystem::remove(path + suffix, ignored);
+    return {};
+}
+
 Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
@@ -425,6 +435,10 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uin
 Result<void> RunFile::hold_still() {
     database_.run("BEGIN");
     return read_thinning(); // what holds now
+}
+
+std::uint64_t RunFile::last_journal_entry() {
+    return static_cast<std::uint64_t>(database_.number("SELECT max(number) FROM journal"));
 }
 
 std::uint64_t RunFile::last_generation() {

@@ -43,9 +43,11 @@ class RunFile {
     /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
     /// was to create it did not come to the end of it.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
-    /// Gives a file that is not open here another name, with all that SQLite keeps beside it: whoever is reading it goes
-    /// on, and nothing of it is left under the old name.
+    /// Gives a file that is not open here another name, with all that SQLite keeps beside it: whoever is reading it
+    /// goes on, and nothing of it is left under the old name.
     static base::Result<void> rename(const std::string& from, const std::string& to);
+    /// Takes a file that nobody has open out of the world, with all that SQLite keeps beside it.
+    static base::Result<void> remove(const std::string& path);
     /// To be looked at, while a server writes to it too.
     static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
 
@@ -61,6 +63,8 @@ class RunFile {
     base::Result<std::optional<EndMark>> end_mark();
     /// The entries from number `first` on, at most `count`.
     base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1, std::uint32_t count = ~0u);
+    /// Number of the newest; 0 if there is none.
+    std::uint64_t last_journal_entry();
     /// Of generations whose beginning is held; 0 if none is yet.
     std::uint64_t last_generation();
     /// After which the first generation began; 0 if its beginning is not held.

@@ -1,6 +1,7 @@
 #include "server/storage/storage_thread.h"
 
 #include "server/base/overloaded.h"
+#include "server/storage/data_folder.h"
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
@@ -51,65 +52,89 @@ StorageThread::~StorageThread() {
     thread_.join();
 }
 
-StorageThread::RunNumber StorageThread::create(const std::string& path, RunIdentity identity) {
+std::vector<StorageThread::Item> StorageThread::items_of(Batch batch) {
+    std::vector<Item> items;
+    std::size_t bytes = 0;
+    for (Record& record : batch.records) {
+        items.push_back({std::move(record), {}, 0});
+        bytes += items.back().bytes = bytes_of(items.back().record);
+    }
+    items.back().done = std::move(batch.done);
+    waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
+    return items;
+}
+
+StorageThread::RunNumber StorageThread::add(Run run, std::vector<Item> items,
+                                            std::optional<std::pair<RunNumber, Closing>> old) {
+    RunNumber number = 0;
+    {
+        const std::lock_guard lock{mutex_};
+        number = ++last_number_;
+        new_runs_.emplace(number, std::move(run));
+        if (old)
+            closing_.insert(*std::move(old));
+        if (!items.empty())
+            wait_in_line(number, std::move(items));
+    }
+    changed_.notify_one();
+    return number;
+}
+
+StorageThread::RunNumber StorageThread::create(const std::string& path, RunIdentity identity, Batch first) {
     Run run;
     run.path = path;
     run.to_create = std::move(identity);
-    const std::lock_guard lock{mutex_};
-    new_runs_.emplace(++last_number_, std::move(run));
-    return last_number_;
+    return add(std::move(run), items_of(std::move(first)));
+}
+
+StorageThread::RunNumber StorageThread::replace(RunNumber old_run, Ending ending, const std::string& path,
+                                                RunIdentity identity, Batch first) {
+    Run run;
+    run.path = path;
+    run.to_create = std::move(identity);
+    run.replaces = old_run;
+    Closing closing{.last = items_of(std::move(ending.last)), .renamed = std::move(ending.renamed), .replaced = true};
+    return add(std::move(run), items_of(std::move(first)), std::pair{old_run, std::move(closing)});
 }
 
 StorageThread::RunNumber StorageThread::adopt(std::unique_ptr<RunFile> file) {
     Run run;
     run.path = file->path();
     run.file = std::move(file);
-    const std::lock_guard lock{mutex_};
-    new_runs_.emplace(++last_number_, std::move(run));
-    return last_number_;
+    return add(std::move(run), {});
 }
 
-void StorageThread::write(RunNumber run, Record record, Done done) {
-    std::vector<Item> items;
-    items.push_back({std::move(record), std::move(done)});
-    hand_over(run, std::move(items));
+void StorageThread::write(RunNumber run, Batch batch) {
+    hand_over(run, items_of(std::move(batch)));
 }
 
-void StorageThread::write(RunNumber run, std::vector<Record> records) {
-    std::vector<Item> items;
-    for (Record& record : records)
-        items.push_back({std::move(record), {}});
-    hand_over(run, std::move(items));
-}
-
-void StorageThread::close(RunNumber run, const EndMark& mark, std::string renamed, Done done) {
-    std::vector<Item> items;
-    items.push_back({mark, std::move(done)});
-    hand_over(run, std::move(items), std::move(renamed));
-}
-
-void StorageThread::hand_over(RunNumber run, std::vector<Item> items, std::optional<std::string> closing_as) {
-    bool somebody_waits = closing_as.has_value();
-    std::size_t bytes = 0;
-    for (Item& item : items) {
-        item.bytes = bytes_of(item.record);
-        bytes += item.bytes;
-        somebody_waits |= item.done != nullptr;
+void StorageThread::close(RunNumber run, Ending ending) {
+    Closing closing{.last = items_of(std::move(ending.last)), .renamed = std::move(ending.renamed)};
+    {
+        const std::lock_guard lock{mutex_};
+        closing_.emplace(run, std::move(closing));
+        urgent_ = true;
     }
-    waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
+    changed_.notify_one();
+}
+
+void StorageThread::hand_over(RunNumber run, std::vector<Item> items) {
     bool wake = false;
     {
         const std::lock_guard lock{mutex_};
-        // Somebody who waits, and the first of what is gathered.
-        urgent_ |= somebody_waits;
-        wake = urgent_ || handed_over_.empty();
-        std::vector<Item>& waiting = handed_over_[run];
-        waiting.insert(waiting.end(), std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
-        if (closing_as)
-            closing_.emplace(run, *std::move(closing_as));
+        wake = wait_in_line(run, std::move(items));
     }
     if (wake)
         changed_.notify_one();
+}
+
+bool StorageThread::wait_in_line(RunNumber run, std::vector<Item> items) {
+    urgent_ |= items.back().done != nullptr;
+    // Somebody who waits, and the first of what is gathered.
+    const bool wake = urgent_ || handed_over_.empty();
+    std::vector<Item>& waiting = handed_over_[run];
+    waiting.insert(waiting.end(), std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
+    return wake;
 }
 
 std::optional<std::string> StorageThread::trouble() const {
@@ -138,7 +163,7 @@ void StorageThread::work() {
             if (failed) {
                 changed_.wait_for(lock, retry_after_, [this] { return stopping_; });
             } else {
-                changed_.wait(lock, [this] { return stopping_ || !handed_over_.empty(); });
+                changed_.wait(lock, [this] { return stopping_ || urgent_ || !handed_over_.empty(); });
                 changed_.wait_for(lock, gathering_time, [this] { return stopping_ || urgent_; });
             }
             urgent_ = false;
@@ -150,78 +175,118 @@ void StorageThread::work() {
                 waiting.insert(waiting.end(), std::make_move_iterator(items.begin()),
                                std::make_move_iterator(items.end()));
             }
-            for (auto& [number, renamed] : std::exchange(closing_, {})) {
-                runs_[number].closing = true;
-                runs_[number].renamed = std::move(renamed);
-            }
+            for (auto& [number, closing] : std::exchange(closing_, {}))
+                runs_[number].closing = std::move(closing);
         }
         failed = false;
         for (auto& [number, run] : runs_)
             failed |= !write_out(run);
-        std::erase_if(runs_, [](const auto& item) { return item.second.closing && item.second.waiting.empty(); });
+        std::erase_if(runs_, [](const auto& item) { return item.second.closing && item.second.closing->finished; });
         if (!failed)
             set_trouble({});
     }
 }
 
+bool StorageThread::fail(Run& run, const Refusal& why) {
+    run.file.reset();
+    set_trouble(why.message);
+    return false;
+}
+
 Result<void> StorageThread::open(Run& run) {
     if (run.file)
         return {};
+    const std::string path = run.replaces ? DataFolder::next_file_of(run.path) : run.path;
     // One that was to be created may be there already, if it is not known how creating it went.
-    Result<std::unique_ptr<RunFile>> file = RunFile::open(run.path, options_);
+    Result<std::unique_ptr<RunFile>> file = RunFile::open(path, options_);
     if (run.to_create && !file)
-        file = RunFile::create(run.path, *run.to_create, options_);
+        file = RunFile::create(path, *run.to_create, options_);
     else if (run.to_create && (*file)->identity().run_id != run.to_create->run_id)
         file = Refusal{.code = base::RefusalCode::AlreadyExists,
-                       .message = run.path + " is there already, and holds another run",
+                       .message = path + " is there already, and holds another run",
                        .violations = {}};
     if (!file)
         return file.error();
     run.file = *std::move(file);
-    run.to_create.reset();
     return {};
 }
 
-bool StorageThread::write_out(Run& run) {
-    if (run.waiting.empty())
-        return true;
-    const auto fail = [&](const Refusal& why) {
-        run.file.reset();
-        set_trouble(why.message);
-        return false;
-    };
+bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
     if (auto opened = open(run); !opened)
-        return fail(opened.error());
+        return fail(run, opened.error());
     run.file->begin();
-    for (const Item& item : run.waiting)
+    for (const Item& item : items)
         std::visit([&](const auto& record) { run.file->write(record); }, item.record);
     if (auto committed = run.file->commit(); !committed)
-        return fail(committed.error());
+        return fail(run, committed.error());
+    run.to_create.reset();
+    return true;
+}
 
+void StorageThread::tell(std::vector<Item>& items) {
     std::size_t bytes = 0;
-    std::vector<Item> written = std::exchange(run.waiting, {});
-    // Not after an end mark, which counts the rows. What is written stays written if this fails.
-    bool sound = true;
-    if (!run.closing)
-        if (const auto thinned = run.file->thin_if_large(); !thinned)
-            sound = fail(thinned.error());
-    if (run.file && !run.said_large && run.file->is_large()) {
-        spdlog::warn("{} is larger than it should be: what is kept for good takes more", run.path);
-        run.said_large = true;
-    }
-    if (run.closing) {
-        run.file.reset();
-        if (!run.renamed.empty())
-            if (const auto moved = RunFile::rename(run.path, run.renamed); !moved)
-                spdlog::error("{}", moved.error().message);
-    }
-    for (const Item& item : written) {
+    for (const Item& item : std::exchange(items, {})) {
         bytes += item.bytes;
         if (item.done)
             item.done();
     }
     waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
-    return sound;
+}
+
+bool StorageThread::write_out(Run& run) {
+    const bool news = !run.waiting.empty();
+    if (news) {
+        if (!commit(run, run.waiting))
+            return false;
+        run.written.insert(run.written.end(), std::make_move_iterator(run.waiting.begin()),
+                           std::make_move_iterator(run.waiting.end()));
+        run.waiting.clear();
+    }
+    if (run.replaces && !take_place(run))
+        return false;
+    tell(run.written);
+    if (run.closing)
+        return run.closing->replaced || end(run);
+    // What is written stays written if this fails.
+    if (news && run.file)
+        if (const auto thinned = run.file->thin_if_large(); !thinned)
+            return fail(run, thinned.error());
+    if (run.file && !run.said_large && run.file->is_large()) {
+        spdlog::warn("{} is larger than it should be: what is kept for good takes more", run.path);
+        run.said_large = true;
+    }
+    return true;
+}
+
+bool StorageThread::take_place(Run& run) {
+    if (const auto old = runs_.find(*run.replaces); old != runs_.end()) {
+        old->second.closing->replaced = false;
+        if (!write_out(old->second))
+            return false;
+    }
+    run.file.reset();
+    if (const auto moved = RunFile::rename(DataFolder::next_file_of(run.path), run.path); !moved)
+        return fail(run, moved.error());
+    run.replaces.reset();
+    return true;
+}
+
+bool StorageThread::end(Run& run) {
+    Closing& closing = *run.closing;
+    if (closing.finished)
+        return true;
+    if (!closing.marked) {
+        if (!commit(run, closing.last))
+            return false;
+        closing.marked = true;
+        run.file.reset();
+    }
+    if (!closing.renamed.empty())
+        if (const auto moved = RunFile::rename(run.path, closing.renamed); !moved)
+            return fail(run, moved.error());
+    closing.finished = true;
+    tell(closing.last);
+    return true;
 }
 
 } // namespace evod::storage

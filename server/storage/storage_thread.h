@@ -4,6 +4,10 @@
 //
 // A commit is made at once for a record that somebody waits for, else for what has come together in `gathering_time`.
 //
+// Replacing    a run that takes the place of another is made as `NAME.evod-next`; when it is whole, the old one gets
+// its
+//              end mark and its other name, and the new one the name that is free then. So at every instant one of the
+//              two is the world's run; Archive::open() sees which after a crash.
 // Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
 //              anew and everything that may be missing written again, every `retry_time`, until it is there.
 // Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
@@ -42,15 +46,25 @@ class StorageThread {
     /// Writes what waits, as far as that can be done now, and ends.
     ~StorageThread();
 
-    /// A new file for a run.
-    RunNumber create(const std::string& path, RunIdentity identity);
+    /// What is written in one transaction, or not at all. done: empty if nobody waits.
+    struct Batch {
+        std::vector<Record> records;
+        Done done;
+    };
+    /// The end of what is handed over for a run: the file is closed, and renamed if `renamed` is given.
+    struct Ending {
+        Batch last; // its last record is the end mark
+        std::string renamed;
+    };
+
+    /// A new file for a run, with what is to be in it from the beginning.
+    RunNumber create(const std::string& path, RunIdentity identity, Batch first);
+    /// The same in the place of another run, which ends.
+    RunNumber replace(RunNumber old_run, Ending ending, const std::string& path, RunIdentity identity, Batch first);
     /// A file that is there and has been read.
     RunNumber adopt(std::unique_ptr<RunFile> file);
-    void write(RunNumber run, Record record, Done done = {});
-    /// All in one transaction, or none.
-    void write(RunNumber run, std::vector<Record> records);
-    /// The end mark; then the file is closed, and renamed if `renamed` is given.
-    void close(RunNumber run, const EndMark& mark, std::string renamed = {}, Done done = {});
+    void write(RunNumber run, Batch batch);
+    void close(RunNumber run, Ending ending);
 
     /// Whether everything handed over is written.
     bool idle() const { return waiting_bytes_.load(std::memory_order_acquire) == 0; }
@@ -64,19 +78,37 @@ class StorageThread {
         Done done;
         std::size_t bytes = 0;
     };
+    struct Closing {
+        std::vector<Item> last;
+        std::string renamed;
+        bool replaced = false; // not before the run that takes its place says so
+        bool marked = false, finished = false;
+    };
     struct Run {
-        std::string path, renamed;
+        std::string path;
         std::optional<RunIdentity> to_create;
-        std::unique_ptr<RunFile> file; // nullptr: to be opened, or created
+        std::optional<RunNumber> replaces; // until it has taken the other's place
+        std::unique_ptr<RunFile> file;     // nullptr: to be opened, or created
         std::vector<Item> waiting;
-        bool closing = false, said_large = false;
+        std::vector<Item> written; // not told yet
+        std::optional<Closing> closing;
+        bool said_large = false;
     };
 
+    std::vector<Item> items_of(Batch batch);
+    RunNumber add(Run run, std::vector<Item> items, std::optional<std::pair<RunNumber, Closing>> old = std::nullopt);
     /// In one go, so that the storage thread takes all of it or nothing.
-    void hand_over(RunNumber run, std::vector<Item> items, std::optional<std::string> closing_as = std::nullopt);
+    void hand_over(RunNumber run, std::vector<Item> items);
+    /// Whether the storage thread is to be woken. mutex_ is held.
+    bool wait_in_line(RunNumber run, std::vector<Item> items);
     void work();
     /// Writes what waits for a run; false if that failed.
     bool write_out(Run& run);
+    bool commit(Run& run, const std::vector<Item>& items);
+    bool take_place(Run& run);
+    bool end(Run& run);
+    void tell(std::vector<Item>& items);
+    bool fail(Run& run, const base::Refusal& why);
     base::Result<void> open(Run& run);
     void set_trouble(const std::string& why);
 
@@ -88,7 +120,7 @@ class StorageThread {
     std::condition_variable changed_;
     std::map<RunNumber, std::vector<Item>> handed_over_;
     std::map<RunNumber, Run> new_runs_;
-    std::map<RunNumber, std::string> closing_; // → renamed
+    std::map<RunNumber, Closing> closing_;
     RunNumber last_number_ = 0;
     bool urgent_ = false, stopping_ = false;
     std::string trouble_;

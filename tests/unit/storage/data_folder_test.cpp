@@ -121,5 +121,72 @@ TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
 }
 
+/// A world that was reset, as a crash can leave it.
+class Replacing : public ArchiveTest {
+  protected:
+    Replacing() : path{folder.path() + "/w.evod"}, next{DataFolder::next_file_of(path)} {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.advance(60); // the last that is told before its end mark
+        old_hash = run.world().hash();
+        run.reset({9}, {3, 4});
+        run.advance(50);
+        hash = run.world().hash();
+        ended = data->ended_file_of("w", {1, 2});
+        run.recorder().close_all(run.laboratory());
+    }
+    void expect_world(const base::StateHash& as) {
+        const auto archive = open();
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        const simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        ASSERT_EQ(laboratory.entries().size(), 1u);
+        EXPECT_EQ(laboratory.entries()[0]->world.hash(), as);
+        EXPECT_FALSE(std::filesystem::exists(next));
+    }
+    std::string path, next, ended;
+    base::StateHash old_hash;
+};
+
+TEST_F(Replacing, IsOver) {
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheNewRunHasNotItsNameYet) {
+    std::filesystem::rename(path, next);
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheOldRunHasItsEndMarkAndStillItsName) {
+    std::filesystem::rename(path, next);
+    std::filesystem::rename(ended, path);
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheOldRunGoesOnWhileItHasNoEndMark) {
+    std::filesystem::rename(path, next);
+    std::filesystem::rename(ended, path);
+    {
+        Database database{path, Database::Mode::Write};
+        database.run("DELETE FROM end_mark");
+    }
+    expect_world(old_hash);
+    EXPECT_FALSE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, ANewRunThatIsNotWholeIsForgotten) {
+    std::filesystem::remove(path);
+    std::filesystem::rename(ended, path);
+    {
+        Database database{path, Database::Mode::Write};
+        database.run("DELETE FROM end_mark");
+    }
+    std::ofstream{next} << "half a file";
+    expect_world(old_hash);
+}
+
 } // namespace
 } // namespace evod::storage

@@ -78,30 +78,56 @@ class RecordedRun {
         }
     }
 
-    /// Begins again in a file of its own, once the run has been ended.
-    bool reset(base::Seed seed, const simulation::RunId& run_id) {
-        const bool done = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id}).has_value();
-        recorder_.begin(entry());
-        return done;
+    /// Begins again in a file of its own.
+    void reset(
+        base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        const simulation::RunId before = entry().run_id;
+        const std::uint64_t tick = world().moment().tick;
+        v1::Request request;
+        request.mutable_reset_world()->set_world("w");
+        const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.begin_again(entry(), before, tick, record_of(request, *applied, std::move(done)));
     }
 
     void command(
         v1::Request request, StorageThread::Done done = [] {}) {
-        request.set_client_key("test");
-        request.set_request_id(++requests_);
-        const auto command = protocol::to_command(request, {});
+        const auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
-        recorder_.of("w")->journal(applied->tick, entry().control,
-                                   {.client = "somebody",
-                                    .client_key = "test",
-                                    .request_id = requests_,
-                                    .request = request.SerializeAsString()},
-                                   "answer " + std::to_string(requests_), std::move(done));
+        recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
+    }
+
+    void delete_world(StorageThread::Done done = [] {}) {
+        v1::Request request;
+        request.mutable_delete_world()->set_world("w");
+        const simulation::RunId run_id = entry().run_id;
+        const auto applied = laboratory_.apply(simulation::DeleteWorld{"w"});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.end("w", run_id, record_of(request, *applied, std::move(done)));
     }
 
   private:
+    v1::Request& with_key(v1::Request& request) {
+        request.set_client_key("test");
+        request.set_request_id(++requests_);
+        return request;
+    }
+    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, StorageThread::Done done) {
+        if (request.client_key().empty())
+            with_key(request);
+        const auto there = laboratory_.find("w");
+        return {.tick = applied.tick,
+                .control = there ? (*there)->control : simulation::RunControl{},
+                .origin = {.client = "somebody",
+                           .client_key = "test",
+                           .request_id = requests_,
+                           .request = request.SerializeAsString()},
+                .answer = "answer " + std::to_string(requests_),
+                .done = std::move(done)};
+    }
+
     base::InlineExecutor executor_;
     simulation::Laboratory laboratory_;
     Recorder recorder_;

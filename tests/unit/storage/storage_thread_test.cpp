@@ -41,7 +41,7 @@ TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
     {
         RecordedRun run{data, thread, {1}};
         run.advance(70);
-        run.recorder().end("w", {1, 2}, 70);
+        run.delete_world();
     }
     std::promise<void> told;
     RecordedRun next{data, thread, {2}};
@@ -51,9 +51,35 @@ TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
     ASSERT_TRUE(ended) << to_text(ended.error());
     EXPECT_TRUE((*ended)->end_mark()->value().ended);
     EXPECT_EQ((*ended)->end_mark()->value().tick, 70u);
+    EXPECT_EQ((*ended)->journal()->size(), 1u);
     const auto present = RunFile::open_read_only(data.file_of("w"));
     ASSERT_TRUE(present);
     EXPECT_EQ((*present)->identity().seed.value, 2u);
+}
+
+TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    std::promise<void> told;
+    for (std::uint64_t number = 1; number <= 5; ++number) {
+        run.advance(10 * number);
+        run.reset({number}, {0, number}, [&, number] {
+            if (number == 5)
+                told.set_value();
+        });
+    }
+    told.get_future().wait();
+    const auto files = data.files();
+    EXPECT_TRUE(files->replaced.empty());
+    EXPECT_EQ(files->ended.size(), 5u);
+    for (std::uint64_t number = 0; number < 5; ++number) {
+        const simulation::RunId run_id = number == 0 ? simulation::RunId{1, 2} : simulation::RunId{0, number};
+        const auto ended = RunFile::open_read_only(data.ended_file_of("w", run_id));
+        ASSERT_TRUE(ended) << to_text(ended.error());
+        EXPECT_EQ((*ended)->end_mark()->value().tick, 10 * (number + 1));
+        EXPECT_TRUE((*ended)->check());
+    }
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->identity().seed.value, 5u);
 }
 
 /// Runs of some commits; in each another operation of the disk fails, until there is none left to fail.
@@ -65,7 +91,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
         ASSERT_LT(++operation, 10'000u);
         folder.clear();
         fail_operation(operation, GetParam());
-        base::StateHash hash;
+        base::StateHash ended_hash, hash;
         std::atomic<int> told = 0;
         {
             StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk()}, 1ms};
@@ -78,23 +104,36 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                 });
                 ASSERT_EQ(durable.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
                 run.advance(70);
+                ended_hash = run.world().hash();
             }
+            std::promise<void> begun_again;
+            run.reset({9}, {3, 4}, [&] {
+                ++told;
+                begun_again.set_value();
+            });
+            ASSERT_EQ(begun_again.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
+            run.advance(70);
             run.recorder().close_all(run.laboratory());
             hash = run.world().hash();
             // The end is waited for too: a thread that stops gives up what cannot be written.
             while (!thread.idle())
                 std::this_thread::yield();
         }
-        EXPECT_EQ(told, 4);
-        const auto file = RunFile::open_read_only(data.file_of("w"));
-        ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
-        const auto checked = (*file)->check();
-        ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
-        EXPECT_EQ((*file)->journal()->size(), 4u);
-        const auto recovered = recover(**file, executor);
-        ASSERT_TRUE(recovered) << to_text(recovered.error());
-        EXPECT_EQ(recovered->world.moment().tick, 280u);
-        EXPECT_EQ(recovered->world.hash(), hash);
+        EXPECT_EQ(told, 5);
+        const auto expect_whole = [&](const std::string& path, std::size_t commands, std::uint64_t tick,
+                                      const base::StateHash& last) {
+            const auto file = RunFile::open_read_only(path);
+            ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
+            const auto checked = (*file)->check();
+            ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
+            EXPECT_EQ((*file)->journal()->size(), commands);
+            const auto recovered = recover(**file, executor);
+            ASSERT_TRUE(recovered) << to_text(recovered.error());
+            EXPECT_EQ(recovered->world.moment().tick, tick);
+            EXPECT_EQ(recovered->world.hash(), last);
+        };
+        expect_whole(data.ended_file_of("w", {1, 2}), 4, 280, ended_hash);
+        expect_whole(data.file_of("w"), 1, 70, hash);
     } while (has_failed());
     EXPECT_GT(operation, 10u);
     fail_operation(0, GetParam());
