@@ -55,6 +55,27 @@ std::optional<std::string> state_folder() {
     return std::nullopt;
 }
 
+/// Serves until it is told to end.
+int serve(network::ServerOptions options) {
+    const std::string folder = options.data_folder, first_world = options.first_world.name;
+    const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
+    const auto server = network::Server::open(std::move(options));
+    if (!server)
+        return fail(to_text(server.error()));
+    if (!folder.empty())
+        spdlog::info("runs are kept in {}", folder);
+    const auto endpoint = (*server)->endpoint();
+    if (!endpoint.address().is_loopback())
+        spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
+                     endpoint.address().to_string());
+    const auto seed = (*server)->first_seed();
+    spdlog::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
+                 seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
+    (*server)->run();
+    spdlog::info("stopped");
+    return 0;
+}
+
 /// "max" or a factor of real time; nullopt: neither.
 std::optional<simulation::Speed> parse_speed(const std::string& text) {
     if (text == "max")
@@ -95,7 +116,6 @@ int serve(const ServeOptions& options) {
                         "give --keep-nothing");
         data_folder = *folder;
     }
-    const std::string name = create.name;
     network::ServerOptions server_options{.bind_address = options.bind_address,
                                           .port = options.port,
                                           .threads = options.threads,
@@ -105,6 +125,7 @@ int serve(const ServeOptions& options) {
                                                                           : storage::Durability::Full,
                                                         .vfs = nullptr,
                                                         .file_bytes_max = options.file_bytes_max},
+                                          .replay = {},
                                           .first_world = std::move(create),
                                           .first_world_asked = !options.experiment_file.empty() || options.seed,
                                           .first_seed_asked = options.seed.has_value(),
@@ -113,21 +134,18 @@ int serve(const ServeOptions& options) {
     if (!options.speed.empty())
         server_options.first_speed = *parse_speed(options.speed);
 
-    const auto server = network::Server::open(std::move(server_options));
-    if (!server)
-        return fail(server.error().message);
-    if (!data_folder.empty())
-        spdlog::info("runs are kept in {}", data_folder);
-    const auto endpoint = (*server)->endpoint();
-    if (!endpoint.address().is_loopback())
-        spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
-                     endpoint.address().to_string());
-    const auto seed = (*server)->first_seed();
-    spdlog::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
-                 seed ? ", world \"" + name + "\", seed " + std::to_string(seed->value) : std::string{});
-    (*server)->run();
-    spdlog::info("stopped");
-    return 0;
+    return serve(std::move(server_options));
+}
+
+int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
+    return serve({.bind_address = options.bind_address,
+                  .port = options.port,
+                  .threads = options.threads,
+                  .data_folder = {},
+                  .run_files = {},
+                  .replay = std::move(run),
+                  .first_world = {},
+                  .first_speed = {}});
 }
 
 } // namespace
@@ -200,6 +218,20 @@ int main(int argument_count, char** arguments) {
     fork.footer(
         "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
 
+    network::ServerOptions::Replay replay_options;
+    CLI::App& replay_run =
+        *app.add_subcommand("replay", "Serve a run file: its past can be watched, and nothing changed");
+    replay_run.add_option("run", replay_options.path, "Run file, NAME.evod; the run need not be over")->required();
+    replay_run.add_option("--generation", replay_options.generation, "Begins there; otherwise with the first")
+        ->check(whole_number);
+    replay_run.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
+        ->capture_default_str();
+    replay_run.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
+    replay_run.add_option("--threads", options.threads, "Threads that simulate")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    replay_run.footer("Watch it with evoview, go elsewhere in it with evoctl seek, run and pause it as any world.");
+
     console::VerifyOptions verify_options;
     verify_options.threads = options.threads;
     CLI::App& verify = *app.add_subcommand("verify", "Simulate the run of a run file again and compare everything");
@@ -254,5 +286,5 @@ int main(int argument_count, char** arguments) {
 
     spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
     spdlog::flush_on(spdlog::level::info);
-    return serve(options);
+    return replay_run.parsed() ? replay(options, replay_options) : serve(options);
 }

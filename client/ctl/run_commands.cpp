@@ -1,4 +1,4 @@
-// What changes a world's course: create, delete, reset, start, run, pause, resume, step, until, speed.
+// What changes a world's course: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
 #include "client/ctl/text.h"
@@ -103,6 +103,44 @@ void reset(const Common& common, std::optional<std::uint64_t> seed) {
         return "reset " + response.world().name() + ": seed " + std::to_string(response.world().seed()) +
                ", generation 1, " + state_of(response.world()) + "\n";
     });
+}
+
+struct ForkOptions {
+    std::string name;
+    std::optional<std::uint64_t> at_generation;
+};
+
+void fork(const Common& common, const ForkOptions& options) {
+    Caller caller{common};
+    v1::Request request;
+    auto& command = *request.mutable_fork_world();
+    command.set_world(common.world);
+    command.set_name(options.name);
+    if (options.at_generation) {
+        command.set_at_generation(*options.at_generation);
+    }
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response,
+          [&] { return "forked " + response.world().name() + ": " + sentence(response.world()) + "\n"; });
+}
+
+struct SeekOptions {
+    std::optional<std::uint64_t> generation, tick;
+};
+
+void seek(const Common& common, const SeekOptions& options) {
+    Caller caller{common};
+    v1::Request request;
+    auto& command = *request.mutable_seek();
+    command.set_world(common.world);
+    command.mutable_to(); // the last moment, if nothing is said
+    if (options.generation) {
+        command.mutable_to()->set_generation(*options.generation);
+    }
+    if (options.tick) {
+        command.mutable_to()->set_tick(*options.tick);
+    }
+    print_world(common, caller.call(std::move(request)));
 }
 
 // ---- running ---------------------------------------------------------------------------------------------------
@@ -286,6 +324,26 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
     delete_command->add_option("NAME", *name, "The world")->required();
     delete_command->callback([&, name] { selected = [&, name] { remove(common, *name); }; });
 
+    auto* fork_command =
+        app.add_subcommand("fork", "Make a second world from a generation of one, or from where it is; it waits")
+            ->group(group);
+    auto fork_options = std::make_shared<ForkOptions>();
+    fork_command->add_option("NAME", fork_options->name, "Of the new world")->required();
+    fork_command
+        ->add_option("--at-generation", fork_options->at_generation, "Begins with its first tick; without it, from now")
+        ->check(whole_number);
+    fork_command->footer("Example, a paired experiment with the same chance:\n  evoctl fork calm --at-generation 20\n"
+                         "  evoctl --world calm set mutation_chance=0.01");
+    fork_command->callback([&, fork_options] { selected = [&, fork_options] { fork(common, *fork_options); }; });
+    auto* seek_command =
+        app.add_subcommand("seek", "Take a world that shows the past (evod replay) to another moment; else its last")
+            ->group(group);
+    auto seek_options = std::make_shared<SeekOptions>();
+    seek_command->add_option("--generation", seek_options->generation, "Its first moment, or its tick --tick")
+        ->check(whole_number);
+    seek_command->add_option("--tick", seek_options->tick, "Of the generation; without one, of the run")
+        ->check(whole_number);
+    seek_command->callback([&, seek_options] { selected = [&, seek_options] { seek(common, *seek_options); }; });
     auto* reset_command =
         app.add_subcommand("reset", "Begin again at generation 1, with the parameters last set")->group(group);
     auto seed = std::make_shared<std::optional<std::uint64_t>>();

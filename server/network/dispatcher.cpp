@@ -74,6 +74,29 @@ v1::Response response_to(const v1::Request& request, const simulation::Laborator
     return response;
 }
 
+storage::WantedMoment wanted(const v1::RunMoment& moment) {
+    storage::WantedMoment to;
+    if (moment.has_generation())
+        to.generation = moment.generation();
+    if (moment.has_tick())
+        to.tick = moment.tick();
+    return to;
+}
+
+/// request  of RequestKind::Past.
+runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::PastReply reply) {
+    if (request.has_open_past())
+        return {runtime::OpenPast{.world = protocol::lookup_name(request.open_past().world()),
+                                  .at = wanted(request.open_past().at()),
+                                  .owner = owner},
+                std::move(reply)};
+    if (request.has_seek())
+        return {
+            runtime::Seek{.world = protocol::lookup_name(request.seek().world()), .to = wanted(request.seek().to())},
+            std::move(reply)};
+    return {runtime::ClosePast{protocol::lookup_name(request.close_past().world())}, std::move(reply)};
+}
+
 /// Puts a refusal in the place of an answer.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
@@ -111,6 +134,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         return query(session, std::move(request));
     case protocol::RequestKind::Subscription:
         return subscription(session, request);
+    case protocol::RequestKind::Past:
+        return past(session, request);
     case protocol::RequestKind::Unknown:
         break;
     }
@@ -313,6 +338,31 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 return refuse(response, too_many);
             response.mutable_subscription()->set_subscription_id(streams_.subscribe(subscriber, std::move(*wanted)));
         });
+}
+
+void Dispatcher::past(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    if (auto faults = protocol::faults_of(request); !faults.empty())
+        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+    auto reply = [this, id, name = name_of(request), shows = !request.has_close_past(),
+                  weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
+                                                   const base::Result<std::string>& world) {
+        v1::Response response = response_to(id);
+        if (!world)
+            refuse(response, with_paths(world.error(), name));
+        else if (const auto entry = laboratory.find(*world); entry && shows)
+            *response.mutable_world() = protocol::to_proto(**entry);
+        outbox_.answer([weak, response = std::move(response)]() mutable {
+            if (const auto asking = weak.lock())
+                asking->answer(encode_response(std::move(response)));
+        });
+    };
+    if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply))))
+        session.answer(encode_response(protocol::refusing(id, busy())));
+}
+
+void Dispatcher::forget(const Session& session) {
+    mailbox_.push(runtime::PastMail{runtime::OwnerGone{session.number()}, {}});
 }
 
 } // namespace evod::network

@@ -24,6 +24,9 @@ class Dispatcher {
     /// Answers that were given before this server started.
     void restore(const std::vector<storage::JournalEntry>& answers);
 
+    /// A session has ended: what it looked at is let go of.
+    void forget(const Session& session);
+
     /// From now on every request is refused: the server is going away.
     void refuse_all() { going_away_ = true; }
 
@@ -31,6 +34,7 @@ class Dispatcher {
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
     void subscription(Session& session, const v1::Request& request);
+    void past(Session& session, const v1::Request& request);
 
     /// Asks the simulation; `answer` runs there and fills in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;

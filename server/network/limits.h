@@ -6,6 +6,7 @@
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
 #include "server/runtime/mailbox.h"
+#include "server/runtime/time_travel.h"
 #include "server/simulation/world.h"
 #include "server/simulation/world_name.h"
 
@@ -53,6 +54,7 @@ inline v1::Limits limits_message() {
     limits.set_client_key_bytes_max(protocol::client_key_bytes_max);
     limits.set_client_keys_max(client_keys_max);
     limits.set_hello_timeout_s(static_cast<std::uint32_t>(hello_timeout.count()));
+    limits.set_pasts_max(runtime::TimeTravel::pasts_max);
     return limits;
 }
 

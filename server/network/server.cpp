@@ -20,8 +20,15 @@ namespace evod::network {
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
-    if (auto opened = server->open_archive(); !opened)
+    if (server->options_.replay) {
+        auto replay = runtime::TimeTravel::replay_of(server->options_.replay->path, server->options_.replay->generation,
+                                                     *server->executor_);
+        if (!replay)
+            return replay.error();
+        server->replay_ = *std::move(replay);
+    } else if (auto opened = server->open_archive(); !opened) {
         return opened.error();
+    }
     auto listener = Listener::open(server->context_, server->options_.bind_address, server->options_.port);
     if (!listener)
         return listener.error();
@@ -44,6 +51,7 @@ Server::Server(ServerOptions options)
     host_.ended = [this](Session& session) {
         --connections_;
         const bool watched = !session.snapshots.empty() || !session.events.empty();
+        dispatcher_.forget(session);
         sessions_.erase(session.number());
         if (watched)
             streams_.update_demand();
@@ -82,6 +90,8 @@ base::Result<void> Server::open_archive() {
 }
 
 bool Server::creates_first_world() const {
+    if (options_.replay)
+        return false;
     if (!archive_)
         return true;
     return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->holds_worlds();
@@ -90,6 +100,8 @@ bool Server::creates_first_world() const {
 std::optional<base::Seed> Server::first_seed() const {
     if (creates_first_world())
         return options_.first_world.seed;
+    if (!archive_)
+        return std::nullopt;
     const storage::RunIdentity* there = archive_->identity_of(options_.first_world.name);
     return there ? std::optional{there->seed} : std::nullopt;
 }
@@ -165,7 +177,7 @@ void Server::run() {
                         });
                 },
             .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }},
-        std::move(worlds), archive_ ? &archive_->recorder() : nullptr);
+        std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
     signals_.async_wait([this](boost::system::error_code error, int signal) {
         if (error)

@@ -24,6 +24,11 @@ struct ServerOptions {
     std::size_t threads = 1;                 // of the worker pool
     std::string data_folder;                 // where runs are kept; empty: nowhere
     storage::RunFile::Options run_files;
+    struct Replay {
+        std::string path;
+        std::optional<std::uint64_t> generation; // nullopt: the first
+    };
+    std::optional<Replay> replay; // instead of worlds that live, and of the data folder, the run of a file
 
     simulation::CreateWorld first_world; // made if there is none of its name
     bool first_world_asked = false;      // otherwise it is made only if there is no world at all
@@ -68,7 +73,8 @@ class Server {
     std::optional<Listener> listener_;
 
     std::unique_ptr<base::Executor> executor_;
-    std::unique_ptr<storage::Archive> archive_; // nullptr: nothing is kept
+    std::unique_ptr<storage::Archive> archive_;         // nullptr: nothing is kept
+    std::optional<runtime::TimeTravel::Replay> replay_; // until the simulation has it
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;
     runtime::Demand demand_;

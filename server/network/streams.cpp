@@ -2,6 +2,7 @@
 
 #include "proto/wire/snapshot_codec.h"
 #include "server/protocol/worlds.h"
+#include "server/simulation/world_name.h"
 
 #include <algorithm>
 #include <bit>
@@ -157,8 +158,10 @@ void Streams::tell(v1::Event event) {
     const std::string world = event.world();
     SharedBytes frame;
     for (const auto& [number, session] : sessions_) {
+        // "All worlds" are those that live: a look at the past is of interest to whoever names it.
         const bool wanted = std::any_of(session->events.begin(), session->events.end(), [&](const auto& item) {
-            return !item.second.world || world.empty() || *item.second.world == world;
+            return item.second.world ? world.empty() || *item.second.world == world
+                                     : simulation::is_world_name(world) || world.empty();
         });
         if (!wanted)
             continue;

@@ -121,6 +121,20 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
     return command;
 }
 
+simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws, Violations& violations) {
+    if (!simulation::is_world_name(request.name()))
+        violations.push_back(
+            {"fork_world.name", std::string{simulation::world_name_allowed}, '"' + request.name() + '"'});
+    simulation::ForkWorld command{
+        .world = lookup_name(request.world()), .name = request.name(), .at_generation = {}, .run_id = draws.run_id};
+    if (request.has_at_generation()) {
+        if (request.at_generation() == 0)
+            violations.push_back({"fork_world.at_generation", least_1, "0"});
+        command.at_generation = request.at_generation();
+    }
+    return command;
+}
+
 } // namespace
 
 RequestKind kind_of(const v1::Request& request) {
@@ -134,6 +148,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kResume:
     case RequestCase::kSetSpeed:
     case RequestCase::kSetParameters:
+    case RequestCase::kForkWorld:
         return RequestKind::Command;
     case RequestCase::kListWorlds:
     case RequestCase::kGetParameters:
@@ -146,6 +161,10 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kSubscribeEvents:
     case RequestCase::kUnsubscribe:
         return RequestKind::Subscription;
+    case RequestCase::kOpenPast:
+    case RequestCase::kSeek:
+    case RequestCase::kClosePast:
+        return RequestKind::Past;
     case RequestCase::REQUEST_NOT_SET:
         break;
     }
@@ -177,6 +196,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.set_speed(), draws, violations);
         case RequestCase::kSetParameters:
             return command_of(request.set_parameters(), draws, violations);
+        case RequestCase::kForkWorld:
+            return command_of(request.fork_world(), draws, violations);
         default:
             violations.push_back({"request", "a command", "something else"});
             return simulation::Pause{};
@@ -200,6 +221,10 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
         const double rate_hz = request.subscribe_snapshots().rate_hz();
         if (!(rate_hz > 0 && std::isfinite(rate_hz)))
             violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(rate_hz)});
+    } else if (request.has_seek() && !request.seek().has_to()) {
+        violations.push_back({"seek.to", "a moment of the run", "nothing"});
+    } else if (request.has_close_past() && request.close_past().world().empty()) {
+        violations.push_back({"close_past.world", "a world that was opened with open_past", "nothing"});
     }
     return violations;
 }

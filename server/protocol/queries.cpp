@@ -22,7 +22,8 @@ base::Refusal no_such(const char* what, std::string field, std::uint64_t count, 
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
     v1::WorldList list;
     for (const auto& entry : laboratory.entries())
-        *list.add_worlds() = to_proto(*entry);
+        if (!entry->is_look_back())
+            *list.add_worlds() = to_proto(*entry);
     return list;
 }
 

@@ -67,6 +67,14 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     to.set_ticks_per_s(entry.ticks_per_s);
     for (const std::string_view name : evolution::gene_names)
         to.add_gene_names(std::string{name});
+    if (entry.recording) {
+        v1::Recording& recording = *to.mutable_recording();
+        recording.set_past_of(entry.recording->past_of);
+        recording.set_first_generation(entry.recording->first_generation);
+        recording.set_last_generation(entry.recording->last_generation);
+        recording.set_first_tick(entry.recording->first_tick);
+        recording.set_last_tick(entry.recording->last_tick);
+    }
     return to;
 }
 

@@ -1,13 +1,22 @@
 #include "server/runtime/mailbox.h"
 
+#include <limits>
 #include <utility>
 
 namespace evod::runtime {
 
 bool Mailbox::try_push(Mail&& mail) {
+    return push(std::move(mail), capacity_);
+}
+
+void Mailbox::push(Mail&& mail) {
+    push(std::move(mail), std::numeric_limits<std::size_t>::max());
+}
+
+bool Mailbox::push(Mail&& mail, std::size_t capacity) {
     {
         const std::lock_guard lock{mutex_};
-        if (waiting_.size() >= capacity_)
+        if (waiting_.size() >= capacity)
             return false;
         waiting_.push_back(std::move(mail));
         pending_.store(true, std::memory_order_release);

@@ -7,7 +7,7 @@
 #include "server/base/result.h"
 #include "server/runtime/clock.h"
 #include "server/simulation/laboratory.h"
-#include "server/storage/records.h"
+#include "server/storage/past.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -45,7 +45,34 @@ struct QueryMail {
     std::function<void(const simulation::Laboratory&)> ask;
 };
 
-using Mail = std::variant<CommandMail, QueryMail>;
+// Looking at the past (time_travel.h).
+
+/// A world that shows the past of `world`.
+struct OpenPast {
+    std::string world;
+    storage::WantedMoment at; // nothing: the first moment of the run
+    std::uint64_t owner = 0;  // who asks, >= 1
+};
+/// Takes one to another moment.
+struct Seek {
+    std::string world;
+    storage::WantedMoment to;
+};
+struct ClosePast {
+    std::string world;
+};
+/// Closes all that an owner has opened.
+struct OwnerGone {
+    std::uint64_t owner = 0;
+};
+/// Called on the simulation thread with the name of the world that shows the past, once it is at that moment.
+using PastReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
+struct PastMail {
+    std::variant<OpenPast, Seek, ClosePast, OwnerGone> request;
+    PastReply reply; // none for OwnerGone
+};
+
+using Mail = std::variant<CommandMail, QueryMail, PastMail>;
 
 class Mailbox {
   public:
@@ -53,6 +80,8 @@ class Mailbox {
 
     /// false: full, and nothing was taken from `mail`.
     bool try_push(Mail&& mail);
+    /// The same however full: for what is bounded elsewhere, and must not be lost.
+    void push(Mail&& mail);
 
     /// Makes wait() return: something else than mail wants to be looked at.
     void wake();
@@ -67,6 +96,8 @@ class Mailbox {
     void wait(std::optional<Clock::time_point> until);
 
   private:
+    bool push(Mail&& mail, std::size_t capacity);
+
     const std::size_t capacity_;
     std::atomic<bool> pending_ = false;
     std::mutex mutex_; // guards what follows

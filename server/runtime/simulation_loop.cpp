@@ -1,6 +1,7 @@
 #include "server/runtime/simulation_loop.h"
 
 #include <algorithm>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -26,14 +27,19 @@ bool changes_something(const simulation::Command& command) {
 } // namespace
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                               LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder)
+                               LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder,
+                               std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
     , demand_{demand}
     , executor_{executor}
     , clock_{clock}
     , outputs_{std::move(outputs)}
     , laboratory_{std::move(laboratory)}
-    , recorder_{recorder} {}
+    , recorder_{recorder}
+    , past_{laboratory_, mailbox, executor, recorder} {
+    if (replay)
+        past_.show(*std::move(replay));
+}
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
     mind_mail();
@@ -42,35 +48,64 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     if (recorder_ && !recorder_->has_room())
         return clock_.now() + slice; // the disk does not keep up: every world waits
 
-    // Paced worlds first: they have a time to keep.
+    // Paced worlds that live first: they have a time to keep.
     std::optional<Clock::time_point> next;
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
+    const auto has_to_be_in_time = [](const simulation::Entry& entry) {
+        return entry.control.speed.has_value() && !entry.recording;
+    };
     for (const auto& entry : laboratory_.entries()) {
+        if (!has_to_be_in_time(*entry) || !entry->wants_tick())
+            continue;
         Track& track = tracks_.find(entry->name)->second;
-        if (entry->wants_tick() && entry->control.speed) {
-            const auto now = clock_.now();
-            if (track.due <= now)
-                advance_slice(*entry, track, now + slice);
-        }
-        if (entry->wants_tick() && entry->control.speed)
+        const auto now = clock_.now();
+        if (track.due <= now)
+            advance_slice(*entry, track, now + slice);
+        if (entry->wants_tick())
             at_latest(track.due);
     }
-    for (const auto& entry : laboratory_.entries()) {
-        if (!entry->wants_tick() || entry->control.speed)
-            continue;
+    const auto end_of_slice = [&, keeps = next] {
         const auto now = clock_.now();
-        advance_slice(*entry, tracks_.find(entry->name)->second, next ? std::min(*next, now + slice) : now + slice);
+        return keeps ? std::min(*keeps, now + slice) : now + slice;
+    };
+    for (const auto& entry : laboratory_.entries()) {
+        if (has_to_be_in_time(*entry) || !entry->wants_tick())
+            continue;
+        Track& track = tracks_.find(entry->name)->second;
+        if (!entry->control.speed || track.due <= clock_.now())
+            advance_slice(*entry, track, end_of_slice());
         if (entry->wants_tick())
-            at_latest(now);
+            at_latest(entry->control.speed ? track.due : clock_.now());
     }
+    if (past_.under_way()) {
+        const auto end = end_of_slice();
+        past_.travel([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
+        at_latest(clock_.now());
+    }
+    mind_arrivals();
 
     const auto now = clock_.now();
+    if (const auto again = past_.refresh(now))
+        at_latest(*again);
     for (const auto& entry : laboratory_.entries()) {
         Track& track = tracks_.find(entry->name)->second;
         measure(*entry, track, now);
         show(*entry, track, now);
     }
     return next;
+}
+
+void SimulationLoop::mind_arrivals() {
+    follow_worlds(); // there may be new ones
+    for (const std::string& name : past_.take_arrivals()) {
+        const auto entry = std::as_const(laboratory_).find(name);
+        const auto track = tracks_.find(name);
+        if (!entry || track == tracks_.end())
+            continue; // closed since
+        track->second.changed = true;
+        outputs_.events(laboratory_,
+                        {{name, (*entry)->run_id, (*entry)->world.moment().tick, simulation::GoalReached{}}});
+    }
 }
 
 void SimulationLoop::mind_mail() {
@@ -80,6 +115,8 @@ void SimulationLoop::mind_mail() {
     for (Mail& mail : mail_) {
         if (auto* command = std::get_if<CommandMail>(&mail))
             apply(*command);
+        else if (auto* past = std::get_if<PastMail>(&mail))
+            past_.apply(std::move(*past));
         else
             std::get<QueryMail>(mail).ask(laboratory_);
     }
@@ -97,15 +134,68 @@ void SimulationLoop::apply(CommandMail& mail) {
             }
         },
         mail.command);
-    std::optional<RunBefore> before;
-    std::visit(
-        [&](const auto& command) {
-            if constexpr (requires { command.world; })
-                if (const auto entry = std::as_const(laboratory_).find(command.world))
-                    before = {(*entry)->run_id, (*entry)->world.moment().tick};
+    if (std::holds_alternative<simulation::ForkWorld>(mail.command))
+        return fork(mail);
+    const auto before = run_of(mail.command);
+    answer(mail, apply(mail.command), before);
+}
+
+const simulation::Entry* SimulationLoop::entry_in(const simulation::Command& command) const {
+    return std::visit(
+        [this](const auto& c) -> const simulation::Entry* {
+            if constexpr (requires { c.world; })
+                if (const auto entry = laboratory_.find(c.world))
+                    return *entry;
+            return nullptr;
         },
-        mail.command);
-    const auto applied = apply(mail.command);
+        command);
+}
+
+std::optional<SimulationLoop::RunBefore> SimulationLoop::run_of(const simulation::Command& command) const {
+    const simulation::Entry* entry = entry_in(command);
+    return entry ? std::optional{RunBefore{entry->run_id, entry->world.moment().tick}} : std::nullopt;
+}
+
+std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Command& command) const {
+    if (!recorder_ || !changes_something(command))
+        return std::nullopt;
+    const simulation::Entry* entry = entry_in(command);
+    const bool only_a_look =
+        entry && entry->recording && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
+    return only_a_look ? std::nullopt : recorder_->refusal();
+}
+
+base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
+    if (auto refused = refusal_of(command))
+        return *refused;
+    return laboratory_.apply(command);
+}
+
+void SimulationLoop::fork(CommandMail& mail) {
+    const auto& command = std::get<simulation::ForkWorld>(mail.command);
+    const auto before = run_of(command);
+    const simulation::Entry* origin = entry_in(command);
+    auto refused = refusal_of(command);
+    if (!origin || refused || !command.at_generation)
+        return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : laboratory_.apply(command), before);
+    if (*command.at_generation == origin->world.moment().generation)
+        return answer(mail, laboratory_.fork(command, origin->world.at_its_opening(executor_)), before);
+    // Others are served meanwhile.
+    const std::uint64_t generation = *command.at_generation;
+    const auto waiting = std::make_shared<CommandMail>(std::move(mail));
+    past_.begin_journey(origin->name, generation, [this, waiting, before](base::Result<storage::Rerun> rerun) {
+        const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
+        if (rerun)
+            return answer(*waiting, laboratory_.fork(fork, std::move(*rerun).take()), before);
+        base::Refusal why = rerun.error();
+        for (base::Violation& violation : why.violations)
+            violation.field = "at_" + violation.field;
+        answer(*waiting, why, before);
+    });
+}
+
+void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
+                            const std::optional<RunBefore>& before) {
     tell_events();
     CommandAnswer answer = mail.reply(laboratory_, mail.command, applied);
     if (recorder_ && applied && changes_something(mail.command))
@@ -117,17 +207,12 @@ void SimulationLoop::apply(CommandMail& mail) {
             track->second.changed = true;
 }
 
-base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
-    if (recorder_ && changes_something(command))
-        if (auto refused = recorder_->refusal())
-            return *refused;
-    return laboratory_.apply(command);
-}
-
 void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
                             const std::optional<RunBefore>& before) {
     const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
+    if (entry && (*entry)->recording)
+        return give(answer); // how somebody looks at the past is nobody else's
     storage::CommandRecord command{.tick = applied.tick,
                                    .control = ends ? simulation::RunControl{} : (*entry)->control,
                                    .origin = std::move(mail.origin),
@@ -137,6 +222,8 @@ void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applie
         recorder_->end(applied.world, before->run_id, std::move(command));
     else if (std::holds_alternative<simulation::CreateWorld>(mail.command))
         recorder_->begin(**entry, std::move(command));
+    else if (std::holds_alternative<simulation::ForkWorld>(mail.command))
+        recorder_->begin(**entry, std::move(command), before->run_id);
     else if (std::holds_alternative<simulation::ResetWorld>(mail.command))
         recorder_->begin_again(**entry, before->run_id, before->tick, std::move(command));
     else
@@ -207,6 +294,8 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         laboratory_.advance(entry, executor_);
         if (track.recorder)
             track.recorder->follow(entry.world);
+        if (entry.recording)
+            past_.follow(entry);
         ++track.ticks;
         const bool stopped = !entry.wants_tick();
         if (stopped) {

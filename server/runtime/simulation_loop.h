@@ -1,8 +1,8 @@
 // Simulation loop: what the simulation thread does between two sleeps. Owns the laboratory and decides when a world
 // advances; what happens when it does is the laboratory's business and does not depend on this.
 //
-//   mail → paced worlds that are due → worlds at full speed, a slice each → events, pictures → sleep until the next is
-//   due
+//   mail → paced worlds that are due → worlds at full speed and those that show the past, a slice each → journeys into
+//   the past, a slice → events, pictures → sleep until the next is due
 //
 // Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
 //              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another
@@ -16,6 +16,7 @@
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/snapshot.h"
+#include "server/runtime/time_travel.h"
 #include "server/simulation/laboratory.h"
 #include "server/storage/recorder.h"
 
@@ -41,8 +42,10 @@ class SimulationLoop {
     ///
     /// laboratory  with the worlds that are there from the beginning.
     /// recorder    what is done is written down there, and commands are answered once they are; nullptr: nothing is.
+    /// replay      a world that shows the run of a file.
     SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-                   simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr);
+                   simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr,
+                   std::optional<TimeTravel::Replay> replay = {});
 
     /// Minds the mail and advances what is due, for about a slice per world. Returns when it wants to be called again
     /// if nothing comes; nullopt: not until then.
@@ -75,15 +78,23 @@ class SimulationLoop {
     };
 
     void apply(CommandMail& mail);
+    void fork(CommandMail& mail);
     base::Result<simulation::Applied> apply(const simulation::Command& command);
     /// The run of a command's world before the command.
     struct RunBefore {
         simulation::RunId run_id;
         std::uint64_t tick;
     };
+    std::optional<RunBefore> run_of(const simulation::Command& command) const;
+    const simulation::Entry* entry_in(const simulation::Command& command) const;
+    /// Why a command cannot be taken now, whatever it is.
+    std::optional<base::Refusal> refusal_of(const simulation::Command& command) const;
+    void answer(CommandMail& mail, const base::Result<simulation::Applied>& applied,
+                const std::optional<RunBefore>& before);
     /// Writes down a command that was applied.
     void record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
                 const std::optional<RunBefore>& before);
+    void mind_arrivals();
     void mind_demand();
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
@@ -100,6 +111,7 @@ class SimulationLoop {
     const LoopOutputs outputs_;
     simulation::Laboratory laboratory_;
     storage::Recorder* recorder_;
+    TimeTravel past_;
     std::map<std::string, Track, std::less<>> tracks_;
     Watches watches_;
     SnapshotPool pool_;

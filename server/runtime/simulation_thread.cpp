@@ -7,9 +7,10 @@
 namespace evod::runtime {
 
 SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                                   LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder)
+                                   LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder,
+                                   std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
-    , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder}
+    , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
     , thread_{[this] {
         pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
         while (!stopping_.load(std::memory_order_acquire)) {

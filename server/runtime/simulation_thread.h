@@ -12,7 +12,8 @@ class SimulationThread {
   public:
     /// Starts. Everything handed in outlives the thread.
     SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-                     simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr);
+                     simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr,
+                     std::optional<TimeTravel::Replay> replay = {});
     ~SimulationThread() { stop(); }
 
     /// Minds the mail that waits and ends; returns when it has.

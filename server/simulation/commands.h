@@ -65,7 +65,16 @@ struct SetParameters {
     std::optional<std::uint64_t> expected_revision;
 };
 
-using Command =
-    std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, Pause, Resume, SetSpeed, SetParameters>;
+struct ForkWorld {
+    std::string world; // the origin
+    std::string name;  // of the new world; as CreateWorld
+    // From its first moment; nullopt: from where the origin is. One that is over is not known any more to a laboratory,
+    // only to a run file.
+    std::optional<std::uint64_t> at_generation;
+    RunId run_id;
+};
+
+using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, Pause, Resume, SetSpeed,
+                             SetParameters, ForkWorld>;
 
 } // namespace evod::simulation

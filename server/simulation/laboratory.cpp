@@ -1,6 +1,8 @@
 #include "server/simulation/laboratory.h"
 
 #include <algorithm>
+#include <functional>
+#include <type_traits>
 #include <utility>
 
 namespace evod::simulation {
@@ -43,6 +45,17 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
                                                         ": change that parameter to go on, or reset the world");
 }
 
+/// What happened in the past happens again; only how it is looked at can be changed.
+template <class C>
+std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
+    constexpr bool changes_what_happens =
+        std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> || std::is_same_v<C, SetParameters>;
+    if (!changes_what_happens || !entry.recording)
+        return std::nullopt;
+    return refusal(RefusalCode::FailedPrecondition,
+                   "this world shows what has been, and that cannot be changed: fork it");
+}
+
 Applied applied_now(const Entry& entry) {
     return {.world = entry.name, .tick = entry.world.moment().tick, .parameters = {}};
 }
@@ -68,7 +81,7 @@ bool mind_goals(RunControl& control, const World& world) {
 }
 
 bool Entry::wants_tick() const {
-    if (world.outcome() != evolution::Outcome::Running)
+    if (world.outcome() != evolution::Outcome::Running || (recording && world.moment().tick >= recording->last_tick))
         return false;
     if (control.until_tick)
         return world.moment().tick < *control.until_tick;
@@ -100,8 +113,9 @@ Result<Entry*> Laboratory::find(std::string_view name) {
     const auto named = [&](std::string_view wanted) {
         return std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == wanted; });
     };
-    if (name.empty() && entries_.size() == 1)
-        return entries_.front().get();
+    const auto looks_back = [](const auto& entry) { return entry->is_look_back(); };
+    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(looks_back)) == 1)
+        return std::ranges::find_if_not(entries_, looks_back)->get();
     const auto found = named(name.empty() ? "default" : name);
     if (found != entries_.end())
         return found->get();
@@ -111,8 +125,9 @@ Result<Entry*> Laboratory::find(std::string_view name) {
 Refusal Laboratory::not_found(std::string_view name) const {
     std::string names;
     for (const auto& entry : entries_)
-        names += (names.empty() ? "" : ", ") + entry->name;
-    if (entries_.empty())
+        if (!entry->is_look_back())
+            names += (names.empty() ? "" : ", ") + entry->name;
+    if (names.empty())
         return refusal(RefusalCode::NotFound, "there is no world: create one");
     if (name.empty())
         return refusal(RefusalCode::NotFound, "say which world: there are " + names);
@@ -137,21 +152,32 @@ Result<Applied> Laboratory::apply(const Command& command) {
                 const Result<Entry*> found = find(c.world);
                 if (!found)
                     return found.error();
+                if (auto refused = refusal_if_recorded(**found, c))
+                    return *refused;
                 return carry_out(**found, c);
             }
         },
         command);
 }
 
-Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
-    for (const auto& entry : entries_)
-        if (entry->name == command.name)
+std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
+    std::size_t worlds = 0;
+    for (const auto& entry : entries_) {
+        if (entry->name == name)
             return Refusal{.code = RefusalCode::AlreadyExists,
                            .message = "there is a world of that name already",
-                           .violations = {{"name", "a name that is free", command.name}}};
-    if (entries_.size() >= worlds_max)
+                           .violations = {{"name", "a name that is free", name}}};
+        worlds += !entry->is_look_back();
+    }
+    if (worlds >= worlds_max)
         return refusal(RefusalCode::ResourceExhausted,
                        "there are " + std::to_string(worlds_max) + " worlds already: delete one first");
+    return std::nullopt;
+}
+
+Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
+    if (auto refused = refusal_of(command.name))
+        return *refused;
     entries_.push_back(std::make_unique<Entry>(
         Entry{command.name, command.run_id, RunControl{}, World{command.parameters, command.seed}}));
     return Applied{.world = command.name, .tick = 0, .parameters = {}};
@@ -162,6 +188,8 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
         std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == command.world; });
     if (found == entries_.end())
         return not_found(command.world);
+    if (auto refused = refusal_if_recorded(**found, command))
+        return *refused;
     const Applied applied{.world = command.world, .tick = (*found)->world.moment().tick, .parameters = {}};
     entries_.erase(found);
     return applied;
@@ -246,6 +274,22 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     if (!command.dry_run)
         world.request_parameters(*requested);
     return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
+    if (command.at_generation)
+        return refusal(RefusalCode::FailedPrecondition,
+                       "how a generation began is known to the file of a run only, and there is none");
+    return fork(command, entry.world);
+}
+
+Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
+    if (auto refused = refusal_of(command.name))
+        return *refused;
+    (void)world.take_events(); // were told of its origin
+    const std::uint64_t tick = world.moment().tick;
+    entries_.push_back(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
+    return Applied{.world = command.name, .tick = tick, .parameters = {}};
 }
 
 } // namespace evod::simulation

@@ -35,6 +35,13 @@ struct RunControl {
 /// Takes goals away that the world has reached; one reached by ticks pauses it. Whether there was one.
 bool mind_goals(RunControl& control, const World& world);
 
+/// What there is to be seen in a world that shows what a run file tells.
+struct Recording {
+    std::string past_of; // the world that is looked back at; empty: the run of the file has no other world here
+    std::uint64_t first_generation = 1, last_generation = 1;
+    std::uint64_t first_tick = 0, last_tick = 0;
+};
+
 /// A world in its laboratory.
 struct Entry {
     std::string name;
@@ -42,6 +49,10 @@ struct Entry {
     RunControl control;
     World world;
     double ticks_per_s = 0; // measured by whoever drives the laboratory; no part of the state
+    std::optional<Recording> recording = std::nullopt; // nothing: the world lives. What happens in others is past
+
+    /// Whether it shows the past of another: such worlds are there for those who ask for them by name.
+    bool is_look_back() const { return recording && !recording->past_of.empty(); }
 
     RunState state() const;
     /// Whether a tick is due as far as goals and pause are concerned.
@@ -62,6 +73,12 @@ class Laboratory {
 
     /// Takes in a world that comes from elsewhere; its name is free.
     void adopt(std::unique_ptr<Entry> entry) { entries_.push_back(std::move(entry)); }
+    /// Lets go of one that was taken in.
+    void dismiss(std::string_view name) {
+        std::erase_if(entries_, [&](const auto& entry) { return entry->name == name; });
+    }
+    /// Takes in a world that a fork begins with. Refused as CreateWorld is.
+    base::Result<Applied> fork(const ForkWorld& command, World world);
 
     /// Advances a world that wants a tick by one, and minds its goals.
     void advance(Entry& entry, base::Executor& executor);
@@ -87,6 +104,9 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const Resume&);
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
+    base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
+    /// Why there can be no new world of that name; nothing if there can.
+    std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;
     void collect_events(Entry& entry);
 

@@ -25,6 +25,16 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     begin_generation(std::move(born), executor);
 }
 
+World World::at_its_opening(base::Executor& executor) const {
+    std::vector<evolution::NextGeneration> born;
+    for (const Island& island : islands_)
+        born.push_back(island.born());
+    History before = history_;
+    while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
+        before.pop_back();
+    return World{seed_, opening_, std::move(born), std::move(before), executor};
+}
+
 void World::reset(base::Seed seed) {
     seed_ = seed;
     parameters_.active = parameters_.requested;

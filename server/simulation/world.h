@@ -55,6 +55,9 @@ class World {
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor);
 
+    /// Another world, as this one was at the first moment of its generation.
+    World at_its_opening(base::Executor& executor) const;
+
     /// Begins the run again with the parameters last asked for.
     void reset(base::Seed seed);
 

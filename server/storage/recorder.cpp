@@ -16,7 +16,9 @@ RunIdentity identity_of(const simulation::Entry& entry) {
             .run_id = entry.run_id,
             .seed = entry.world.seed(),
             .parameters = entry.world.parameters().requested,
-            .began_unix_ms = now.count()};
+            .began_unix_ms = now.count(),
+            .first_generation = entry.world.moment().generation,
+            .forked_from = {}};
 }
 
 } // namespace
@@ -101,10 +103,13 @@ void Recorder::add(const std::string& world, RunRecorder run) {
     EVOD_ASSERT(added);
 }
 
-void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
+void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command,
+                     const std::optional<simulation::RunId>& forked_from) {
     RunRecorder run{thread_};
+    RunIdentity identity = identity_of(entry);
+    identity.forked_from = forked_from;
     run.number_ =
-        thread_.create(folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+        thread_.create(folder_.file_of(entry.name), std::move(identity), run.first(entry.world, std::move(command)));
     add(entry.name, std::move(run));
 }
 

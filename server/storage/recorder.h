@@ -37,6 +37,8 @@ class RunRecorder {
             hand_over(world);
     }
     void journal(CommandRecord command);
+    /// done: called as StorageThread does, once everything that was handed over is on the disk.
+    void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
 
   private:
     friend class Recorder;
@@ -70,8 +72,14 @@ class Recorder {
     /// Of a world that has a file; nullptr for another.
     RunRecorder* of(const std::string& world);
 
-    /// A world that has just begun its run, by this command.
-    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {});
+    /// Where the file of a world's run is, or will be once the run is over.
+    std::vector<std::string> paths_of(const std::string& world, const simulation::RunId& run_id) const {
+        return {folder_.file_of(world), folder_.ended_file_of(world, run_id)};
+    }
+
+    /// A world that has just begun its run, by this command. forked_from: the run that it was taken from.
+    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {},
+               const std::optional<simulation::RunId>& forked_from = {});
     /// The same for a world that begins again: the run it had is over, after `tick`, and its file gets the name of one
     /// that has ended.
     void begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,

@@ -45,6 +45,17 @@ Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file, std:
 }
 
 Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor& executor) {
+    auto rerun = held_before(file, generation, simulation::World::history_generations_kept, executor);
+    while (rerun && rerun->world().moment().generation < generation)
+        if (rerun->world().generation_over())
+            rerun->turn_over(executor);
+        else
+            rerun->advance_tick(executor);
+    return rerun;
+}
+
+Result<Rerun> Rerun::held_before(RunFile& file, std::uint64_t generation, std::size_t history_count,
+                                 base::Executor& executor) {
     if (auto refused = file.other_model())
         return *refused;
     const auto journal = file.journal();
@@ -64,18 +75,10 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
                        .violations = {}};
     if (!*begun)
         return with_changes(file, simulation::World{file.identity().parameters, file.identity().seed}, *changes);
-    auto history = file.history(simulation::World::history_generations_kept);
+    auto history = file.history(held, history_count);
     if (!history)
         return history.error();
-    while (!history->empty() && history->back().front().generation >= held)
-        history->pop_back();
-    auto rerun = from(file, **begun, *changes, *std::move(history), executor);
-    while (rerun && rerun->world().moment().generation < generation)
-        if (rerun->world().generation_over())
-            rerun->turn_over(executor);
-        else
-            rerun->advance_tick(executor);
-    return rerun;
+    return from(file, **begun, *changes, *std::move(history), executor);
 }
 
 Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, std::span<const ParameterChange> changes,
@@ -92,29 +95,36 @@ Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,
     const auto first = begun.generation == file.identity().first_generation
                            ? changes.begin()
                            : std::ranges::upper_bound(changes, begun.tick, {}, &ParameterChange::tick);
-    const simulation::Parameters& active = world.parameters().active;
-    simulation::Parameters requested = world.parameters().requested;
-    std::vector<Request> requests;
-    for (const ParameterChange& change : std::span{first, changes.end()}) {
-        // As Laboratory accepted it: whenever generations begin, what waits for a reset stays as it is.
-        const auto assigned = simulation::assign(requested, change.assignments);
-        if (!assigned || !validate(taking_effect(active, *assigned, base::Effect::NextGeneration)).empty())
-            return damaged(file, "entry " + std::to_string(change.entry) +
-                                     " of its journal asks for parameters that no world can have");
-        requested = *assigned;
-        requests.push_back({change.tick, requested});
-    }
-    return Rerun{std::move(world), std::move(requests)};
+    ComingChanges coming{world, first == changes.begin() ? 0 : std::prev(first)->entry};
+    if (auto extended = coming.extend(file, changes); !extended)
+        return extended.error();
+    return Rerun{std::move(world), std::move(coming)};
 }
 
-void Rerun::make_changes() {
-    for (; next_ < requests_.size() && requests_[next_].tick <= world_.moment().tick; ++next_)
-        world_.request_parameters(requests_[next_].parameters);
+Result<void> ComingChanges::extend(const RunFile& file, std::span<const ParameterChange> changes) {
+    for (const ParameterChange& change : changes) {
+        if (change.entry <= last_entry_)
+            continue;
+        // As Laboratory accepted it: whenever generations begin, what waits for a reset stays as it is.
+        const auto assigned = simulation::assign(requested_, change.assignments);
+        if (!assigned || !validate(taking_effect(active_, *assigned, base::Effect::NextGeneration)).empty())
+            return damaged(file, "entry " + std::to_string(change.entry) +
+                                     " of its journal asks for parameters that no world can have");
+        requested_ = *assigned;
+        last_entry_ = change.entry;
+        requests_.push_back({change.tick, requested_});
+    }
+    return {};
+}
+
+void ComingChanges::make_due(simulation::World& world) {
+    for (; next_ < requests_.size() && requests_[next_].tick <= world.moment().tick; ++next_)
+        world.request_parameters(requests_[next_].parameters);
 }
 
 void Rerun::advance_tick(base::Executor& executor) {
     world_.advance_tick(executor);
-    make_changes();
+    changes_.make_due(world_);
 }
 
 void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
@@ -123,7 +133,7 @@ void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
 }
 
 Result<Recovered> recover(RunFile& file, base::Executor& executor) {
-    const std::uint64_t last_tick = file.contents().tick;
+    const std::uint64_t last_tick = file.last_tick();
     auto rerun = Rerun::at(file, std::max(file.identity().first_generation, file.last_generation()), executor);
     if (!rerun)
         return rerun.error();

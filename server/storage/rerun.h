@@ -23,12 +23,42 @@ struct ParameterChange {
 base::Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file,
                                                              std::span<const JournalEntry> journal);
 
+/// What was asked of a world's parameters from some moment on, and when.
+class ComingChanges {
+  public:
+    /// world        at that moment.
+    /// after_entry  the journal's entries up to this one are in the world already.
+    ComingChanges(const simulation::World& world, std::uint64_t after_entry)
+        : active_{world.parameters().active}, requested_{world.parameters().requested}, last_entry_{after_entry} {}
+
+    /// Takes in those that are new. Refused if one asks for parameters that no world can have.
+    base::Result<void> extend(const RunFile& file, std::span<const ParameterChange> changes);
+    /// Makes those that came after the tick at which the world is now.
+    void make_due(simulation::World& world);
+
+  private:
+    /// What was asked for, all in all, after a change.
+    struct Request {
+        std::uint64_t tick;
+        simulation::Parameters parameters;
+    };
+    simulation::Parameters active_, requested_;
+    std::uint64_t last_entry_;
+    std::vector<Request> requests_;
+    std::size_t next_ = 0;
+};
+
 class Rerun {
   public:
     /// At the first moment of a generation that the run has begun; if its beginning is not held any more, it is
     /// simulated from the last one before it that is. Refused if the file is damaged there, follows another model, or
     /// has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
+    /// The same at the last generation up to that one whose beginning is held.
+    ///
+    /// history_count  of how many generations before it the statistics are known to the world, at most.
+    static base::Result<Rerun> held_before(RunFile& file, std::uint64_t generation, std::size_t history_count,
+                                           base::Executor& executor);
     /// The same from what has been read; of the file only its identity is looked at.
     ///
     /// begun    what can be the beginning of a generation; the run's own model is this program's.
@@ -38,6 +68,7 @@ class Rerun {
                                     base::Executor& executor);
 
     const simulation::World& world() const { return world_; }
+    const ComingChanges& changes() const { return changes_; }
     /// Ends the rerun: the world as it is.
     simulation::World take() && { return std::move(world_); }
 
@@ -49,22 +80,14 @@ class Rerun {
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
-    /// What was asked for, all in all, after a change.
-    struct Request {
-        std::uint64_t tick;
-        simulation::Parameters parameters;
-    };
-    Rerun(simulation::World world, std::vector<Request> requests)
-        : world_{std::move(world)}, requests_{std::move(requests)} {
-        make_changes();
+    Rerun(simulation::World world, ComingChanges changes) : world_{std::move(world)}, changes_{std::move(changes)} {
+        changes_.make_due(world_);
     }
     static base::Result<Rerun> with_changes(const RunFile& file, simulation::World world,
                                             std::span<const ParameterChange> changes);
-    void make_changes();
 
     simulation::World world_;
-    std::vector<Request> requests_; // in order, from next_ to come
-    std::size_t next_ = 0;
+    ComingChanges changes_;
 };
 
 /// A world as its file last tells of it.

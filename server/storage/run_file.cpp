@@ -595,13 +595,16 @@ Result<std::vector<simulation::GenerationStatistics>> RunFile::statistics_of(std
     return statistics;
 }
 
-Result<simulation::World::History> RunFile::history(std::size_t count) {
+Result<simulation::World::History> RunFile::history(std::uint64_t before, std::size_t count) {
     simulation::World::History history;
-    const auto last = static_cast<std::int64_t>(last_generation_ended());
+    const auto end = static_cast<std::int64_t>(before);
     const std::int64_t first =
-        std::max(static_cast<std::int64_t>(identity_.first_generation), last - static_cast<std::int64_t>(count) + 1);
-    RowReader numbers{
-        database_, "statistics", statistics_columns(), "generation >= ? ORDER BY generation, island", {first}};
+        std::max(static_cast<std::int64_t>(identity_.first_generation), end - static_cast<std::int64_t>(count));
+    RowReader numbers{database_,
+                      "statistics",
+                      statistics_columns(),
+                      "generation >= ? AND generation < ? ORDER BY generation, island",
+                      {first, end}};
     while (numbers.next()) {
         const simulation::GenerationStatistics statistics = read_statistics(numbers);
         const std::uint64_t expected = static_cast<std::uint64_t>(first) + history.size();
@@ -638,7 +641,12 @@ Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t 
     return links;
 }
 
-EndMark RunFile::contents() {
+std::uint64_t RunFile::generation_of(std::uint64_t tick) {
+    const std::string sql = "SELECT max(generation) FROM generation WHERE first_tick < " + std::to_string(tick);
+    return std::max(identity_.first_generation, static_cast<std::uint64_t>(database_.number(sql.c_str())));
+}
+
+std::uint64_t RunFile::last_tick() {
     std::int64_t last = 0;
     // A generation that was bred is written down once its first tick is over; the run's first is there before.
     const std::string bred =
@@ -647,9 +655,13 @@ EndMark RunFile::contents() {
          {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
           bred.c_str(), "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
         last = std::max(last, database_.number(sql));
+    return static_cast<std::uint64_t>(last);
+}
+
+EndMark RunFile::contents() {
     const auto count = [&](const char* sql) { return static_cast<std::uint64_t>(database_.number(sql)); };
     return {.ended = false,
-            .tick = static_cast<std::uint64_t>(last),
+            .tick = last_tick(),
             .journal_entries = count("SELECT count(*) FROM journal"),
             .generations = last_generation(),
             .links = count("SELECT count(*) FROM state_hash")};

@@ -69,6 +69,10 @@ class RunFile {
     std::uint64_t last_generation();
     /// After which the first generation began; 0 if its beginning is not held.
     std::uint64_t first_tick();
+    /// The last that anything in the file tells of.
+    std::uint64_t last_tick();
+    /// In which a tick of the run is; that of its last tick is its own, not the next one's.
+    std::uint64_t generation_of(std::uint64_t tick);
     /// Nothing if the generation has not begun.
     base::Result<std::optional<simulation::Opening>> opening_of(std::uint64_t generation);
     /// Nothing if the generation's beginning is not held, or not any more.
@@ -81,8 +85,8 @@ class RunFile {
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
     /// One entry per island; nothing if the generation has not ended, or its statistics are not held.
     base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
-    /// Of the newest `count` generations that have ended, oldest first.
-    base::Result<simulation::World::History> history(std::size_t count);
+    /// Of the last `count` generations before that one, oldest first.
+    base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
     /// In order of ticks, those after `after` up to `until`.
     base::Result<std::vector<HashLink>> links(std::uint64_t after, std::uint64_t until);
     /// What an end mark would say of what is there: its tick is the last that anything in the file tells of.

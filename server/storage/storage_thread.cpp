@@ -6,7 +6,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
+#include <algorithm>
 #include <utility>
 
 namespace evod::storage {
@@ -56,9 +56,12 @@ std::vector<StorageThread::Item> StorageThread::items_of(Batch batch) {
     std::vector<Item> items;
     std::size_t bytes = 0;
     for (Record& record : batch.records) {
-        items.push_back({std::move(record), {}, 0});
-        bytes += items.back().bytes = bytes_of(items.back().record);
+        const std::size_t record_bytes = bytes_of(record);
+        items.push_back({std::move(record), {}, record_bytes});
+        bytes += record_bytes;
     }
+    if (items.empty())
+        items.emplace_back();
     items.back().done = std::move(batch.done);
     waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
     return items;
@@ -212,11 +215,14 @@ Result<void> StorageThread::open(Run& run) {
 }
 
 bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
+    if (std::ranges::none_of(items, [](const Item& item) { return item.record.has_value(); }))
+        return true;
     if (auto opened = open(run); !opened)
         return fail(run, opened.error());
     run.file->begin();
     for (const Item& item : items)
-        std::visit([&](const auto& record) { run.file->write(record); }, item.record);
+        if (item.record)
+            std::visit([&](const auto& record) { run.file->write(record); }, *item.record);
     if (auto committed = run.file->commit(); !committed)
         return fail(run, committed.error());
     run.to_create.reset();

@@ -46,7 +46,8 @@ class StorageThread {
     /// Writes what waits, as far as that can be done now, and ends.
     ~StorageThread();
 
-    /// What is written in one transaction, or not at all. done: empty if nobody waits.
+    /// What is written in one transaction, or not at all. done: empty if nobody waits. One without records is done when
+    /// everything handed over before is.
     struct Batch {
         std::vector<Record> records;
         Done done;
@@ -74,7 +75,7 @@ class StorageThread {
 
   private:
     struct Item {
-        Record record;
+        std::optional<Record> record;
         Done done;
         std::size_t bytes = 0;
     };

@@ -472,7 +472,8 @@ class Requests(WithServer):
             kind = getattr(c, field.message_type.name)
             if "world" not in kind.DESCRIPTOR.fields_by_name:
                 continue
-            extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1}}
+            extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1},
+                     "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)}}
             for world in ("nowhere", "no\nwhere", "ü" * 1000):
                 request = {field.name: kind(world=world, **extra.get(field.name, {}))}
                 status = self.client.call(NOT_FOUND, **request).status
@@ -1266,7 +1267,8 @@ class Documentation(unittest.TestCase):
         for row, limit in (("sessions", limits.sessions_max), ("unanswered requests of a session", limits.requests_in_flight_max),
                            ("commands and queries waiting for the simulation", limits.mailbox_commands_max),
                            ("subscriptions of a session", limits.subscriptions_max),
-                           ("pictures a second", int(limits.snapshot_rate_hz_max)), ("worlds", limits.worlds_max)):
+                           ("pictures a second", int(limits.snapshot_rate_hz_max)), ("worlds", limits.worlds_max),
+                           ("worlds of a session that show the past", limits.pasts_max)):
             self.assertRegex(text, rf"\| {row} \| {limit:,} \|")
         self.assertIn(f"{limits.retries_kept:,} of each key, {limits.client_keys_max:,} keys", text)
         self.assertIn(f"{limits.history_generations_kept:,} of each world", text)

@@ -88,7 +88,9 @@ class Lived : public testing::Test {
 TEST_F(Lived, AWorldIsToldCompletely) {
     entry().ticks_per_s = 60;
     EXPECT_THAT(unset_in(to_proto(entry())),
-                testing::ElementsAre("outcome", "speed.max")); // it has not ended, and is paced
+                testing::ElementsAre("outcome", "recording", "speed.max")); // it has not ended, it lives, and is paced
+    entry().recording = {.past_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "speed.max"));
     EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
 }
 

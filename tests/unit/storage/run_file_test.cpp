@@ -153,7 +153,7 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     EXPECT_FALSE(*(*file)->outcome_of(2));
     EXPECT_FALSE(*(*file)->beginning_of(3));
     EXPECT_EQ((*(*file)->links(0, 60))[0].hash.high, ~std::uint64_t{0});
-    EXPECT_EQ((*(*file)->history(10)).size(), 1u);
+    EXPECT_EQ((*(*file)->history(10, 10)).size(), 1u);
     EXPECT_EQ((*file)->contents().tick, 121u); // a generation is written once its first tick is over
 }
 

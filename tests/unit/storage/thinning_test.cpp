@@ -45,7 +45,7 @@ TEST_F(ThinningTest, KeepsTheFileSmallAndTheRunWhole) {
     ASSERT_TRUE(checked) << to_text(checked.error());
     EXPECT_EQ((*file)->last_generation(), 101u);
     EXPECT_EQ((*file)->journal()->size(), 12u);
-    EXPECT_EQ((*file)->history(1000)->size(), 100u);
+    EXPECT_EQ((*file)->history(1000, 1000)->size(), 100u);
 
     std::vector<std::uint64_t> held;
     for (std::uint64_t generation = 1; generation <= 101; ++generation) {

@@ -1,0 +1,122 @@
+#include "server/storage/past.h"
+
+#include <utility>
+
+namespace evod::storage {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+simulation::Recording recording_of(RunFile& file) {
+    return {.past_of = {},
+            .first_generation = file.identity().first_generation,
+            .last_generation = std::max(file.identity().first_generation, file.last_generation()),
+            .first_tick = file.first_tick(),
+            .last_tick = file.last_tick()};
+}
+
+/// "3 to 17"
+std::string range_text(std::uint64_t first, std::uint64_t last) {
+    return std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
+}
+
+Refusal no_such(const char* field, const std::string& there_are, std::uint64_t got) {
+    return {.code = RefusalCode::NotFound,
+            .message = std::string{"the run has no such "} + field + ": there are " + there_are,
+            .violations = {{field, there_are, std::to_string(got)}}};
+}
+
+} // namespace
+
+Result<Past> Past::of_file(const std::string& path) {
+    const auto file = RunFile::open_read_only(path);
+    if (!file)
+        return file.error();
+    if (auto refused = (*file)->other_model())
+        return *refused;
+    return Past{{path}, (*file)->identity().run_id};
+}
+
+Result<std::unique_ptr<RunFile>> Past::open() const {
+    std::optional<Refusal> refused;
+    for (const std::string& path : paths_) {
+        auto file = RunFile::open_read_only(path);
+        if (file && (*file)->identity().run_id == run_id_)
+            return file;
+        if (!file && (!refused || refused->code == RefusalCode::NotFound))
+            refused = file.error();
+    }
+    return refused.value_or(Refusal{.code = RefusalCode::NotFound,
+                                    .message = paths_.front() + " is the file of another run now",
+                                    .violations = {}});
+}
+
+Result<std::string> Past::world_name() const {
+    const auto file = open();
+    if (!file)
+        return file.error();
+    return (*file)->identity().name;
+}
+
+Result<simulation::Recording> Past::recording() const {
+    const auto file = open();
+    if (!file)
+        return file.error();
+    return recording_of(**file);
+}
+
+Result<PastMoment> Past::find(const WantedMoment& wanted, const simulation::Recording& there) const {
+    const auto file = open();
+    if (!file)
+        return file.error();
+    const auto generations = range_text(there.first_generation, there.last_generation);
+    if (!wanted.generation) {
+        const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
+        if (tick < there.first_tick || tick > there.last_tick)
+            return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
+        return PastMoment{(*file)->generation_of(tick), tick};
+    }
+    const std::uint64_t generation = *wanted.generation;
+    if (generation < there.first_generation || generation > there.last_generation)
+        return no_such("generation", generations, generation);
+    const auto opening = (*file)->opening_of(generation);
+    if (!opening)
+        return opening.error();
+    const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
+    std::uint64_t last = there.last_tick;
+    if (generation < there.last_generation) {
+        const auto next = (*file)->opening_of(generation + 1);
+        if (!next)
+            return next.error();
+        last = *next ? (*next)->moment.tick : last;
+    }
+    const std::uint64_t tick = wanted.tick.value_or(0);
+    if (tick > last - first)
+        return no_such("tick", range_text(0, last - first) + " in generation " + std::to_string(generation), tick);
+    return PastMoment{generation, first + tick};
+}
+
+Result<Rerun> Past::begin_before(const PastMoment& moment, base::Executor& executor) const {
+    const auto file = open();
+    if (!file)
+        return file.error();
+    return Rerun::held_before(**file, moment.generation, history_generations_known, executor);
+}
+
+Result<void> Past::extend(ComingChanges& coming) const {
+    const auto file = open();
+    if (!file)
+        return file.error();
+    const auto journal = (*file)->journal();
+    if (!journal)
+        return journal.error();
+    const auto changes = parameter_changes(**file, *journal);
+    if (!changes)
+        return changes.error();
+    return coming.extend(**file, *changes);
+}
+
+} // namespace evod::storage

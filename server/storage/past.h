@@ -1,0 +1,64 @@
+// Past: what the file of a run tells, for those who look back: which moments there are, and from where each can be
+// simulated again.
+//
+// The file is opened for each look, and found under the name of an ended run too, so a run may go on, be reset or be
+// thinned meanwhile.
+//
+// Owner        the simulation thread.
+#pragma once
+
+#include "server/simulation/laboratory.h"
+#include "server/storage/rerun.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::storage {
+
+/// A moment as somebody asks for it. With neither: the last that is known.
+struct WantedMoment {
+    std::optional<std::uint64_t> generation;
+    std::optional<std::uint64_t> tick; // of the generation; of the run where no generation is given
+};
+
+/// A moment that there is. A generation's last tick is its end; the next one's beginning is another moment.
+struct PastMoment {
+    std::uint64_t generation = 1;
+    std::uint64_t tick = 0; // since the run began
+};
+
+class Past {
+  public:
+    /// Of how many generations before it a world of the past knows the statistics, at most.
+    static constexpr std::size_t history_generations_known = 1'000;
+
+    /// paths  where the run's file is, or may come to be.
+    Past(std::vector<std::string> paths, const simulation::RunId& run_id) : paths_{std::move(paths)}, run_id_{run_id} {}
+    /// The run of a file, whichever it is. Refused where there is none, or it cannot be simulated again.
+    static base::Result<Past> of_file(const std::string& path);
+
+    const simulation::RunId& run_id() const { return run_id_; }
+    /// The name of the world whose run it is, as the file says.
+    base::Result<std::string> world_name() const;
+
+    /// What there is to be seen now; past_of is left empty.
+    base::Result<simulation::Recording> recording() const;
+    /// Refused, saying what there is, unless that moment has been.
+    ///
+    /// there  as recording() says, or a later end if the file tells all that was asked of the world until then.
+    base::Result<PastMoment> find(const WantedMoment& wanted, const simulation::Recording& there) const;
+    /// The last moment up to that one that is known without simulating.
+    base::Result<Rerun> begin_before(const PastMoment& moment, base::Executor& executor) const;
+
+    /// Takes in what has been asked of the world's parameters since.
+    base::Result<void> extend(ComingChanges& changes) const;
+
+  private:
+    base::Result<std::unique_ptr<RunFile>> open() const;
+
+    std::vector<std::string> paths_;
+    simulation::RunId run_id_;
+};
+
+} // namespace evod::storage
