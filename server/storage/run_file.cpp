@@ -392,7 +392,32 @@ Result<std::optional<EndMark>> RunFile::end_mark() {
     return mark;
 }
 
+Result<void> RunFile::check_tree(const std::string& of) {
+    Statement integrity{database_, "PRAGMA integrity_check(" + of + ")"};
+    if (integrity.row())
+        if (const std::string verdict = integrity.text(0); verdict != "ok")
+            return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+    return {};
+}
+
+Result<void> RunFile::check_end_mark() {
+    const auto mark = end_mark();
+    if (!mark)
+        return mark.error();
+    const EndMark found = contents();
+    if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
+                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
+        return damaged("what stands before its end mark");
+    if (database_.failed())
+        return failure();
+    return {};
+}
+
 Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uint32_t count) {
+    // That the last entries are gone, no other row tells.
+    if (first == 1)
+        if (auto sound = check_tree("journal"); !sound)
+            return sound.error();
     std::vector<JournalEntry> entries;
     RowReader reader{database_,
                      "journal",
@@ -646,10 +671,8 @@ std::uint64_t RunFile::last_generation_ended() {
 }
 
 Result<void> RunFile::check() {
-    Statement integrity{database_, "PRAGMA integrity_check(1)"};
-    if (integrity.row())
-        if (const std::string verdict = integrity.text(0); verdict != "ok")
-            return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+    if (auto sound = check_tree("1"); !sound)
+        return sound;
     if (auto entries = journal(); !entries)
         return entries.error();
     const std::uint64_t last = last_generation();
@@ -693,15 +716,7 @@ Result<void> RunFile::check() {
                 return damaged(row_of("state_hash", linked));
         }
     }
-    const auto mark = end_mark();
-    if (!mark)
-        return mark.error();
-    if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
-                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
-        return damaged("what stands before its end mark");
-    if (database_.failed())
-        return failure();
-    return {};
+    return check_end_mark();
 }
 
 RunFile::Writers& RunFile::writers() {
