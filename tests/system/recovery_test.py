@@ -172,9 +172,13 @@ class Recovery(unittest.TestCase):
 
     def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
         chance, key, answered, request_id = random.Random(3), secrets.token_hex(8), {}, 0
-        options = ["--seed", "11", "--speed", "max", "--start"]
+        options = ["--seed", "11", "--speed", "max"]
+        server = self.serve(*options)
+        with Client(server, "start") as client:  # once that is answered, all later servers have this world
+            self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
+        server.kill()
         for kill in range(kills):
-            server = self.serve("--threads", str(1 + kill % 3), *(options if kill == 0 else []))
+            server = self.serve("--threads", str(1 + kill % 3))
             threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
             try:
                 with Client(server, key) as client:
@@ -202,7 +206,7 @@ class Recovery(unittest.TestCase):
                     response = client.call(request_id, **set_parameter("food_health", answered[request_id][1]))
                     answered[request_id] = (response.applied_tick, answered[request_id][1])
                 server.kill()
-        self.assert_as_if_never_stopped(answered, key, "--seed", "11", "--speed", "max")
+        self.assert_as_if_never_stopped(answered, key, *options)
 
     def test_killed_again_while_it_recovers_it_loses_nothing_and_does_nothing_twice(self):
         crowd = pathlib.Path(self.data) / "crowd.json"
