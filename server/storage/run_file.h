@@ -121,6 +121,8 @@ class RunFile {
     /// Whether SQLite finds a table and its indices sound; "1": the whole file, until the first fault.
     base::Result<void> check_tree(const std::string& of);
     bool is_held(std::uint64_t generation) const;
+    /// The first tick after this one of which is_link_held().
+    std::uint64_t next_link_held(std::uint64_t after) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
     base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
     std::int64_t number_of(const simulation::ParameterSet& parameters);

@@ -273,7 +273,7 @@ TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
     for (int i = 0, cuts = times("CUTS", 100); i < cuts; ++i) {
         Content cut = sound;
         std::string& bytes = i % 4 == 0 || sound.log.empty() ? cut.file : cut.log;
-        bytes.resize(random() % bytes.size());
+        bytes.resize(i == 1 ? 0 : random() % bytes.size()); // all of the log, too
         SCOPED_TRACE((&bytes == &cut.file ? "bytes of the file: " : "bytes of the log: ") +
                      std::to_string(bytes.size()));
         expect_never_wrong(cut);
