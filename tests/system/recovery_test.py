@@ -134,6 +134,9 @@ class Recovery(unittest.TestCase):
         self.folder.cleanup()
 
     def serve(self, *options):
+        for ended in [x for x in self.servers if x.process.poll() is not None]:  # a thousand kills leave as many logs
+            ended.log.close()
+            self.servers.remove(ended)
         self.servers.append(Server("--data", self.data, *options))
         return self.servers[-1]
 
