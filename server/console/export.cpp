@@ -28,9 +28,18 @@ Refusal cannot_write(const std::string& what) {
 template <class OfGeneration>
 Result<void> for_each_generation(RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
     const std::uint64_t last = file.last_generation();
-    for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation)
+    for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
+        const auto opening = file.opening_of(generation);
+        if (!opening)
+            return opening.error();
+        if (!*opening) // each has one: that of the last must be wrong, and may be very far away
+            return Refusal{.code = base::RefusalCode::DataLoss,
+                           .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
+                                      ", and not of generation " + std::to_string(generation),
+                           .violations = {}};
         if (Result<void> done = of_generation(generation); !done)
             return done;
+    }
     return {};
 }
 

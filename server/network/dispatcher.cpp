@@ -186,9 +186,13 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         std::optional<v1::Event> event;
         if (applied && demand_.events_wanted())
             event = protocol::event_of(applied_command, *applied, by, laboratory);
+        // What cannot be taken now leaves no trace: sent again, it may be.
+        const bool later = !applied && applied.error().code == base::RefusalCode::Unavailable;
         return runtime::CommandAnswer{
-            *frame, [this, key = request.client_key(), request_id = request.request_id(), frame, event] {
-                outbox_.answer([this, key, request_id, frame] { retries_.finish(key, request_id, frame); });
+            *frame, [this, key = request.client_key(), request_id = request.request_id(), frame, event, later] {
+                outbox_.answer([this, key, request_id, frame, later] {
+                    later ? retries_.forget(key, request_id, frame) : retries_.finish(key, request_id, frame);
+                });
                 if (event)
                     outbox_.event([this, event] { streams_.tell(*event); });
             }};

@@ -133,6 +133,8 @@ void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
 }
 
 Result<Recovered> recover(RunFile& file, base::Executor& executor) {
+    if (auto whole = file.check_end_mark(); !whole)
+        return whole.error();
     const std::uint64_t last_tick = file.last_tick();
     auto rerun = Rerun::at(file, std::max(file.identity().first_generation, file.last_generation()), executor);
     if (!rerun)

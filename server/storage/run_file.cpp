@@ -351,7 +351,8 @@ Result<void> RunFile::read_thinning() {
         const bool in_order = thinned.natural() == number;
         thinning_ = {
             .keep_every = thinned.natural(), .until_generation = thinned.natural(), .until_tick = thinned.natural()};
-        if (!thinned.sound() || !in_order || thinning_.keep_every == 0)
+        constexpr std::uint64_t keep_every_max = std::uint64_t{1} << 40; // more than doublings can come to
+        if (!thinned.sound() || !in_order || thinning_.keep_every == 0 || thinning_.keep_every > keep_every_max)
             return damaged(row_of("thinned", number));
     }
     if (database_.failed())
@@ -366,6 +367,13 @@ bool RunFile::is_held(std::uint64_t generation) const {
 
 bool RunFile::is_link_held(std::uint64_t tick) const {
     return tick > thinning_.until_tick || tick / ticks_per_link % thinning_.keep_every == 0;
+}
+
+std::uint64_t RunFile::next_link_held(std::uint64_t after) const {
+    const std::uint64_t next = after / ticks_per_link + 1, keep_every = thinning_.keep_every;
+    const std::uint64_t kept = (next + keep_every - 1) / keep_every * keep_every;
+    const std::uint64_t thinned = thinning_.until_tick / ticks_per_link;
+    return (kept <= thinned ? kept : std::max(next, thinned + 1)) * ticks_per_link;
 }
 
 std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
@@ -402,7 +410,32 @@ Result<std::optional<EndMark>> RunFile::end_mark() {
     return mark;
 }
 
+Result<void> RunFile::check_tree(const std::string& of) {
+    Statement integrity{database_, "PRAGMA integrity_check(" + of + ")"};
+    if (integrity.row())
+        if (const std::string verdict = integrity.text(0); verdict != "ok")
+            return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+    return {};
+}
+
+Result<void> RunFile::check_end_mark() {
+    const auto mark = end_mark();
+    if (!mark)
+        return mark.error();
+    const EndMark found = contents();
+    if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
+                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
+        return damaged("what stands before its end mark");
+    if (database_.failed())
+        return failure();
+    return {};
+}
+
 Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uint32_t count) {
+    // That the last entries are gone, no other row tells.
+    if (first == 1)
+        if (auto sound = check_tree("journal"); !sound)
+            return sound.error();
     std::vector<JournalEntry> entries;
     RowReader reader{database_,
                      "journal",
@@ -672,10 +705,8 @@ std::uint64_t RunFile::last_generation_ended() {
 }
 
 Result<void> RunFile::check() {
-    Statement integrity{database_, "PRAGMA integrity_check(1)"};
-    if (integrity.row())
-        if (const std::string verdict = integrity.text(0); verdict != "ok")
-            return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+    if (auto sound = check_tree("1"); !sound)
+        return sound;
     if (auto entries = journal(); !entries)
         return entries.error();
     const std::uint64_t last = last_generation();
@@ -706,28 +737,22 @@ Result<void> RunFile::check() {
     }
     const EndMark found = contents();
     constexpr std::uint64_t ticks_at_once = 100'000 * ticks_per_link;
-    std::uint64_t linked = first_tick() / ticks_per_link * ticks_per_link; // up to there every link is there
-    for (std::uint64_t after = linked; after < found.tick; after += ticks_at_once) {
-        const auto chain = links(after, std::min(found.tick, after + ticks_at_once));
+    for (std::uint64_t next = next_link_held(first_tick()); next <= found.tick;) {
+        const auto chain = links(next - 1, std::min(found.tick, next + ticks_at_once));
         if (!chain)
             return chain.error();
+        if (chain->empty()) {
+            if (database_.number("SELECT max(tick) FROM state_hash") >= static_cast<std::int64_t>(next))
+                return damaged(row_of("state_hash", next));
+            break; // whether the last are missing, the end mark tells
+        }
         for (const HashLink& link : *chain) {
-            do
-                linked += ticks_per_link;
-            while (!is_link_held(linked));
-            if (link.tick != linked)
-                return damaged(row_of("state_hash", linked));
+            if (link.tick != next)
+                return damaged(row_of("state_hash", next));
+            next = next_link_held(next);
         }
     }
-    const auto mark = end_mark();
-    if (!mark)
-        return mark.error();
-    if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
-                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
-        return damaged("what stands before its end mark");
-    if (database_.failed())
-        return failure();
-    return {};
+    return check_end_mark();
 }
 
 RunFile::Writers& RunFile::writers() {

@@ -95,6 +95,8 @@ class RunFile {
     std::uint64_t last_generation_ended();
     /// Whether SQLite finds the file sound, and every row is as it was written. Reads everything.
     base::Result<void> check();
+    /// Whether there is as much as the end mark says; all is well if there is none.
+    base::Result<void> check_end_mark();
 
     // Writing. After something has gone wrong nothing more is written: commit() says what, and the file is to be opened
     // anew. What is written again takes the place of what was there.
@@ -124,7 +126,11 @@ class RunFile {
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
     base::Result<void> read_thinning();
+    /// Whether SQLite finds a table and its indices sound; "1": the whole file, until the first fault.
+    base::Result<void> check_tree(const std::string& of);
     bool is_held(std::uint64_t generation) const;
+    /// The first tick after this one of which is_link_held().
+    std::uint64_t next_link_held(std::uint64_t after) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
     base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
     std::int64_t number_of(const simulation::ParameterSet& parameters);

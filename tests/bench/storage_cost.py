@@ -1,10 +1,11 @@
-"""What keeping a run costs the simulation, and how long a command waits for the disk, on a real evod.
+"""What keeping a run costs the simulation, how long a command waits for the disk, and how soon a killed evod is back.
 
     storage_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
 The same ticks of the same run are simulated again and again at full speed on one thread, by turns by a server that keeps
 its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the storage
-thread's processor time, both over the simulation thread's time where nothing is kept.
+thread's processor time, both over the simulation thread's time where nothing is kept. A server is killed late in a
+generation, so that most of one is to be simulated again.
 """
 import argparse
 import json
@@ -29,13 +30,17 @@ from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 first_tick, ticks = 60, max(4_900, 60_000_000 // options.organisms)  # two ends of a generation at least
 
 
-def measure_run(*arguments):
-    """Seconds of the simulation thread and of the storage thread for the ticks; seconds of some commands."""
-    server = subprocess.Popen([options.evod, "--port", "0", "--threads", "1", *arguments], stdout=subprocess.PIPE, text=True)
+def start(*arguments):
+    server = subprocess.Popen([options.evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
     for line in server.stdout:
         if "listening on " in line:
-            break
-    control = Client(int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1]))
+            return server, Client(int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1]))
+    raise AssertionError("evod ended at once")
+
+
+def measure_run(*arguments):
+    """Seconds of the simulation thread and of the storage thread for the ticks; seconds of some commands."""
+    server, control = start("--threads", "1", *arguments)
     control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(benchmark_world(options.organisms))))
     control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
     control.run_to(first_tick)
@@ -50,6 +55,29 @@ def measure_run(*arguments):
     server.terminate()
     server.communicate()
     return after[0] - before[0], after[1] - before[1], commands
+
+
+def measure_ready_after_kill():
+    """Seconds from exec to a client's welcome, several times."""
+    times = []
+    with tempfile.TemporaryDirectory() as data:
+        server, control = start("--data", data)
+        parameters = benchmark_world(options.organisms) | {"generation_s": 40.0}
+        control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(parameters)))
+        control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+        control.run_to(2390)  # of 2400
+        control.call(pause=c.Pause(world="w"))  # is on the disk, with its tick
+        for _ in range(options.runs):
+            server.kill()
+            server.communicate()
+            began = time.perf_counter()
+            server, control = start("--data", data)
+            times.append(time.perf_counter() - began)
+        worlds = control.call(list_worlds=c.ListWorlds()).worlds.worlds
+        assert next(x.tick for x in worlds if x.name == "w") == 2390
+        server.terminate()
+        server.communicate()
+    return times
 
 
 def spread(values):
@@ -68,7 +96,8 @@ def measure():
         commands += waited
     return {"organisms": options.organisms, "ticks": ticks, "pairs": options.runs,
             "simulation_rise_percent": spread(rises), "storage_share_percent": spread(shares),
-            "cost_percent": spread(costs), "command_ms": spread([1e3 * s for s in commands])}
+            "cost_percent": spread(costs), "command_ms": spread([1e3 * s for s in commands]),
+            "ready_after_kill_s": spread(measure_ready_after_kill())}
 
 
 def main():

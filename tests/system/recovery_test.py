@@ -1,6 +1,6 @@
 """Real servers that keep their runs, killed and started again: nothing that was answered is lost or done twice.
 
-    EVOD=… MESSAGES=… recovery_test.py      how often it kills: KILLS (25)
+    EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (25)
 """
 import os
 import pathlib
@@ -35,9 +35,11 @@ def until(condition, what):
 
 
 class Server:
-    def __init__(self, *options, **popen):
+    def __init__(self, *options, ready=True, **popen):
         self.log = tempfile.TemporaryFile()
         self.process = subprocess.Popen([evod, "--port", "0", *options], stdout=self.log, stderr=self.log, **popen)
+        if not ready:
+            return
         until(lambda: self.process.poll() is not None or "listening on" in self.output(), "ready")
         if self.process.poll() is not None:
             raise AssertionError("evod ended at once:\n" + self.output())
@@ -132,14 +134,54 @@ class Recovery(unittest.TestCase):
         self.folder.cleanup()
 
     def serve(self, *options):
+        for ended in [x for x in self.servers if x.process.poll() is not None]:  # a thousand kills leave as many logs
+            ended.log.close()
+            self.servers.remove(ended)
         self.servers.append(Server("--data", self.data, *options))
         return self.servers[-1]
 
+    def assert_as_if_never_stopped(self, answered, key, *options):
+        """Nothing was lost or done twice; answered: by request id, tick and value of "food_health"."""
+        # Every request is in the journal once, at the tick it was answered with.
+        (file,) = pathlib.Path(self.data).glob("*.evod")
+        kept = [row for row in journal(self.data, file.stem) if row[2] == key]
+        self.assertEqual([row[3] for row in kept], sorted(answered))
+        self.assertEqual([row[1] for row in kept], [answered[i][0] for i in sorted(answered)])
+
+        # A run that was never stopped, with the same commands at the same ticks, has the same hashes.
+        server = self.serve()
+        with Client(server, key) as client:
+            self.assertEqual(client.call(max(answered) + 1, pause=c.Pause()).status.code, 0)
+            last = client.world()
+        server.end()
+        with tempfile.TemporaryDirectory() as other:
+            whole = Server("--data", other, *options)
+            self.servers.append(whole)
+            number = 0
+            with Client(whole, "again") as client:
+                def run_to(tick):
+                    nonlocal number
+                    number += 1
+                    client.call(number, run_until_tick=c.RunUntilTick(tick=tick))
+                    until(lambda: client.world().tick == tick, f"tick {tick}")
+                for i in sorted(answered):
+                    tick, value = answered[i]
+                    run_to(tick)
+                    number += 1
+                    self.assertEqual(client.call(number, **set_parameter("food_health", value)).applied_tick, tick)
+                run_to(last.tick)
+                self.assertEqual(client.world().state_hash, last.state_hash)
+            whole.end()
+
     def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
         chance, key, answered, request_id = random.Random(3), secrets.token_hex(8), {}, 0
-        options = ["--seed", "11", "--speed", "max", "--start"]
+        options = ["--seed", "11", "--speed", "max"]
+        server = self.serve(*options)
+        with Client(server, "start") as client:  # once that is answered, all later servers have this world
+            self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
+        server.kill()
         for kill in range(kills):
-            server = self.serve("--threads", str(1 + kill % 3), *(options if kill == 0 else []))
+            server = self.serve("--threads", str(1 + kill % 3))
             threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
             try:
                 with Client(server, key) as client:
@@ -167,35 +209,46 @@ class Recovery(unittest.TestCase):
                     response = client.call(request_id, **set_parameter("food_health", answered[request_id][1]))
                     answered[request_id] = (response.applied_tick, answered[request_id][1])
                 server.kill()
-        # Every request is in the journal once, at the tick it was answered with.
-        kept = [row for row in journal(self.data) if row[2] == key]
-        self.assertEqual([row[3] for row in kept], sorted(answered))
-        self.assertEqual([row[1] for row in kept], [answered[i][0] for i in sorted(answered)])
+        self.assert_as_if_never_stopped(answered, key, *options)
 
-        # A run that was never stopped, with the same commands at the same ticks, has the same hashes.
-        server = self.serve()
-        with Client(server, key) as client:
-            self.assertEqual(client.call(request_id + 1, pause=c.Pause()).status.code, 0)
-            last = client.world()
-        server.end()
-        with tempfile.TemporaryDirectory() as other:
-            whole = Server("--data", other, "--seed", "11", "--speed", "max")
-            self.servers.append(whole)
-            number = 0
-            with Client(whole, "again") as client:
-                def run_to(tick):
-                    nonlocal number
-                    number += 1
-                    client.call(number, run_until_tick=c.RunUntilTick(tick=tick))
-                    until(lambda: client.world().tick == tick, f"tick {tick}")
-                for i in sorted(answered):
-                    tick, value = answered[i]
-                    run_to(tick)
-                    number += 1
-                    self.assertEqual(client.call(number, **set_parameter("food_health", value)).applied_tick, tick)
-                run_to(last.tick)
-                self.assertEqual(client.world().state_hash, last.state_hash)
-            whole.end()
+    def test_killed_again_while_it_recovers_it_loses_nothing_and_does_nothing_twice(self):
+        crowd = pathlib.Path(self.data) / "crowd.json"
+        crowd.write_text('{"population_size": 5000, "scale_with_population": true, "reference_population": 50}')
+        options = ["--experiment", str(crowd), "--seed", "12", "--speed", "max"]
+        chance, key, answered, killed_before_ready = random.Random(4), secrets.token_hex(8), {}, 0
+        server = self.serve(*options, "--start")
+        for life in range(3):
+            first = 2 * life + 1
+            with Client(server, key) as client:
+                begun = client.world().tick
+                until(lambda: client.world().tick > begun + 400, "ticks to simulate again")
+                answered[first] = (client.call(first, **set_parameter("food_health", first)).applied_tick, first)
+                until(lambda: client.world().tick > answered[first][0] + 100, "ticks after the command")
+                # One that may have been done and may not, when the server dies.
+                client.send(session_pb2.ClientMessage(request=c.Request(
+                    request_id=first + 1, client_key=key, **set_parameter("food_health", first + 1))))
+                time.sleep(chance.uniform(0, 0.01))
+            server.kill()
+            began = time.monotonic()
+            server = self.serve("--threads", str(1 + life))
+            takes_s = time.monotonic() - began
+            server.kill()
+            for _ in range(max(4, kills // 6)):
+                self.servers.append(Server("--data", self.data, ready=False))
+                time.sleep(chance.uniform(0, takes_s))
+                self.servers[-1].kill()
+                killed_before_ready += "listening on" not in self.servers[-1].output()
+            server = self.serve("--threads", str(3 - life))
+            with Client(server, key) as client:
+                for i in first, first + 1:
+                    response = client.call(i, **set_parameter("food_health", i))
+                    self.assertEqual(response.status.code, 0, response)
+                    if i in answered:
+                        self.assertEqual(response.applied_tick, answered[i][0])
+                    answered[i] = (response.applied_tick, i)
+        server.kill()
+        self.assertGreater(killed_before_ready, 3)
+        self.assert_as_if_never_stopped(answered, key, *options)
 
     def test_a_closed_server_goes_on_where_it_stood_and_as_it_was_told(self):
         server = self.serve("--seed", "5", "--speed", "max")

@@ -279,7 +279,7 @@ class Page:
 
         def percent(spread):
             return minus(f"{spread['median']:+.2f} % ({spread['min']:+.2f} – {spread['max']:+.2f} %)")
-        return table(["", "median (least – greatest)"], [
+        rows = [
             ["from exec to the first accepted client's welcome, ms", with_spread(figures["start_ms"])],
             [f"a viewer at 30 pictures/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, "
              "free running: rise of the simulation thread's processor time per tick",
@@ -293,7 +293,11 @@ class Page:
             ["a command beside that world at full speed, ms", with_spread(figures["command_beside_ms"])],
             ["a query beside it, ms", with_spread(figures["query_beside_ms"])],
             ["a command to a server that keeps its runs, on the disk before it is answered, ms",
-             with_spread(storage["command_ms"])]])
+             with_spread(storage["command_ms"])]]
+        if "ready_after_kill_s" in storage:
+            rows.append([f"from exec to a client's welcome, after a kill late in a generation of "
+                         f"{count(storage['organisms'])}, s", with_spread(storage["ready_after_kill_s"])])
+        return table(["", "median (least – greatest)"], rows)
 
     def drawing(self):
         return table(["organisms", "ms of processor time a drawn frame, OpenGL in software included"],

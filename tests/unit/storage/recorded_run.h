@@ -17,8 +17,8 @@ namespace evod::storage {
 
 class TemporaryFolder {
   public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
+    explicit TemporaryFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
+        std::string name = (in / "evod_XXXXXX").string();
         EXPECT_NE(mkdtemp(name.data()), nullptr);
         path_ = name;
     }

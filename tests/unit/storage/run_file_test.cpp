@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
-#include <random>
 #include <sstream>
 
 namespace evod::storage {
@@ -29,28 +28,6 @@ void change(const std::string& path, const char* sql) {
     Database database{path, Database::Mode::Write};
     database.run(sql);
     ASSERT_FALSE(database.failed()) << database.error();
-}
-
-/// Everything that a sound file tells, as one text.
-std::string told_by(RunFile& file) {
-    std::ostringstream text;
-    text << file.identity().name << ' ' << to_text(file.identity().run_id) << ' ' << file.identity().seed.value << '\n';
-    for (const JournalEntry& entry : *file.journal())
-        text << entry.number << ' ' << entry.tick << ' ' << entry.origin.client << ' ' << entry.origin.client_key << ' '
-             << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
-    for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
-        const auto begun = *file.beginning_of(generation);
-        text << generation << ' ' << begun->opening.moment.tick << ' ' << begun->opening.parameters.revision << '\n';
-        for (const evolution::NextGeneration& born : begun->born)
-            text << born.genes << '\n';
-        if (const auto ended = *file.outcome_of(generation))
-            for (const IslandOutcome& outcome : ended->outcomes)
-                for (const double fitness : outcome.fitness)
-                    text << fitness << ' ';
-    }
-    for (const HashLink& link : *file.links(0, file.contents().tick))
-        text << link.tick << ' ' << to_text(link.hash) << '\n';
-    return text.str();
 }
 
 class RunFileTest : public testing::Test {
@@ -227,42 +204,6 @@ TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {
     const std::string path = recorded();
     EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
               RefusalCode::AlreadyExists);
-}
-
-TEST_F(RunFileTest, AFlippedBitIsNamedOrHitWhatNobodyReads) {
-    const std::string path = recorded(), sound = content_of(path);
-    std::string told;
-    {
-        const auto file = RunFile::open_read_only(path);
-        told = told_by(**file);
-    }
-    std::mt19937 random{5};
-    int named = 0, unread = 0;
-    for (int flip = 0; flip < 600; ++flip) {
-        const std::size_t byte = random() % sound.size();
-        std::string flipped = sound;
-        flipped[byte] = static_cast<char>(flipped[byte] ^ (1 << random() % 8));
-        put(path, flipped);
-        const auto file = RunFile::open_read_only(path);
-        if (!file || !(*file)->check()) {
-            ++named;
-            continue;
-        }
-        ++unread;
-        ASSERT_EQ(told_by(**file), told) << "byte " << byte;
-    }
-    EXPECT_GT(named, 0);
-    EXPECT_GT(unread, 0);
-}
-
-TEST_F(RunFileTest, AClosedFileThatIsCutIsNamed) {
-    const std::string path = recorded(), sound = content_of(path);
-    std::mt19937 random{6};
-    for (int cut = 0; cut < 300; ++cut) {
-        put(path, std::string_view{sound}.substr(0, random() % sound.size()));
-        const auto file = RunFile::open_read_only(path);
-        EXPECT_TRUE(!file || !(*file)->check());
-    }
 }
 
 } // namespace

@@ -1,0 +1,202 @@
+// Any bytes as a run file: read, checked and exported, or refused. What the bytes are is said by the first of them: the
+// file itself; bytes to change in a sound file; or columns to change in its rows, which get their checksums.
+#include "evod/v1/commands.pb.h"
+#include "server/base/inline_executor.h"
+#include "server/console/export.h"
+#include "server/storage/row.h"
+#include "server/storage/run_file.h"
+
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+namespace {
+
+using namespace evod;
+using Bytes = std::span<const std::uint8_t>;
+
+void require(bool holds) {
+    if (!holds)
+        std::abort();
+}
+
+/// The first `count` of `bytes`, which lose them.
+Bytes take(Bytes& bytes, std::size_t count) {
+    const Bytes taken = bytes.first(std::min(count, bytes.size()));
+    bytes = bytes.subspan(taken.size());
+    return taken;
+}
+
+template <class T>
+T take(Bytes& bytes) {
+    T value{};
+    const Bytes taken = take(bytes, sizeof value);
+    std::memcpy(&value, taken.data(), taken.size());
+    return value;
+}
+
+/// A file in memory, of a run of a few generations; gone with the program.
+struct Place {
+    Place() {
+        std::string name = "/dev/shm/evod_fuzz_XXXXXX";
+        require(mkdtemp(name.data()) != nullptr);
+        folder = name;
+        path = folder + "/run.evod";
+        write_sound();
+        std::ifstream file{path, std::ios::binary};
+        sound.assign(std::istreambuf_iterator<char>{file}, {});
+        require(!sound.empty());
+    }
+    ~Place() { std::filesystem::remove_all(folder); }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    void write_sound() {
+        storage::RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {3}, .parameters = {}};
+        identity.parameters.population_size = 4;
+        identity.parameters.generation_s = 1;
+        identity.parameters.island_count = 2;
+        const auto file = storage::RunFile::create(path, identity, {});
+        require(file.has_value());
+        base::InlineExecutor executor;
+        simulation::World world{identity.parameters, identity.seed};
+        (*file)->begin();
+        (*file)->write(storage::beginning_of(world));
+        v1::Request request;
+        request.mutable_pause();
+        (*file)->write(storage::JournalEntry{.number = 1,
+                                             .tick = 0,
+                                             .origin = {"client", "key", 1, request.SerializeAsString()},
+                                             .answer = "answer",
+                                             .control = {}});
+        while (world.moment().generation < 3) {
+            const std::uint64_t generation = world.moment().generation;
+            world.advance_tick(executor);
+            if (world.moment().generation != generation)
+                (*file)->write(storage::beginning_of(world));
+            if (world.moment().tick % storage::ticks_per_link == 0)
+                (*file)->write(storage::HashLink{world.moment().tick, world.hash()});
+            if (world.generation_over())
+                (*file)->write(storage::end_of(world));
+        }
+        (*file)->write(storage::EndMark{.tick = world.moment().tick});
+        require((*file)->commit().has_value());
+        require((*file)->check().has_value());
+    }
+
+    /// Puts a file there, and nothing else.
+    void put(const char* bytes, std::size_t count) const {
+        for (const char* suffix : {"-wal", "-shm", "-journal"})
+            std::filesystem::remove(path + suffix);
+        std::ofstream{path, std::ios::binary}.write(bytes, static_cast<std::streamsize>(count));
+    }
+
+    std::string folder, path, sound;
+};
+
+/// One column of one row gets another value, of its kind, and the row its checksum.
+void change_row(sqlite3* database, Bytes& bytes) {
+    constexpr const char* tables[] = {"run",     "journal",    "parameters", "generation", "population",
+                                      "outcome", "statistics", "state_hash", "end_mark",   "thinned"};
+    const std::string table = tables[take<std::uint8_t>(bytes) % std::size(tables)];
+    const int row = take<std::uint8_t>(bytes), wanted = take<std::uint8_t>(bytes);
+    if (table == "thinned")
+        sqlite3_exec(database, "INSERT INTO thinned VALUES (1, 2, 1, 60, 0)", nullptr, nullptr, nullptr);
+    sqlite3_stmt* read = nullptr;
+    sqlite3_prepare_v2(database,
+                       ("SELECT rowid, * FROM " + table + " LIMIT 1 OFFSET " + std::to_string(row % 8)).c_str(), -1,
+                       &read, nullptr);
+    if (sqlite3_step(read) == SQLITE_ROW) {
+        const int columns = sqlite3_column_count(read) - 2; // without rowid and checksum
+        storage::RowChecksum checksum{table};
+        std::string sql = "UPDATE " + table + " SET checksum = ?1, " + sqlite3_column_name(read, 1 + wanted % columns) +
+                          " = ?2 WHERE rowid = ?3";
+        sqlite3_stmt* write = nullptr;
+        require(sqlite3_prepare_v2(database, sql.c_str(), -1, &write, nullptr) == SQLITE_OK);
+        for (int i = 1; i <= columns; ++i) {
+            const bool changed = i == 1 + wanted % columns;
+            switch (sqlite3_column_type(read, i)) {
+            case SQLITE_INTEGER: {
+                const std::int64_t value = changed ? take<std::int64_t>(bytes) : sqlite3_column_int64(read, i);
+                checksum.add(value);
+                if (changed)
+                    sqlite3_bind_int64(write, 2, value);
+                break;
+            }
+            case SQLITE_FLOAT: {
+                const double value = changed ? take<double>(bytes) : sqlite3_column_double(read, i);
+                checksum.add(value);
+                if (changed)
+                    sqlite3_bind_double(write, 2, value);
+                break;
+            }
+            case SQLITE_NULL:
+                checksum.add_nothing();
+                break;
+            default: {
+                const bool text = sqlite3_column_type(read, i) == SQLITE_TEXT;
+                std::string value{static_cast<const char*>(sqlite3_column_blob(read, i)),
+                                  static_cast<std::size_t>(sqlite3_column_bytes(read, i))};
+                if (changed) {
+                    const std::size_t kept = take<std::uint16_t>(bytes) % (value.size() + 1);
+                    const Bytes added = take(bytes, take<std::uint8_t>(bytes));
+                    value.resize(kept);
+                    value.append(reinterpret_cast<const char*>(added.data()), added.size());
+                    text ? sqlite3_bind_text(write, 2, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT)
+                         : sqlite3_bind_blob(write, 2, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+                }
+                text ? checksum.add_text(value) : checksum.add_bytes(std::as_bytes(std::span{value}));
+            }
+            }
+        }
+        sqlite3_bind_int64(write, 1, checksum.finish());
+        sqlite3_bind_int64(write, 3, sqlite3_column_int64(read, 0));
+        sqlite3_step(write); // may be refused, as the same key twice is
+        sqlite3_finalize(write);
+    }
+    sqlite3_finalize(read);
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const Place place;
+    std::cerr.rdbuf(nullptr); // what is refused is said there
+    Bytes bytes{data, size};
+    switch (take<std::uint8_t>(bytes) % 3) {
+    case 0:
+        place.put(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        break;
+    case 1: {
+        std::string changed = place.sound;
+        while (!bytes.empty()) {
+            const std::size_t at = take<std::uint32_t>(bytes) % changed.size();
+            changed[at] = static_cast<char>(take<std::uint8_t>(bytes));
+        }
+        place.put(changed.data(), changed.size());
+        break;
+    }
+    default: {
+        place.put(place.sound.data(), place.sound.size());
+        sqlite3* database = nullptr;
+        require(sqlite3_open(place.path.c_str(), &database) == SQLITE_OK);
+        while (!bytes.empty())
+            change_row(database, bytes);
+        sqlite3_close(database);
+    }
+    }
+    if (const auto file = storage::RunFile::open_read_only(place.path)) {
+        (void)(*file)->check();
+        (void)(*file)->history(simulation::World::history_generations_kept);
+        (void)(*file)->journal((*file)->contents().journal_entries);
+    }
+    for (const char* what : {"generations", "organisms", "events"})
+        (void)console::export_run({.run = place.path, .what = what, .format = "jsonl", .output = "/dev/null"});
+    return 0;
+}
