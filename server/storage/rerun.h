@@ -1,5 +1,5 @@
-// Rerun: a run simulated again from its file: every moment follows from the beginning of its generation and the
-// journal.
+// Rerun: a run simulated again from its file: every moment follows from the beginning of its generation, or a
+// checkpoint, and the journal.
 //
 // Determinism  the same bits as the first time; whoever has a stored hash compares.
 #pragma once
@@ -25,17 +25,21 @@ base::Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file
 
 class Rerun {
   public:
-    /// At the first moment of a generation that the run has begun; if its beginning is not held any more, it is
-    /// simulated from the last one before it that is. Refused if the file is damaged there, follows another model, or
-    /// has no such generation.
+    /// At the first moment of a generation that the run has begun, or of what the file tells of it; if its beginning is
+    /// not held any more, it is simulated from the last one before it that is. Refused if the file is damaged there,
+    /// follows another model, or has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
+    /// At the last moment, up to the one after `tick`, from which the run can be simulated without what comes before: a
+    /// checkpoint, or the beginning of a generation. Refused as at() is, and where the run was never at that tick.
+    static base::Result<Rerun> before(RunFile& file, std::uint64_t tick, base::Executor& executor);
     /// The same from what has been read; of the file only its identity is looked at.
     ///
-    /// begun    what can be the beginning of a generation; the run's own model is this program's.
-    /// changes  in order of ticks; those that `begun` has in it already are left out.
+    /// begun       what can be the beginning of a generation; the run's own model is this program's.
+    /// checkpoint  of that generation, where to begin; nullptr: with its first tick.
+    /// changes     in order of ticks; those that `begun` or `checkpoint` has in it already are left out.
     static base::Result<Rerun> from(const RunFile& file, const GenerationBegun& begun,
-                                    std::span<const ParameterChange> changes, simulation::World::History history,
-                                    base::Executor& executor);
+                                    const StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
+                                    simulation::World::History history, base::Executor& executor);
 
     const simulation::World& world() const { return world_; }
     /// Ends the rerun: the world as it is.
@@ -43,24 +47,33 @@ class Rerun {
 
     /// Breeds the next generation, if one is over, as the next tick would.
     void turn_over(base::Executor& executor) { world_.turn_over(executor); }
-    /// One tick, then the changes of parameters that came after it. Not to be called where the run was over.
-    void advance_tick(base::Executor& executor);
+    /// One tick, then the changes of parameters that came after it, up to the journal's entry `last`. Not to be called
+    /// where the run was over.
+    void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
+    /// The rest of those that came after the last tick.
+    void make_changes(std::uint64_t last = ~std::uint64_t{0});
     /// Until that tick is over, or the run is.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
     /// What was asked for, all in all, after a change.
     struct Request {
-        std::uint64_t tick;
+        std::uint64_t entry, tick;
         simulation::Parameters parameters;
     };
     Rerun(simulation::World world, std::vector<Request> requests)
         : world_{std::move(world)}, requests_{std::move(requests)} {
         make_changes();
     }
+    /// The changes of parameters of a run that this program can simulate.
+    static base::Result<std::vector<ParameterChange>> changes_of(RunFile& file);
+    /// generation  whose beginning is held.
+    /// checkpoint  of that generation; nullptr: its beginning, or that of the file.
+    static base::Result<Rerun> begun_at(RunFile& file, std::uint64_t generation, const StoredCheckpoint* checkpoint,
+                                        std::span<const ParameterChange> changes, base::Executor& executor);
+    /// changes  those to come.
     static base::Result<Rerun> with_changes(const RunFile& file, simulation::World world,
                                             std::span<const ParameterChange> changes);
-    void make_changes();
 
     simulation::World world_;
     std::vector<Request> requests_; // in order, from next_ to come

@@ -32,6 +32,7 @@ std::size_t bytes_of(const StorageThread::Record& record) {
                     bytes += small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);
                 return bytes;
             },
+            [](const Checkpoint&) { return std::size_t{0}; }, // has a bound of its own
             [](const auto&) { return sizeof(HashLink); },
         },
         record);
@@ -71,20 +72,28 @@ StorageThread::RunNumber StorageThread::adopt(std::unique_ptr<RunFile> file) {
 
 void StorageThread::write(RunNumber run, Record record, Done done) {
     std::vector<Item> items;
-    items.push_back({std::move(record), std::move(done)});
+    items.push_back({std::move(record), std::move(done), {}});
     hand_over(run, std::move(items));
 }
 
 void StorageThread::write(RunNumber run, std::vector<Record> records) {
     std::vector<Item> items;
     for (Record& record : records)
-        items.push_back({std::move(record), {}});
+        items.push_back({std::move(record), {}, {}});
+    hand_over(run, std::move(items));
+}
+
+void StorageThread::write(RunNumber run, Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing) {
+    writing->waits = true;
+    waiting_checkpoints_.fetch_add(1);
+    std::vector<Item> items;
+    items.push_back({std::move(checkpoint), {}, std::move(writing)});
     hand_over(run, std::move(items));
 }
 
 void StorageThread::close(RunNumber run, const EndMark& mark, std::string renamed, Done done) {
     std::vector<Item> items;
-    items.push_back({mark, std::move(done)});
+    items.push_back({mark, std::move(done), {}});
     hand_over(run, std::move(items), std::move(renamed));
 }
 
@@ -192,11 +201,13 @@ bool StorageThread::write_out(Run& run) {
     };
     if (auto opened = open(run); !opened)
         return fail(opened.error());
+    const auto began = std::chrono::steady_clock::now();
     run.file->begin();
     for (const Item& item : run.waiting)
         std::visit([&](const auto& record) { run.file->write(record); }, item.record);
     if (auto committed = run.file->commit(); !committed)
         return fail(committed.error());
+    const auto took = std::chrono::steady_clock::now() - began;
 
     std::size_t bytes = 0;
     std::vector<Item> written = std::exchange(run.waiting, {});
@@ -219,6 +230,11 @@ bool StorageThread::write_out(Run& run) {
         bytes += item.bytes;
         if (item.done)
             item.done();
+        if (item.writing) {
+            item.writing->took = took;
+            item.writing->waits = false;
+            waiting_checkpoints_.fetch_sub(1);
+        }
     }
     waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
     return sound;

@@ -7,6 +7,9 @@
 // Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
 //              anew and everything that may be missing written again, every `retry_time`, until it is there.
 // Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
+// Checkpoints  are large, and can be done without: of a run, one waits at most, beside what the bound is for, so that
+// worlds
+//              need not stand still until it is written.
 // Full         has_room() is false from `waiting_bytes_max` on; whoever hands over stops making more.
 #pragma once
 
@@ -36,7 +39,12 @@ class StorageThread {
     using RunNumber = std::uint64_t;
     /// Called on the storage thread once the record is on the disk.
     using Done = std::function<void()>;
-    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, EndMark>;
+    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, Checkpoint, EndMark>;
+    /// What has become of a run's checkpoint; shared with whoever made it.
+    struct CheckpointWriting {
+        std::atomic<bool> waits = false;                                          // for the disk
+        std::atomic<std::chrono::nanoseconds> took = std::chrono::nanoseconds{0}; // the last, to pack and to write
+    };
 
     explicit StorageThread(RunFile::Options options, std::chrono::milliseconds retry_after = retry_time);
     /// Writes what waits, as far as that can be done now, and ends.
@@ -49,11 +57,15 @@ class StorageThread {
     void write(RunNumber run, Record record, Done done = {});
     /// All in one transaction, or none.
     void write(RunNumber run, std::vector<Record> records);
+    /// None of the run's waits any more. writing: waits, until it is on the disk.
+    void write(RunNumber run, Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing);
     /// The end mark; then the file is closed, and renamed if `renamed` is given.
     void close(RunNumber run, const EndMark& mark, std::string renamed = {}, Done done = {});
 
     /// Whether everything handed over is written.
-    bool idle() const { return waiting_bytes_.load(std::memory_order_acquire) == 0; }
+    bool idle() const {
+        return waiting_bytes_.load(std::memory_order_acquire) == 0 && waiting_checkpoints_.load() == 0;
+    }
     bool has_room() const { return waiting_bytes_.load(std::memory_order_relaxed) < waiting_bytes_max; }
     /// Why nothing gets onto the disk at present; nothing if it does.
     std::optional<std::string> trouble() const;
@@ -62,6 +74,7 @@ class StorageThread {
     struct Item {
         Record record;
         Done done;
+        std::shared_ptr<CheckpointWriting> writing; // of a checkpoint
         std::size_t bytes = 0;
     };
     struct Run {
@@ -82,7 +95,7 @@ class StorageThread {
 
     const RunFile::Options options_;
     const std::chrono::milliseconds retry_after_;
-    std::atomic<std::size_t> waiting_bytes_ = 0;
+    std::atomic<std::size_t> waiting_bytes_ = 0, waiting_checkpoints_ = 0;
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;

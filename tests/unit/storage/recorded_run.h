@@ -78,6 +78,9 @@ class RecordedRun {
         }
     }
 
+    /// Of the last tick; to be called before anything is asked for there, as a server does.
+    void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
+
     /// Begins again in a file of its own, once the run has been ended.
     bool reset(base::Seed seed, const simulation::RunId& run_id) {
         const bool done = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id}).has_value();
