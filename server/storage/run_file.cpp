@@ -913,6 +913,8 @@ void RunFile::write(const HashLink& link) {
 }
 
 void RunFile::write(const Checkpoint& checkpoint) {
+    if (database_.failed())
+        return; // packing would be for nothing
     const simulation::Moment& moment = checkpoint.state.moment;
     const std::int64_t parameters = number_of(checkpoint.state.parameters);
     const std::string state = pack(checkpoint.state);

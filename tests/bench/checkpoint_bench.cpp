@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -30,12 +31,12 @@ double median(std::vector<double> values) {
 int main(int argc, char** argv) {
     CLI::App app{"What a checkpoint costs the world whose state it is"};
     std::uint32_t organisms = 100'000, checkpoints = 10, ticks_between = 60;
-    std::size_t threads = 0;
+    std::size_t threads = std::thread::hardware_concurrency();
     std::string folder = std::filesystem::temp_directory_path();
     app.add_option("--organisms", organisms);
     app.add_option("--checkpoints", checkpoints);
     app.add_option("--ticks-between", ticks_between);
-    app.add_option("--threads", threads, "0 for all");
+    app.add_option("--threads", threads);
     app.add_option("--folder", folder, "where the run file is written");
     CLI11_PARSE(app, argc, argv);
 
