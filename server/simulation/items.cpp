@@ -89,7 +89,8 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
         return "their number";
     const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
     for (const Item& item : items) {
-        if (item.x < 0 || item.x > area_.width || item.y < 0 || item.y > area_.height)
+        // Clear of the walls; sight relies on no item ever lying in the corner.
+        if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height)
             return "where one is";
         const bool possible =
             rules_.respawn ? item.due_tick <= last_due && (item.due_tick > tick || resting) : item.due_tick == none;

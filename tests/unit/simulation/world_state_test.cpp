@@ -189,6 +189,7 @@ TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
         {"dead", [&](WorldState& s) { s.islands[0].fate.cause[gone] = CauseOfDeath::Starved; }},
         {"food", [](WorldState& s) { s.islands[0].food.pop_back(); }},
         {"food", [](WorldState& s) { s.islands[0].food[3].y = 1 << 30; }},
+        {"food", [](WorldState& s) { s.islands[0].food[3].x = s.islands[0].food[3].y = 0; }},
         {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 200; }},
         {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 321; }},
         {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = Items::none; }},
