@@ -290,6 +290,7 @@ Clock::duration SimulationLoop::period(const simulation::Entry& entry) const {
 
 void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end) {
     const bool paced = entry.control.speed.has_value();
+    auto before = clock_.now();
     do {
         laboratory_.advance(entry, executor_);
         if (track.recorder)
@@ -309,9 +310,18 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             track.due = std::max(track.due + period(entry), now - catch_up_max);
         measure(entry, track, now);
         show(entry, track, now);
+        mind_checkpoint(entry, track, now - std::exchange(before, now));
         if (stopped || now >= end || (paced && track.due > now))
             return;
     } while (!mailbox_.pending() && !demand_.changed());
+}
+
+void SimulationLoop::mind_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
+    if (!track.recorder || !track.recorder->checkpoint_due(entry.world, spent))
+        return;
+    const auto began = clock_.now();
+    track.recorder->make_checkpoint(entry.world, executor_);
+    track.recorder->checkpoint_took(clock_.now() - began);
 }
 
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {

@@ -99,6 +99,8 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
+    /// spent: on the last tick and all that came with it.
+    void mind_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent);
     void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
     void show(const simulation::Entry& entry, Track& track, Clock::time_point now);
     void tell_events();

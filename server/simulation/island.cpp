@@ -360,6 +360,136 @@ base::StateHash Island::hash_of_boxes() const {
     return hash;
 }
 
+IslandShape Island::shape() const {
+    return {.organisms = static_cast<std::uint32_t>(fate_.cause.size()),
+            .has_bodies = has_bodies(),
+            .crates = has_bodies() ? crate_count_ : 0,
+            .food = has_bodies() ? food_.size() : 0,
+            .poison = has_bodies() ? poison_.size() : 0};
+}
+
+IslandState Island::state(base::Executor& executor) const {
+    IslandState state;
+    state.fate = fate_;
+    state.counts = counts_;
+    if (!has_bodies())
+        return state;
+    for (std::uint32_t i = 0; i < crate_count_; ++i)
+        state.crates.push_back({boxes_.x[i], boxes_.y[i], boxes_.velocity_x[i], boxes_.velocity_y[i]});
+    executor.parallel_for(3, 1, [&](base::Range parts) {
+        for (std::size_t part = parts.begin; part < parts.end; ++part)
+            if (part == 0)
+                state.food = food_.all();
+            else if (part == 1)
+                state.poison = poison_.all();
+            else
+                state.organisms.resize(body_of_.size());
+    });
+    executor.parallel_for(bodies_.size(), organisms_per_block, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            if (!bodies_.is_void(i))
+                state.organisms[bodies_.id[i]] = {bodies_.x[i], bodies_.y[i], bodies_.velocity_x[i],
+                                                  bodies_.velocity_y[i], living_.health[i]};
+    });
+    return state;
+}
+
+base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) const {
+    const auto wrong = [this](const std::string& what) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "island " + std::to_string(index_) + " cannot be so: " + what,
+                             .violations = {}};
+    };
+    const Fate& fate = state.fate;
+    const IslandShape own = shape();
+    if (fate.cause.size() != own.organisms || fate.lived_ticks.size() != own.organisms ||
+        fate.food_eaten.size() != own.organisms || fate.poison_eaten.size() != own.organisms ||
+        state.organisms.size() != body_of_.size())
+        return wrong("the number of its organisms");
+    if (state.crates.size() != own.crates)
+        return wrong("the number of its crates");
+
+    // Limited when the tick ended, give or take some rounding.
+    const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
+    const auto can_move = [&](const auto& body) {
+        return body.x >= 0 && body.x <= area_.width && body.y >= 0 && body.y <= area_.height &&
+               body.velocity_x * body.velocity_x + body.velocity_y * body.velocity_y <= speed_max * speed_max;
+    };
+    std::uint32_t alive = 0, starved = 0, poisoned = 0;
+    for (std::size_t id = 0; id < own.organisms; ++id) {
+        const auto which = [&](const char* what) { return wrong(what + (" organism " + std::to_string(id))); };
+        if (fate.cause[id] == CauseOfDeath::Alive) {
+            if (fate.lived_ticks[id] != 0)
+                return which("when it lost");
+            if (!own.has_bodies)
+                continue;
+            ++alive;
+            const IslandState::Organism& organism = state.organisms[id];
+            if (!can_move(organism))
+                return which("where it has, or how fast it is, its");
+            if (!std::isfinite(organism.health) || (organism.health <= 0 && tick > 0))
+                return which("the health of its");
+            continue;
+        }
+        starved += fate.cause[id] == CauseOfDeath::Starved;
+        poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
+        if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Poisoned || fate.lived_ticks[id] == 0 ||
+            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{})
+            return which("how it lost");
+    }
+    if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count)
+        return wrong("the number of its dead");
+    if (!std::ranges::all_of(state.crates, can_move))
+        return wrong("where a crate is, or how fast it is");
+    if (!own.has_bodies)
+        return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("its items");
+    if (const char* fault = food_.fault_of(state.food, tick, alive == 0))
+        return wrong(std::string{"of its food, "} + fault);
+    if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0))
+        return wrong(std::string{"of its poison, "} + fault);
+    return {};
+}
+
+void Island::restore(const IslandState& state, std::uint32_t tick, base::Executor& executor) {
+    fate_ = state.fate;
+    counts_ = state.counts;
+    if (!has_bodies() || tick == 0)
+        return;
+    for (std::uint32_t i = 0; i < crate_count_; ++i) {
+        boxes_.x[i] = state.crates[i].x;
+        boxes_.y[i] = state.crates[i].y;
+        boxes_.velocity_x[i] = state.crates[i].velocity_x;
+        boxes_.velocity_y[i] = state.crates[i].velocity_y;
+    }
+    food_.restore(state.food, executor);
+    poison_.restore(state.poison, executor);
+    // A generation begins with every organism in the place of its id.
+    base::StateHash organisms;
+    std::vector<std::uint32_t> gone;
+    for (std::uint32_t id = 0; id < body_of_.size(); ++id) {
+        if (fate_.cause[id] != CauseOfDeath::Alive) {
+            gone.push_back(id);
+            continue;
+        }
+        const IslandState::Organism& organism = state.organisms[id];
+        bodies_.x[id] = organism.x;
+        bodies_.y[id] = organism.y;
+        bodies_.velocity_x[id] = organism.velocity_x;
+        bodies_.velocity_y[id] = organism.velocity_y;
+        living_.health[id] = organism.health;
+        organisms += hash_of_organism(bodies_, living_, id);
+    }
+    sight_.begin(bodies_, living_, food_, poison_);
+    for (const std::uint32_t id : gone) {
+        body_of_[id] = dead;
+        bodies_.remove(id);
+        sight_.remove(id);
+        living_.health[id] = -std::numeric_limits<float>::infinity();
+    }
+    alive_count_ -= static_cast<std::uint32_t>(gone.size());
+    hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
+}
+
 std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const {
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     std::vector<double> fitness(organisms);

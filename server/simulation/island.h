@@ -14,6 +14,7 @@
 
 #include "server/base/executor.h"
 #include "server/base/random.h"
+#include "server/base/result.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
 #include "server/evolution/next_generation.h"
@@ -27,19 +28,13 @@
 #include "server/simulation/placement.h"
 #include "server/simulation/sight.h"
 #include "server/simulation/statistics.h"
+#include "server/simulation/world_state.h"
 
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace evod::simulation {
-
-/// Numbers of the generation that do not follow from Fate.
-struct IslandCounts {
-    std::uint64_t food_eaten = 0, poison_eaten = 0;
-    std::uint32_t starved_count = 0, poisoned_count = 0;
-    std::uint64_t too_fast_count = 0, speed_limit_count = 0;
-};
 
 class Island {
   public:
@@ -51,6 +46,13 @@ class Island {
 
     /// tick  of the generation, 1 for its first.
     void advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+
+    IslandShape shape() const;
+    IslandState state(base::Executor& executor) const;
+    /// What is wrong with the state of an island that is like this one at its generation's beginning, after `tick`.
+    base::Result<void> judge(const IslandState& state, std::uint32_t tick) const;
+    /// Takes a state that judge() has found nothing wrong with.
+    void restore(const IslandState& state, std::uint32_t tick, base::Executor& executor);
 
     /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end,
     /// or the function of the chromosome.
@@ -89,6 +91,7 @@ class Island {
     /// Returns the hash of the living.
     base::StateHash feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
     base::StateHash hash_of_boxes() const;
+    bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
 
     /// What came of a tick in a block of organisms.

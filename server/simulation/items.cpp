@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace evod::simulation {
@@ -54,17 +55,26 @@ void Items::begin(const ItemRules& rules, const base::RandomKey& respawn_key, co
     area_ = area;
     respawn_key_ = respawn_key;
     all_.resize(rules.count);
+    put_all(executor, [&](std::uint32_t item) {
+        const Place place = place_of(item);
+        return Item{place.x, place.y, 0};
+    });
+    present_count_ = rules.count;
+}
+
+template <class ItemOf>
+void Items::put_all(base::Executor& executor, ItemOf&& item_of) {
+    const auto count = static_cast<std::uint32_t>(all_.size());
     due_.clear();
     due_begin_ = 0;
     changes_.clear();
-    choose_cells(rules.count);
+    choose_cells(count);
 
-    std::vector<base::StateHash> hash_of_block((rules.count + items_per_block - 1) / items_per_block);
-    executor.parallel_for(rules.count, items_per_block, [&](base::Range range) {
+    std::vector<base::StateHash> hash_of_block((count + items_per_block - 1) / items_per_block);
+    executor.parallel_for(count, items_per_block, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const auto item = static_cast<std::uint32_t>(i);
-            const Place place = place_of(item);
-            all_[item] = {place.x, place.y, 0};
+            all_[item] = item_of(item);
             hash_of_block[range.begin / items_per_block] += hash_of(item);
         }
     });
@@ -72,7 +82,33 @@ void Items::begin(const ItemRules& rules, const base::RandomKey& respawn_key, co
     for (const base::StateHash& hash : hash_of_block)
         hash_ += hash;
     insert_all(executor);
-    present_count_ = rules.count;
+}
+
+const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const {
+    if (items.size() != all_.size())
+        return "their number";
+    const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
+    for (const Item& item : items) {
+        // Clear of the walls; sight relies on no item ever lying in the corner.
+        if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height)
+            return "where one is";
+        const bool possible =
+            rules_.respawn ? item.due_tick <= last_due && (item.due_tick > tick || resting) : item.due_tick == none;
+        if (item.due_tick != 0 && !possible)
+            return "when one is due";
+    }
+    return nullptr;
+}
+
+void Items::restore(std::span<const Item> items, base::Executor& executor) {
+    put_all(executor, [&](std::uint32_t item) { return items[item]; });
+    present_count_ = 0;
+    for (std::uint32_t item = 0; item < size(); ++item)
+        if (present(item))
+            ++present_count_;
+        else if (rules_.respawn)
+            due_.push_back({all_[item].due_tick, item});
+    std::ranges::sort(due_, {}, [](const Due& due) { return std::tie(due.tick, due.item); });
 }
 
 void Items::choose_cells(std::uint32_t count) {
@@ -127,6 +163,8 @@ void Items::insert_all(base::Executor& executor) {
                 __builtin_prefetch(&items_[cell], 1);
             }
             const auto item = static_cast<std::uint32_t>(i);
+            if (!present(item))
+                continue;
             const std::uint32_t cell = cell_of(item);
             if (base::look_at(counts_[cell]) >= slots) {
                 no_slot.push_back(item);

@@ -46,6 +46,17 @@ class Items {
     void begin_at(const ItemRules& rules, std::span<const Place> places, base::Seed seed, const physics::Area& area,
                   base::Executor& executor);
 
+    struct Item {
+        physics::Coordinate x, y; // of one that is away, where it was
+        std::uint32_t due_tick;   // 0: there; else the tick at whose beginning it reappears
+        friend bool operator==(const Item&, const Item&) = default;
+    };
+    /// What is wrong with all() being so after `tick` of the generation; nothing if it can be. resting: nothing
+    /// reappears any more, due or not.
+    const char* fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const;
+    /// Makes all() so; fault_of() has found nothing.
+    void restore(std::span<const Item> items, base::Executor& executor);
+
     /// Puts back what is due at the beginning of `tick`.
     void reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor);
 
@@ -121,10 +132,6 @@ class Items {
     std::uint32_t size() const { return static_cast<std::uint32_t>(all_.size()); } // there or not
     std::uint32_t present_count() const { return present_count_; }
     bool present(std::uint32_t item) const { return all_[item].due_tick == 0; }
-    struct Item {
-        physics::Coordinate x, y; // of one that is away, where it was
-        std::uint32_t due_tick;   // 0: there; else the tick at whose beginning it reappears
-    };
     const base::Column<Item>& all() const { return all_; } // by id
     float radius_px() const { return rules_.radius_px; }
     /// Of all items; kept up to date as they come and go.
@@ -136,6 +143,9 @@ class Items {
     template <class PlaceOf>
     void begin(const ItemRules& rules, const base::RandomKey& respawn_key, const physics::Area& area,
                base::Executor& executor, PlaceOf&& place_of);
+    /// item_of: each as it is now, by id.
+    template <class ItemOf>
+    void put_all(base::Executor& executor, ItemOf&& item_of);
     void choose_cells(std::uint32_t count);
     std::uint32_t column_at(std::int64_t x) const { return index_at(x, columns_); } // clamped into the grid
     std::uint32_t row_at(std::int64_t y) const { return index_at(y, rows_); }
@@ -145,6 +155,7 @@ class Items {
     }
     ItemBucket& bucket(std::uint32_t b) { return buckets_[std::size_t{b} + 1]; }
     const ItemBucket& bucket(std::uint32_t b) const { return buckets_[std::size_t{b} + 1]; }
+    /// Those that are there.
     void insert_all(base::Executor& executor);
     void insert(std::uint32_t item, std::uint32_t cell);
     std::uint32_t cell_of(std::uint32_t item) const {

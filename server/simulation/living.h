@@ -51,6 +51,7 @@ struct Fate {
     std::vector<std::uint32_t> food_eaten, poison_eaten;
 
     void begin_generation(std::size_t organisms);
+    friend bool operator==(const Fate&, const Fate&) = default;
 };
 
 } // namespace evod::simulation

@@ -5,6 +5,8 @@
 #include "server/evolution/migration.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 
 namespace evod::simulation {
@@ -173,33 +175,122 @@ void World::advance_tick(base::Executor& executor) {
             events_.push_back(Extinction{.island = i, .generation = moment_.generation});
     }
     update_hash();
-    // Half a tick of slack, so that 40 s are 2,400 sixtieths however they are rounded.
-    if (alive == 0 || static_cast<double>(moment_.generation_tick) + 0.5 > p.generation_s / p.tick_s)
+    if (ends(moment_.generation_tick, alive))
         end_generation(executor);
+}
+
+bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
+    const Parameters& p = parameters_.active;
+    if (generation_tick == 0)
+        return false;
+    // Half a tick of slack, so that 40 s are 2,400 sixtieths however they are rounded.
+    return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
+}
+
+void World::find_fitness(base::Executor& executor) {
+    fitness_.clear();
+    for (const Island& island : islands_)
+        fitness_.push_back(
+            island.fitness(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick), executor));
 }
 
 void World::end_generation(base::Executor& executor) {
     const Parameters& p = parameters_.active;
-    fitness_.clear();
+    find_fitness(executor);
     std::vector<GenerationStatistics> statistics;
-    double best = 0;
-    for (const Island& island : islands_) {
-        fitness_.push_back(island.fitness(p, static_cast<std::uint32_t>(moment_.generation_tick), executor));
-        GenerationStatistics s = generation_statistics(island, p, fitness_.back(), executor);
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        GenerationStatistics s = generation_statistics(islands_[i], p, fitness_[i], executor);
         s.generation = moment_.generation;
         s.end_tick = moment_.tick;
         s.simulated_s = static_cast<double>(moment_.generation_tick) * p.tick_s;
-        best = statistics.empty() ? s.fitness_best : std::max(best, s.fitness_best);
         statistics.push_back(s);
     }
+    close_generation(statistics);
+    events_.push_back(GenerationFinished{std::move(statistics)});
+    if (const evolution::Outcome reached = outcome(); reached != evolution::Outcome::Running)
+        events_.push_back(RunTerminated{reached});
+}
+
+void World::close_generation(const std::vector<GenerationStatistics>& statistics) {
     generation_over_ = true;
+    const double best = std::ranges::max(statistics, {}, &GenerationStatistics::fitness_best).fitness_best;
     progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_bodies() && alive_count() == 0});
     history_.push_back(statistics);
     if (history_.size() > history_generations_kept)
         history_.pop_front();
-    events_.push_back(GenerationFinished{std::move(statistics)});
-    if (const evolution::Outcome reached = outcome(); reached != evolution::Outcome::Running)
-        events_.push_back(RunTerminated{reached});
+}
+
+WorldState World::state(base::Executor& executor) const {
+    WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
+    state.islands.resize(islands_.size());
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            state.islands[i] = islands_[i].state(executor);
+    });
+    if (generation_over_)
+        state.ended = history_.back();
+    return state;
+}
+
+std::vector<IslandShape> World::shapes() const {
+    std::vector<IslandShape> shapes;
+    for (const Island& island : islands_)
+        shapes.push_back(island.shape());
+    return shapes;
+}
+
+base::Result<void> World::restore(const WorldState& state, base::Executor& executor) {
+    EVOD_ASSERT(moment_.generation_tick == 0);
+    const auto wrong = [](const char* what) {
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = std::string{"no world of this generation can be so: "} + what,
+                             .violations = {}};
+    };
+    const Moment& moment = state.moment;
+    const ParameterSet& set = state.parameters;
+    if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
+        moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
+        moment.simulated_s < moment_.simulated_s)
+        return wrong("its moment");
+    // What takes effect with a generation is as it was when this one began.
+    if (!(taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
+        !validate(set.active).empty() ||
+        !validate(taking_effect(set.active, set.requested, base::Effect::NextGeneration)).empty())
+        return wrong("its parameters");
+    if (state.islands.size() != islands_.size())
+        return wrong("the number of its islands");
+    // No tick after the last.
+    if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1))
+        return wrong("its moment");
+    const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
+    std::uint64_t alive = 0;
+    for (std::size_t i = 0; i < islands_.size(); ++i) {
+        if (auto judged = islands_[i].judge(state.islands[i], tick); !judged)
+            return judged;
+        if (tick == 0 && !(state.islands[i] == islands_[i].state(executor)))
+            return wrong("its beginning");
+        alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
+    }
+    const bool over = ends(tick, alive);
+    if (state.ended.size() != (over ? islands_.size() : 0))
+        return wrong("whether it is over");
+    for (std::size_t i = 0; i < state.ended.size(); ++i)
+        if (state.ended[i].generation != moment.generation || state.ended[i].island != i ||
+            !std::isfinite(state.ended[i].fitness_best))
+            return wrong("its statistics");
+
+    executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
+        for (std::size_t i = range.begin; i < range.end; ++i)
+            islands_[i].restore(state.islands[i], tick, executor);
+    });
+    moment_ = moment;
+    parameters_ = set;
+    if (over) {
+        find_fitness(executor);
+        close_generation(state.ended);
+    }
+    update_hash();
+    return {};
 }
 
 void World::update_hash() {

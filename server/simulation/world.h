@@ -10,6 +10,7 @@
 
 #include "server/base/executor.h"
 #include "server/base/random.h"
+#include "server/base/result.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/termination.h"
 #include "server/simulation/commands.h"
@@ -17,19 +18,13 @@
 #include "server/simulation/island.h"
 #include "server/simulation/parameters.h"
 #include "server/simulation/statistics.h"
+#include "server/simulation/world_state.h"
 
 #include <deque>
 #include <memory>
 #include <vector>
 
 namespace evod::simulation {
-
-struct Moment {
-    std::uint64_t tick = 0;            // ticks since the run began
-    std::uint64_t generation = 1;      // 1 for the first
-    std::uint64_t generation_tick = 0; // ticks since the generation began
-    double simulated_s = 0;            // sum of the lengths of all ticks
-};
 
 /// What held when a generation began, before its first tick.
 struct Opening {
@@ -57,6 +52,15 @@ class World {
 
     /// Another world, as this one was at the first moment of its generation.
     World at_its_opening(base::Executor& executor) const;
+
+    /// As much of the world as restore() needs to bring it here again.
+    WorldState state(base::Executor& executor) const;
+    /// What the islands of a state of this generation hold.
+    std::vector<IslandShape> shapes() const;
+    /// Brings a world that stands at the beginning of a generation to a later moment of it, from where it goes on as
+    /// the one did whose state() this was. Refused, having changed nothing, if no such world can be in that state;
+    /// whoever has the hash of the one that was compares.
+    base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
     /// Begins the run again with the parameters last asked for.
     void reset(base::Seed seed);
@@ -99,7 +103,12 @@ class World {
     void begin_run();
     void make_islands();
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
+    /// Whether a generation is over after `generation_tick`, with so many alive.
+    bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
     void end_generation(base::Executor& executor);
+    void find_fitness(base::Executor& executor);
+    /// Takes the statistics of the generation that is over.
+    void close_generation(const std::vector<GenerationStatistics>& statistics);
     /// What breeds: the chromosomes of the generation that is over, or, where migrants came, `migrated`.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
     void update_hash();

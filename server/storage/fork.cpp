@@ -28,6 +28,7 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                          .parameters = begun.opening.parameters.requested,
                          .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
                          .first_generation = generation,
+                         .first_tick = begun.opening.moment.tick,
                          .forked_from = origin.identity().run_id},
                         {}, &begun);
     if (!file)

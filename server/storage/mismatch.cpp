@@ -10,10 +10,18 @@ namespace evod::storage {
 namespace {
 
 using evolution::NextGeneration;
+using simulation::IslandState;
 using Found = std::optional<Mismatch>;
 
 std::string text_of(double value) {
     return protocol::number_text(value + 0.0); // SQLite keeps −0 as 0
+}
+/// "3 4.5 6"
+template <class... Numbers>
+std::string text_of_numbers(Numbers... numbers) {
+    std::string text;
+    ((text += (text.empty() ? "" : " ") + protocol::number_text(static_cast<double>(numbers) + 0.0)), ...);
+    return text;
 }
 std::string text_of(std::uint64_t value) {
     return std::to_string(value);
@@ -26,6 +34,19 @@ std::string text_of(bool value) {
 }
 std::string text_of(simulation::CauseOfDeath cause) {
     return std::string{name_of(cause)};
+}
+std::string text_of(const IslandState::Organism& organism) {
+    return text_of_numbers(organism.x, organism.y, organism.velocity_x, organism.velocity_y, organism.health);
+}
+std::string text_of(const IslandState::Crate& crate) {
+    return text_of_numbers(crate.x, crate.y, crate.velocity_x, crate.velocity_y);
+}
+std::string text_of(const simulation::Items::Item& item) {
+    return text_of_numbers(item.x, item.y, item.due_tick);
+}
+std::string text_of(const simulation::IslandCounts& counts) {
+    return text_of_numbers(counts.food_eaten, counts.poison_eaten, counts.starved_count, counts.poisoned_count,
+                           counts.too_fast_count, counts.speed_limit_count);
 }
 std::string text_of(const evolution::Parents& parents) {
     return std::to_string(parents.first) + " and " + std::to_string(parents.second);
@@ -42,17 +63,24 @@ Found compare(const std::string& part, const T& stored, const T& simulated) {
 }
 
 /// of_island  " on island 3"
+/// name       "the fitness of organism"
+template <class T>
+Found compare_each(const std::string& name, const std::string& of_island, std::span<const T> stored,
+                   std::span<const T> simulated) {
+    if (stored.size() != simulated.size())
+        return compare(name + ": their number" + of_island, stored.size(), simulated.size());
+    const auto [one, other] = std::ranges::mismatch(stored, simulated);
+    if (one == stored.end())
+        return std::nullopt;
+    return compare(name + " " + std::to_string(one - stored.begin()) + of_island, *one, *other);
+}
 /// name       "the fitness"
 template <class T>
 Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
                         std::span<const T> simulated) {
     if (stored.size() != simulated.size())
         return compare(std::string{name} + ": the number of organisms" + of_island, stored.size(), simulated.size());
-    const auto [one, other] = std::ranges::mismatch(stored, simulated);
-    if (one == stored.end())
-        return std::nullopt;
-    return compare(std::string{name} + " of organism " + std::to_string(one - stored.begin()) + of_island, *one,
-                   *other);
+    return compare_each(std::string{name} + " of organism", of_island, stored, simulated);
 }
 
 Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
@@ -112,6 +140,33 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
     return found;
 }
 
+Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
+    using simulation::Items;
+    const simulation::Fate &one = stored.fate, &other = simulated.fate;
+    if (auto found =
+            compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause))
+        return found;
+    if (auto found = compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks))
+        return found;
+    if (auto found = compare_organisms<std::uint32_t>("the food", of_island, one.food_eaten, other.food_eaten))
+        return found;
+    if (auto found = compare_organisms<std::uint32_t>("the poison", of_island, one.poison_eaten, other.poison_eaten))
+        return found;
+    if (auto found = compare_organisms<IslandState::Organism>("the place, velocity and health", of_island,
+                                                              stored.organisms, simulated.organisms))
+        return found;
+    if (auto found = compare_each<IslandState::Crate>("the place and velocity of crate", of_island, stored.crates,
+                                                      simulated.crates))
+        return found;
+    if (auto found = compare_each<Items::Item>("the place of food", of_island, stored.food, simulated.food))
+        return found;
+    if (auto found = compare_each<Items::Item>("the place of poison", of_island, stored.poison, simulated.poison))
+        return found;
+    if (stored.counts == simulated.counts)
+        return std::nullopt;
+    return Mismatch{"the counts" + of_island, text_of(stored.counts), text_of(simulated.counts)};
+}
+
 template <class T>
 Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
     if (auto found = compare("the number of islands", stored.size(), simulated.size()))
@@ -162,6 +217,26 @@ Found compare(const std::vector<IslandOutcome>& stored, const std::vector<Island
 Found compare(const std::vector<simulation::GenerationStatistics>& stored,
               const std::vector<simulation::GenerationStatistics>& simulated) {
     return compare_islands(stored, simulated);
+}
+
+Found compare(const simulation::WorldState& stored, const simulation::WorldState& simulated) {
+    if (auto found = compare("the generation", stored.moment.generation, simulated.moment.generation))
+        return found;
+    if (auto found =
+            compare("the tick of the generation", stored.moment.generation_tick, simulated.moment.generation_tick))
+        return found;
+    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s))
+        return found;
+    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active))
+        return found;
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested))
+        return found;
+    if (auto found =
+            compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision))
+        return found;
+    if (auto found = compare_islands(stored.islands, simulated.islands))
+        return found;
+    return compare_islands(stored.ended, simulated.ended);
 }
 
 Found compare(const base::StateHash& stored, const base::StateHash& simulated) {

@@ -25,6 +25,7 @@ std::optional<Mismatch> compare(const std::vector<IslandOutcome>& stored, const 
 std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatistics>& stored,
                                 const std::vector<simulation::GenerationStatistics>& simulated);
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
+std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
 /// Of parameters that were asked for.
 std::optional<Mismatch> compare_requested(const simulation::Parameters& stored,
                                           const simulation::Parameters& simulated);

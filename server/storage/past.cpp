@@ -14,7 +14,7 @@ simulation::Recording recording_of(RunFile& file) {
     return {.past_of = {},
             .first_generation = file.identity().first_generation,
             .last_generation = std::max(file.identity().first_generation, file.last_generation()),
-            .first_tick = file.first_tick(),
+            .first_tick = file.identity().first_tick,
             .last_tick = file.last_tick()};
 }
 
@@ -77,7 +77,7 @@ Result<PastMoment> Past::find(const WantedMoment& wanted, const simulation::Reco
         const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
         if (tick < there.first_tick || tick > there.last_tick)
             return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
-        return PastMoment{(*file)->generation_of(tick), tick};
+        return PastMoment{(*file)->generation_at(tick), tick};
     }
     const std::uint64_t generation = *wanted.generation;
     if (generation < there.first_generation || generation > there.last_generation)
@@ -103,7 +103,7 @@ Result<Rerun> Past::begin_before(const PastMoment& moment, base::Executor& execu
     const auto file = open();
     if (!file)
         return file.error();
-    return Rerun::held_before(**file, moment.generation, history_generations_known, executor);
+    return Rerun::before(**file, moment.generation, moment.tick, history_generations_known, executor);
 }
 
 Result<void> Past::extend(ComingChanges& coming) const {

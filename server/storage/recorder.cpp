@@ -30,6 +30,7 @@ std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& wo
     if (moment.generation != written_.generations) {
         records.emplace_back(beginning_of(world));
         written_.generations = moment.generation;
+        since_beginning_ = {};
     }
     const bool new_tick = moment.tick > written_.tick;
     written_.tick = std::max(written_.tick, moment.tick);
@@ -45,6 +46,20 @@ std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& wo
 void RunRecorder::hand_over(const simulation::World& world) {
     if (auto records = news(world); !records.empty())
         thread_.write(number_, {std::move(records), {}});
+}
+
+bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent) {
+    since_beginning_ += spent;
+    since_checkpoint_ += spent;
+    // Where a generation is over, the next one's beginning comes with the next tick.
+    return since_beginning_ > worth_a_checkpoint && !world.generation_over() && !writing_->waits &&
+           since_checkpoint_ > checkpoint_cost_factor * (copying_took_ + writing_->took.load());
+}
+
+void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor& executor) {
+    written_.tick = std::max(written_.tick, world.moment().tick);
+    thread_.write(number_, checkpoint_of(world, written_.journal_entries, executor), writing_);
+    since_beginning_ = since_checkpoint_ = {};
 }
 
 JournalEntry RunRecorder::entry(CommandRecord& command) {

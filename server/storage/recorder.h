@@ -1,12 +1,13 @@
 // Recorder: what a laboratory's runs hand over to their files while they run.
 //
 // Owner        the simulation thread.
-// Determinism  it only looks.
+// Determinism  it only looks. How long ticks take decides when there is a checkpoint, and nothing else.
 #pragma once
 
 #include "server/storage/data_folder.h"
 #include "server/storage/storage_thread.h"
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,6 +26,12 @@ struct CommandRecord {
 /// Of one run.
 class RunRecorder {
   public:
+    /// A checkpoint is worth it once the run has been simulated for longer than this since it could last be begun again
+    /// from what the file holds.
+    static constexpr std::chrono::seconds worth_a_checkpoint{2};
+    /// Time between two checkpoints, in times of what the last one took on both threads.
+    static constexpr int checkpoint_cost_factor = 50;
+
     /// A run that goes on.
     RunRecorder(StorageThread& thread, StorageThread::RunNumber number, const EndMark& so_far,
                 std::uint64_t generations_ended)
@@ -39,6 +46,11 @@ class RunRecorder {
     void journal(CommandRecord command);
     /// done: called as StorageThread does, once everything that was handed over is on the disk.
     void once_written(StorageThread::Done done) { thread_.write(number_, {{}, std::move(done)}); }
+    /// Whether a checkpoint is due right after the tick that was followed last. spent: on simulating it.
+    bool checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent);
+    /// Makes one; then checkpoint_took() tells how long the simulation had to wait for it.
+    void make_checkpoint(const simulation::World& world, base::Executor& executor);
+    void checkpoint_took(std::chrono::nanoseconds time) { copying_took_ = time; }
 
   private:
     friend class Recorder;
@@ -57,6 +69,11 @@ class RunRecorder {
     StorageThread::RunNumber number_ = 0;
     EndMark written_; // what has been handed over; its links are not counted
     std::uint64_t generations_ended_ = 0;
+
+    // Simulated since the file holds something to begin from; since the last checkpoint.
+    std::chrono::nanoseconds since_beginning_{0}, since_checkpoint_{0};
+    std::chrono::nanoseconds copying_took_{0};
+    std::shared_ptr<StorageThread::CheckpointWriting> writing_ = std::make_shared<StorageThread::CheckpointWriting>();
 };
 
 /// Of all runs of a laboratory.

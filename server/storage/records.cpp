@@ -11,6 +11,10 @@ GenerationBegun beginning_of(const simulation::World& world) {
     return begun;
 }
 
+Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor) {
+    return {.state = world.state(executor), .hash = world.hash(), .journal_entries = journal_entries};
+}
+
 GenerationEnded end_of(const simulation::World& world) {
     EVOD_ASSERT(world.generation_over());
     GenerationEnded ended{

@@ -26,6 +26,7 @@ struct RunIdentity {
     std::int64_t began_unix_ms = 0; // the clock on the wall, for people; nothing depends on it
     // A fork begins with a generation of another run; `parameters` are those that were asked for there.
     std::uint64_t first_generation = 1;
+    std::uint64_t first_tick = 0; // the ticks before it; with those of a generation over, it begins with a checkpoint
     std::optional<simulation::RunId> forked_from = std::nullopt;
 };
 
@@ -70,6 +71,23 @@ struct GenerationEnded {
 GenerationEnded end_of(const simulation::World& world);
 /// "alive", "starved", "poisoned"; "unknown" for a number that is no cause.
 std::string_view name_of(simulation::CauseOfDeath cause);
+
+/// A world right after a tick, before anything was asked of it there; from here, too, all that follows can be
+/// simulated. What it has in common with its generation's beginning is told there.
+struct Checkpoint {
+    simulation::WorldState state;
+    base::StateHash hash;
+    std::uint64_t journal_entries = 0; // that came before it
+};
+Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor);
+/// The same as it is stored.
+struct StoredCheckpoint {
+    simulation::Moment moment;
+    simulation::ParameterSet parameters;
+    base::StateHash hash;
+    std::uint64_t journal_entries = 0;
+    std::string state; // the rest, packed (checkpoint.h)
+};
 
 /// The state hash after a tick.
 struct HashLink {

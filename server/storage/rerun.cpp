@@ -1,6 +1,7 @@
 #include "server/storage/rerun.h"
 
 #include "server/protocol/commands.h"
+#include "server/storage/checkpoint.h"
 
 #include <algorithm>
 #include <utility>
@@ -44,8 +45,25 @@ Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file, std:
     return changes;
 }
 
+Result<std::vector<ParameterChange>> Rerun::changes_of(RunFile& file) {
+    if (auto refused = file.other_model())
+        return *refused;
+    const auto journal = file.journal();
+    if (!journal)
+        return journal.error();
+    return parameter_changes(file, *journal);
+}
+
 Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor& executor) {
-    auto rerun = held_before(file, generation, simulation::World::history_generations_kept, executor);
+    const auto changes = changes_of(file);
+    if (!changes)
+        return changes.error();
+    auto rerun = begun_at(file, file.held_at_or_before(generation), nullptr, *changes,
+                          simulation::World::history_generations_kept, executor);
+    if (!rerun && rerun.error().code == RefusalCode::NotFound)
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = file.path() + " holds no generation " + std::to_string(generation),
+                       .violations = {}};
     while (rerun && rerun->world().moment().generation < generation)
         if (rerun->world().generation_over())
             rerun->turn_over(executor);
@@ -54,48 +72,93 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     return rerun;
 }
 
-Result<Rerun> Rerun::held_before(RunFile& file, std::uint64_t generation, std::size_t history_count,
-                                 base::Executor& executor) {
-    if (auto refused = file.other_model())
-        return *refused;
-    const auto journal = file.journal();
-    if (!journal)
-        return journal.error();
-    const auto changes = parameter_changes(file, *journal);
+Result<Rerun> Rerun::before(RunFile& file, std::uint64_t generation, std::uint64_t tick, std::size_t history_count,
+                            base::Executor& executor) {
+    const auto changes = changes_of(file);
     if (!changes)
         return changes.error();
     const std::uint64_t held = file.held_at_or_before(generation);
-    const auto begun = file.beginning_of(held);
-    if (!begun)
-        return begun.error();
-    const std::uint64_t first_generation = file.identity().first_generation;
-    if (!*begun && !(generation == 1 && first_generation == 1))
-        return Refusal{.code = RefusalCode::NotFound,
-                       .message = file.path() + " holds no generation " + std::to_string(generation),
-                       .violations = {}};
-    if (!*begun)
-        return with_changes(file, simulation::World{file.identity().parameters, file.identity().seed}, *changes);
-    auto history = file.history(held, history_count);
-    if (!history)
-        return history.error();
-    return from(file, **begun, *changes, *std::move(history), executor);
+    const auto checkpoint = file.last_checkpoint(tick);
+    if (!checkpoint)
+        return checkpoint.error();
+    const bool is_later =
+        *checkpoint && (*checkpoint)->moment.generation >= held && (*checkpoint)->moment.generation <= generation;
+    if (is_later)
+        return begun_at(file, (*checkpoint)->moment.generation, &**checkpoint, *changes, history_count, executor);
+    return begun_at(file, held, nullptr, *changes, history_count, executor);
 }
 
-Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, std::span<const ParameterChange> changes,
-                          simulation::World::History history, base::Executor& executor) {
-    return with_changes(
-        file, simulation::World{file.identity().seed, begun.opening, begun.born, std::move(history), executor},
-        changes);
+Result<Rerun> Rerun::before(RunFile& file, std::uint64_t tick, base::Executor& executor) {
+    if (tick < file.identity().first_tick || tick > file.last_tick())
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = file.path() + " does not tell of tick " + std::to_string(tick),
+                       .violations = {}};
+    return before(file, file.generation_at(tick), tick, simulation::World::history_generations_kept, executor);
+}
+
+Result<Rerun> Rerun::begun_at(RunFile& file, std::uint64_t generation, const StoredCheckpoint* checkpoint,
+                              std::span<const ParameterChange> changes, std::size_t history_count,
+                              base::Executor& executor) {
+    const RunIdentity& identity = file.identity();
+    const auto begun = file.beginning_of(generation);
+    if (!begun)
+        return begun.error();
+    if (!*begun && !(generation == 1 && identity.first_generation == 1))
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message =
+                           file.path() + " does not hold the beginning of generation " + std::to_string(generation),
+                       .violations = {}};
+    if (!*begun)
+        return with_changes(file, simulation::World{identity.parameters, identity.seed}, changes, 0);
+    // Of a run that begins within a generation, nothing before is known.
+    std::optional<StoredCheckpoint> first;
+    if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
+        auto found = file.last_checkpoint(identity.first_tick);
+        if (!found)
+            return found.error();
+        if (!*found || (*found)->moment.tick != identity.first_tick)
+            return damaged(file, "the checkpoint is missing with which the run begins");
+        first = *std::move(found);
+        checkpoint = &*first;
+    }
+    auto history = file.history(generation, history_count);
+    if (!history)
+        return history.error();
+    return from(file, **begun, checkpoint, changes, *std::move(history), executor);
+}
+
+Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, const StoredCheckpoint* checkpoint,
+                          std::span<const ParameterChange> changes, simulation::World::History history,
+                          base::Executor& executor) {
+    const simulation::Moment& opening = begun.opening.moment;
+    simulation::World world{file.identity().seed, begun.opening, begun.born, std::move(history), executor};
+    if (checkpoint == nullptr) {
+        // A change that came between the end of a generation and the beginning of the next is in that beginning
+        // already.
+        const auto first = opening.generation == file.identity().first_generation
+                               ? changes.begin()
+                               : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
+        return with_changes(file, std::move(world), changes, first == changes.begin() ? 0 : std::prev(first)->entry);
+    }
+    const auto unusable = [&](const std::string& why) {
+        return damaged(file, "its checkpoint after tick " + std::to_string(checkpoint->moment.tick) +
+                                 " is none of this run: " + why);
+    };
+    simulation::WorldState state{
+        .moment = checkpoint->moment, .parameters = checkpoint->parameters, .islands = {}, .ended = {}};
+    if (const auto unpacked = unpack(checkpoint->state, world.shapes(), state); !unpacked)
+        return unusable(unpacked.error().message);
+    if (const auto restored = world.restore(state, executor); !restored)
+        return unusable(restored.error().message);
+    if (world.hash() != checkpoint->hash)
+        return unusable("it has another state hash than the one that is stored");
+    // Of changes after the same tick some may have come before it, and some after.
+    return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
 }
 
 Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,
-                                  std::span<const ParameterChange> changes) {
-    // A change that came between the end of a generation and the beginning of the next is in that beginning already.
-    const simulation::Moment& begun = world.moment();
-    const auto first = begun.generation == file.identity().first_generation
-                           ? changes.begin()
-                           : std::ranges::upper_bound(changes, begun.tick, {}, &ParameterChange::tick);
-    ComingChanges coming{world, first == changes.begin() ? 0 : std::prev(first)->entry};
+                                  std::span<const ParameterChange> changes, std::uint64_t after_entry) {
+    ComingChanges coming{world, after_entry};
     if (auto extended = coming.extend(file, changes); !extended)
         return extended.error();
     return Rerun{std::move(world), std::move(coming)};
@@ -112,19 +175,22 @@ Result<void> ComingChanges::extend(const RunFile& file, std::span<const Paramete
                                      " of its journal asks for parameters that no world can have");
         requested_ = *assigned;
         last_entry_ = change.entry;
-        requests_.push_back({change.tick, requested_});
+        requests_.push_back({change.entry, change.tick, requested_});
     }
     return {};
 }
 
-void ComingChanges::make_due(simulation::World& world) {
-    for (; next_ < requests_.size() && requests_[next_].tick <= world.moment().tick; ++next_)
+void ComingChanges::make_due(simulation::World& world, std::uint64_t last) {
+    const auto is_due = [&](const Request& request) {
+        return request.tick <= world.moment().tick && request.entry <= last;
+    };
+    for (; next_ < requests_.size() && is_due(requests_[next_]); ++next_)
         world.request_parameters(requests_[next_].parameters);
 }
 
-void Rerun::advance_tick(base::Executor& executor) {
+void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
     world_.advance_tick(executor);
-    changes_.make_due(world_);
+    make_changes(last);
 }
 
 void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
@@ -136,7 +202,7 @@ Result<Recovered> recover(RunFile& file, base::Executor& executor) {
     if (auto whole = file.check_end_mark(); !whole)
         return whole.error();
     const std::uint64_t last_tick = file.last_tick();
-    auto rerun = Rerun::at(file, std::max(file.identity().first_generation, file.last_generation()), executor);
+    auto rerun = Rerun::before(file, last_tick, executor);
     if (!rerun)
         return rerun.error();
     const std::uint64_t from = rerun->world().moment().tick;

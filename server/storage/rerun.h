@@ -1,5 +1,5 @@
-// Rerun: a run simulated again from its file: every moment follows from the beginning of its generation and the
-// journal.
+// Rerun: a run simulated again from its file: every moment follows from the beginning of its generation, or a
+// checkpoint, and the journal.
 //
 // Determinism  the same bits as the first time; whoever has a stored hash compares.
 #pragma once
@@ -33,13 +33,13 @@ class ComingChanges {
 
     /// Takes in those that are new. Refused if one asks for parameters that no world can have.
     base::Result<void> extend(const RunFile& file, std::span<const ParameterChange> changes);
-    /// Makes those that came after the tick at which the world is now.
-    void make_due(simulation::World& world);
+    /// Makes those that came after the tick at which the world is now, up to the journal's entry `last`.
+    void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
 
   private:
     /// What was asked for, all in all, after a change.
     struct Request {
-        std::uint64_t tick;
+        std::uint64_t entry, tick;
         simulation::Parameters parameters;
     };
     simulation::Parameters active_, requested_;
@@ -50,22 +50,27 @@ class ComingChanges {
 
 class Rerun {
   public:
-    /// At the first moment of a generation that the run has begun; if its beginning is not held any more, it is
-    /// simulated from the last one before it that is. Refused if the file is damaged there, follows another model, or
-    /// has no such generation.
+    /// At the first moment of a generation that the run has begun, or of what the file tells of it; if its beginning is
+    /// not held any more, it is simulated from the last one before it that is. Refused if the file is damaged there,
+    /// follows another model, or has no such generation.
     static base::Result<Rerun> at(RunFile& file, std::uint64_t generation, base::Executor& executor);
-    /// The same at the last generation up to that one whose beginning is held.
+    /// At the last moment from which that one can be simulated without what comes before: a checkpoint, or the
+    /// beginning of a generation. Refused as at() is.
     ///
+    /// tick           since the run began; in that generation.
     /// history_count  of how many generations before it the statistics are known to the world, at most.
-    static base::Result<Rerun> held_before(RunFile& file, std::uint64_t generation, std::size_t history_count,
-                                           base::Executor& executor);
+    static base::Result<Rerun> before(RunFile& file, std::uint64_t generation, std::uint64_t tick,
+                                      std::size_t history_count, base::Executor& executor);
+    /// The same for a tick that the file tells of; refused for another.
+    static base::Result<Rerun> before(RunFile& file, std::uint64_t tick, base::Executor& executor);
     /// The same from what has been read; of the file only its identity is looked at.
     ///
-    /// begun    what can be the beginning of a generation; the run's own model is this program's.
-    /// changes  in order of ticks; those that `begun` has in it already are left out.
+    /// begun       what can be the beginning of a generation; the run's own model is this program's.
+    /// checkpoint  of that generation, where to begin; nullptr: with its first tick.
+    /// changes     in order of ticks; those that `begun` or `checkpoint` has in it already are left out.
     static base::Result<Rerun> from(const RunFile& file, const GenerationBegun& begun,
-                                    std::span<const ParameterChange> changes, simulation::World::History history,
-                                    base::Executor& executor);
+                                    const StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
+                                    simulation::World::History history, base::Executor& executor);
 
     const simulation::World& world() const { return world_; }
     const ComingChanges& changes() const { return changes_; }
@@ -74,17 +79,28 @@ class Rerun {
 
     /// Breeds the next generation, if one is over, as the next tick would.
     void turn_over(base::Executor& executor) { world_.turn_over(executor); }
-    /// One tick, then the changes of parameters that came after it. Not to be called where the run was over.
-    void advance_tick(base::Executor& executor);
+    /// One tick, then the changes of parameters that came after it, up to the journal's entry `last`. Not to be called
+    /// where the run was over.
+    void advance_tick(base::Executor& executor, std::uint64_t last = ~std::uint64_t{0});
+    /// The rest of those that came after the last tick.
+    void make_changes(std::uint64_t last = ~std::uint64_t{0}) { changes_.make_due(world_, last); }
     /// Until that tick is over, or the run is.
     void advance_to(std::uint64_t tick, base::Executor& executor);
 
   private:
     Rerun(simulation::World world, ComingChanges changes) : world_{std::move(world)}, changes_{std::move(changes)} {
-        changes_.make_due(world_);
+        make_changes();
     }
+    /// The changes of parameters of a run that this program can simulate.
+    static base::Result<std::vector<ParameterChange>> changes_of(RunFile& file);
+    /// generation  whose beginning is held.
+    /// checkpoint  of that generation; nullptr: its beginning, or that of the file.
+    static base::Result<Rerun> begun_at(RunFile& file, std::uint64_t generation, const StoredCheckpoint* checkpoint,
+                                        std::span<const ParameterChange> changes, std::size_t history_count,
+                                        base::Executor& executor);
+    /// after_entry  up to this entry of the journal, changes are in the world already.
     static base::Result<Rerun> with_changes(const RunFile& file, simulation::World world,
-                                            std::span<const ParameterChange> changes);
+                                            std::span<const ParameterChange> changes, std::uint64_t after_entry);
 
     simulation::World world_;
     ComingChanges changes_;

@@ -1,6 +1,7 @@
 #include "server/storage/run_file.h"
 
 #include "server/simulation/experiment.h"
+#include "server/storage/checkpoint.h"
 
 #include <algorithm>
 #include <charconv>
@@ -30,6 +31,8 @@ const Columns population_columns = {"generation",     "island",        "organism
                                     "survivor_count", "clamped_count", "chromosomes",    "parents"};
 const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
 const Columns link_columns = {"tick", "low", "high"};
+const Columns checkpoint_columns = {
+    "tick", "generation", "generation_tick", "simulated_s", "parameters", "journal_entries", "low", "high", "state"};
 const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
 const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
 const Columns run_columns = {"key", "value"};
@@ -40,6 +43,12 @@ Columns statistics_columns() {
                                 [&](const std::string& name, auto) { columns.push_back(name); });
     return columns;
 }
+
+constexpr const char* checkpoint_table = R"(
+CREATE TABLE checkpoint (tick INTEGER PRIMARY KEY, generation INTEGER NOT NULL, generation_tick INTEGER NOT NULL,
+    simulated_s REAL NOT NULL, parameters INTEGER NOT NULL, journal_entries INTEGER NOT NULL, low INTEGER NOT NULL,
+    high INTEGER NOT NULL, state BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT;
+)";
 
 /// The DDL of a table whose columns have the types of an SQLite "STRICT" table.
 std::string statistics_table() {
@@ -115,10 +124,11 @@ struct RunFile::Writers {
         , outcome{database, "outcome", outcome_columns}
         , statistics{database, "statistics", statistics_columns()}
         , link{database, "state_hash", link_columns}
+        , checkpoint{database, "checkpoint", checkpoint_columns}
         , end{database, "end_mark", end_columns}
         , thinned{database, "thinned", thinned_columns} {}
 
-    RowWriter journal, parameters, generation, population, outcome, statistics, link, end, thinned;
+    RowWriter journal, parameters, generation, population, outcome, statistics, link, checkpoint, end, thinned;
 };
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
@@ -143,18 +153,21 @@ Refusal RunFile::damaged(const std::string& what) const {
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
-                                                 const Options& options, const GenerationBegun* beginning) {
+                                                 const Options& options, const GenerationBegun* beginning,
+                                                 const Checkpoint* checkpoint) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
     if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    file->identity_ = identity;
     file->begin();
     file->create_tables();
     file->write_identity(identity);
     if (beginning != nullptr)
         file->write(*beginning);
+    if (checkpoint != nullptr)
+        file->write(*checkpoint);
     if (auto committed = file->commit(); !committed)
         return committed.error();
-    file->identity_ = identity;
     return file;
 }
 
@@ -258,6 +271,16 @@ CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEG
     checksum INTEGER NOT NULL) STRICT;
 )");
     database_.run(statistics_table().c_str());
+    database_.run(checkpoint_table);
+}
+
+void RunFile::bring_up_to_date() {
+    if (format_ == format_version)
+        return;
+    database_.run(checkpoint_table);
+    RowWriter{database_, "run", run_columns}.text("first_tick").text(std::to_string(identity_.first_tick)).finish();
+    database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
+    format_ = format_version;
 }
 
 void RunFile::write_identity(const RunIdentity& identity) {
@@ -271,12 +294,13 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("model_version", std::to_string(identity.model_version));
     put("began_unix_ms", std::to_string(identity.began_unix_ms));
     put("first_generation", std::to_string(identity.first_generation));
+    put("first_tick", std::to_string(identity.first_tick));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
 }
 
 Result<void> RunFile::read_identity() {
     const std::int64_t application = database_.number("PRAGMA application_id");
-    const std::int64_t format = database_.number("PRAGMA user_version");
+    const std::int64_t format = format_ = database_.number("PRAGMA user_version");
     if (database_.failed())
         return failure();
     if (application == 0 && database_.number("SELECT count(*) FROM sqlite_schema") == 0 && !database_.failed())
@@ -317,6 +341,8 @@ Result<void> RunFile::read_identity() {
             good = value.empty() || identity_.forked_from;
         } else if (key == "first_generation") {
             take(number_from<std::uint64_t>(value), identity_.first_generation);
+        } else if (key == "first_tick") {
+            take(number_from<std::uint64_t>(value), identity_.first_tick);
         } else if (key == "seed") {
             take(number_from<std::uint64_t>(value), identity_.seed.value);
         } else if (key == "parameters") {
@@ -339,9 +365,13 @@ Result<void> RunFile::read_identity() {
     }
     if (database_.failed())
         return failure();
-    constexpr std::size_t keys = 9;
+    const std::size_t keys = format < 2 ? 9 : 10;
     if (known != keys)
         return damaged("its table run");
+    if (format < 2)
+        identity_.first_tick = static_cast<std::uint64_t>(database_.number(
+            ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(identity_.first_generation))
+                .c_str()));
     return read_thinning();
 }
 
@@ -478,10 +508,9 @@ std::uint64_t RunFile::last_generation() {
     return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM generation"));
 }
 
-std::uint64_t RunFile::first_tick() {
-    const std::string sql =
-        "SELECT first_tick FROM generation WHERE generation = " + std::to_string(identity_.first_generation);
-    return static_cast<std::uint64_t>(database_.number(sql.c_str()));
+std::uint64_t RunFile::generation_at(std::uint64_t tick) {
+    const std::string sql = "SELECT max(generation) FROM generation WHERE first_tick < " + std::to_string(tick);
+    return std::max(identity_.first_generation, static_cast<std::uint64_t>(database_.number(sql.c_str())));
 }
 
 Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
@@ -674,9 +703,46 @@ Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t 
     return links;
 }
 
-std::uint64_t RunFile::generation_of(std::uint64_t tick) {
-    const std::string sql = "SELECT max(generation) FROM generation WHERE first_tick < " + std::to_string(tick);
-    return std::max(identity_.first_generation, static_cast<std::uint64_t>(database_.number(sql.c_str())));
+Result<std::vector<StoredCheckpoint>> RunFile::checkpoints_where(const std::string& condition,
+                                                                 const std::vector<std::int64_t>& where) {
+    std::vector<StoredCheckpoint> found;
+    if (format_ < 2)
+        return found;
+    RowReader reader{database_, "checkpoint", checkpoint_columns, condition, where};
+    while (reader.next()) {
+        StoredCheckpoint checkpoint;
+        checkpoint.moment.tick = reader.natural();
+        checkpoint.moment.generation = reader.natural();
+        checkpoint.moment.generation_tick = reader.natural();
+        checkpoint.moment.simulated_s = reader.real();
+        const std::int64_t parameters = reader.integer();
+        checkpoint.journal_entries = reader.natural();
+        checkpoint.hash.low = reader.natural();
+        checkpoint.hash.high = reader.natural();
+        checkpoint.state = reader.bytes();
+        if (!reader.sound())
+            return damaged(row_of("checkpoint", checkpoint.moment.tick));
+        const auto set = parameter_set(parameters);
+        if (!set)
+            return set.error();
+        checkpoint.parameters = *set;
+        found.push_back(std::move(checkpoint));
+    }
+    if (database_.failed())
+        return failure();
+    return found;
+}
+
+Result<std::vector<StoredCheckpoint>> RunFile::checkpoints(std::uint64_t after, std::uint64_t until) {
+    return checkpoints_where("tick > ? AND tick <= ? ORDER BY tick",
+                             {static_cast<std::int64_t>(after), static_cast<std::int64_t>(until)});
+}
+
+Result<std::optional<StoredCheckpoint>> RunFile::last_checkpoint(std::uint64_t until) {
+    auto found = checkpoints_where("tick <= ? ORDER BY tick DESC LIMIT 1", {static_cast<std::int64_t>(until)});
+    if (!found)
+        return found.error();
+    return found->empty() ? std::nullopt : std::optional{std::move(found->front())};
 }
 
 std::uint64_t RunFile::last_tick() {
@@ -688,6 +754,8 @@ std::uint64_t RunFile::last_tick() {
          {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
           bred.c_str(), "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
         last = std::max(last, database_.number(sql));
+    if (format_ >= 2)
+        last = std::max(last, database_.number("SELECT max(tick) FROM checkpoint"));
     return static_cast<std::uint64_t>(last);
 }
 
@@ -737,7 +805,7 @@ Result<void> RunFile::check() {
     }
     const EndMark found = contents();
     constexpr std::uint64_t ticks_at_once = 100'000 * ticks_per_link;
-    for (std::uint64_t next = next_link_held(first_tick()); next <= found.tick;) {
+    for (std::uint64_t next = next_link_held(identity_.first_tick); next <= found.tick;) {
         const auto chain = links(next - 1, std::min(found.tick, next + ticks_at_once));
         if (!chain)
             return chain.error();
@@ -752,7 +820,40 @@ Result<void> RunFile::check() {
             next = next_link_held(next);
         }
     }
+    if (auto checked = check_checkpoints(found); !checked)
+        return checked;
     return check_end_mark();
+}
+
+Result<void> RunFile::check_checkpoints(const EndMark& found) {
+    if (format_ < 2)
+        return {};
+    bool begins_with_one = false;
+    const std::int64_t newest = database_.number("SELECT max(tick) FROM checkpoint");
+    for (std::int64_t after = -1; after < newest && !database_.failed();) {
+        // One at a time, as they may be large.
+        const auto next = checkpoints_where("tick > ? ORDER BY tick LIMIT 1", {after});
+        if (!next)
+            return next.error();
+        if (next->empty())
+            break;
+        const StoredCheckpoint& checkpoint = next->front();
+        after = static_cast<std::int64_t>(checkpoint.moment.tick);
+        const auto opening = opening_of(checkpoint.moment.generation);
+        if (!opening)
+            return opening.error();
+        if (!*opening || !is_held(checkpoint.moment.generation) || checkpoint.moment.tick < identity_.first_tick ||
+            (*opening)->moment.tick + checkpoint.moment.generation_tick != checkpoint.moment.tick ||
+            checkpoint.moment.generation_tick == 0 || checkpoint.journal_entries > found.journal_entries)
+            return damaged(row_of("checkpoint", checkpoint.moment.tick));
+        begins_with_one |= checkpoint.moment.tick == identity_.first_tick;
+    }
+    const auto first = opening_of(identity_.first_generation);
+    if (!first)
+        return first.error();
+    if (*first && (*first)->moment.tick < identity_.first_tick && !begins_with_one)
+        return damaged(row_of("checkpoint", identity_.first_tick));
+    return {};
 }
 
 RunFile::Writers& RunFile::writers() {
@@ -765,6 +866,7 @@ void RunFile::begin() {
     database_.run("BEGIN IMMEDIATE");
     if (marked_)
         database_.run("DELETE FROM end_mark");
+    bring_up_to_date();
 }
 
 void RunFile::write(const JournalEntry& entry) {
@@ -856,6 +958,29 @@ void RunFile::write(const HashLink& link) {
     writers().link.natural(link.tick).natural(link.hash.low).natural(link.hash.high).finish();
 }
 
+void RunFile::write(const Checkpoint& checkpoint) {
+    if (database_.failed())
+        return; // packing would be for nothing
+    const simulation::Moment& moment = checkpoint.state.moment;
+    const std::int64_t parameters = number_of(checkpoint.state.parameters);
+    const std::string state = pack(checkpoint.state);
+    writers()
+        .checkpoint.natural(moment.tick)
+        .natural(moment.generation)
+        .natural(moment.generation_tick)
+        .real(moment.simulated_s)
+        .integer(parameters)
+        .natural(checkpoint.journal_entries)
+        .natural(checkpoint.hash.low)
+        .natural(checkpoint.hash.high)
+        .bytes(std::as_bytes(std::span{state}))
+        .finish();
+    database_.run(("DELETE FROM checkpoint WHERE tick != " + std::to_string(identity_.first_tick) +
+                   " AND tick NOT IN (SELECT tick FROM checkpoint ORDER BY tick DESC LIMIT " +
+                   std::to_string(checkpoints_kept) + ")")
+                      .c_str());
+}
+
 void RunFile::write(EndMark mark) {
     const EndMark found = contents();
     mark.journal_entries = found.journal_entries;
@@ -897,7 +1022,7 @@ Result<void> RunFile::thin_if_large() {
     next.until_tick = static_cast<std::uint64_t>(database_.number(
         ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));
     begin();
-    for (const char* table : {"population", "outcome"})
+    for (const char* table : {"population", "outcome", "checkpoint"})
         database_.run(("DELETE FROM " + std::string{table} + " WHERE generation <= " + until + " AND (generation - " +
                        std::to_string(identity_.first_generation) + ") % " + every + " != 0")
                           .c_str());

@@ -26,7 +26,9 @@ enum class Durability {
 class RunFile {
   public:
     static constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the file
-    static constexpr std::int64_t format_version = 1;
+    static constexpr std::int64_t format_version = 2;          // 1 had no checkpoints
+
+    static constexpr int checkpoints_kept = 3;
 
     struct Options {
         Durability durability = Durability::Full;
@@ -36,10 +38,12 @@ class RunFile {
 
     /// A new file; refused if there is one.
     ///
-    /// beginning  of identity.first_generation; may follow later for a run that begins with generation 1.
+    /// beginning   of identity.first_generation; may follow later for a run that begins with generation 1.
+    /// checkpoint  at identity.first_tick, for a run that begins within that generation; it is never taken out.
     static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
                                                          const Options& options,
-                                                         const GenerationBegun* beginning = nullptr);
+                                                         const GenerationBegun* beginning = nullptr,
+                                                         const Checkpoint* checkpoint = nullptr);
     /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
     /// was to create it did not come to the end of it.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
@@ -67,12 +71,10 @@ class RunFile {
     std::uint64_t last_journal_entry();
     /// Of generations whose beginning is held; 0 if none is yet.
     std::uint64_t last_generation();
-    /// After which the first generation began; 0 if its beginning is not held.
-    std::uint64_t first_tick();
     /// The last that anything in the file tells of.
     std::uint64_t last_tick();
-    /// In which a tick of the run is; that of its last tick is its own, not the next one's.
-    std::uint64_t generation_of(std::uint64_t tick);
+    /// The one in which the run was after that tick; the first if it had not begun.
+    std::uint64_t generation_at(std::uint64_t tick);
     /// Nothing if the generation has not begun.
     base::Result<std::optional<simulation::Opening>> opening_of(std::uint64_t generation);
     /// Nothing if the generation's beginning is not held, or not any more.
@@ -89,6 +91,10 @@ class RunFile {
     base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
     /// In order of ticks, those after `after` up to `until`.
     base::Result<std::vector<HashLink>> links(std::uint64_t after, std::uint64_t until);
+    /// In order of ticks, those after `after` up to `until`.
+    base::Result<std::vector<StoredCheckpoint>> checkpoints(std::uint64_t after, std::uint64_t until);
+    /// The last of those up to a tick; nothing if there is none.
+    base::Result<std::optional<StoredCheckpoint>> last_checkpoint(std::uint64_t until);
     /// What an end mark would say of what is there: its tick is the last that anything in the file tells of.
     EndMark contents();
     /// The newest that has ended; 0 if none has.
@@ -106,6 +112,8 @@ class RunFile {
     void write(const GenerationBegun& begun);
     void write(const GenerationEnded& ended);
     void write(const HashLink& link);
+    /// The newest checkpoints_kept stay, and the one with which the run begins.
+    void write(const Checkpoint& checkpoint);
     /// What the mark counts is counted here.
     void write(EndMark mark);
     /// Refused with the reason; then it is unknown whether what was written since begin() is there.
@@ -123,8 +131,12 @@ class RunFile {
     struct Writers;
     RunFile(const std::string& path, Database::Mode mode, const Options& options);
     void create_tables();
+    void bring_up_to_date();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
+    base::Result<void> check_checkpoints(const EndMark& found);
+    base::Result<std::vector<StoredCheckpoint>> checkpoints_where(const std::string& condition,
+                                                                  const std::vector<std::int64_t>& where);
     base::Result<void> read_thinning();
     /// Whether SQLite finds a table and its indices sound; "1": the whole file, until the first fault.
     base::Result<void> check_tree(const std::string& of);
@@ -142,6 +154,7 @@ class RunFile {
     std::string path_;
     Database database_;
     RunIdentity identity_;
+    std::int64_t format_ = format_version; // of the file
     std::unique_ptr<Writers> writers_;
     std::optional<simulation::ParameterSet> last_parameters_; // written, under parameter_sets_
     std::int64_t parameter_sets_ = 0;

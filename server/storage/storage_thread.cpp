@@ -33,6 +33,7 @@ std::size_t bytes_of(const StorageThread::Record& record) {
                     bytes += small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);
                 return bytes;
             },
+            [](const Checkpoint&) { return std::size_t{0}; }, // has a bound of its own
             [](const auto&) { return sizeof(HashLink); },
         },
         record);
@@ -57,7 +58,7 @@ std::vector<StorageThread::Item> StorageThread::items_of(Batch batch) {
     std::size_t bytes = 0;
     for (Record& record : batch.records) {
         const std::size_t record_bytes = bytes_of(record);
-        items.push_back({std::move(record), {}, record_bytes});
+        items.push_back({.record = std::move(record), .done = {}, .writing = {}, .bytes = record_bytes});
         bytes += record_bytes;
     }
     if (items.empty())
@@ -109,6 +110,14 @@ StorageThread::RunNumber StorageThread::adopt(std::unique_ptr<RunFile> file) {
 
 void StorageThread::write(RunNumber run, Batch batch) {
     hand_over(run, items_of(std::move(batch)));
+}
+
+void StorageThread::write(RunNumber run, Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing) {
+    writing->waits = true;
+    waiting_checkpoints_.fetch_add(1);
+    std::vector<Item> items;
+    items.push_back({.record = std::move(checkpoint), .done = {}, .writing = std::move(writing)});
+    hand_over(run, std::move(items));
 }
 
 void StorageThread::close(RunNumber run, Ending ending) {
@@ -219,6 +228,7 @@ bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
         return true;
     if (auto opened = open(run); !opened)
         return fail(run, opened.error());
+    const auto began = std::chrono::steady_clock::now();
     run.file->begin();
     for (const Item& item : items)
         if (item.record)
@@ -226,15 +236,21 @@ bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
     if (auto committed = run.file->commit(); !committed)
         return fail(run, committed.error());
     run.to_create.reset();
+    run.commit_took = std::chrono::steady_clock::now() - began;
     return true;
 }
 
-void StorageThread::tell(std::vector<Item>& items) {
+void StorageThread::tell(const Run& run, std::vector<Item>& items) {
     std::size_t bytes = 0;
     for (const Item& item : std::exchange(items, {})) {
         bytes += item.bytes;
         if (item.done)
             item.done();
+        if (item.writing) {
+            item.writing->took = run.commit_took;
+            item.writing->waits = false;
+            waiting_checkpoints_.fetch_sub(1);
+        }
     }
     waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
 }
@@ -250,7 +266,7 @@ bool StorageThread::write_out(Run& run) {
     }
     if (run.replaces && !take_place(run))
         return false;
-    tell(run.written);
+    tell(run, run.written);
     if (run.closing)
         return run.closing->replaced || end(run);
     // What is written stays written if this fails.
@@ -291,7 +307,7 @@ bool StorageThread::end(Run& run) {
         if (const auto moved = RunFile::rename(run.path, closing.renamed); !moved)
             return fail(run, moved.error());
     closing.finished = true;
-    tell(closing.last);
+    tell(run, closing.last);
     return true;
 }
 

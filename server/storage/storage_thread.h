@@ -11,6 +11,9 @@
 // Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
 //              anew and everything that may be missing written again, every `retry_time`, until it is there.
 // Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
+// Checkpoints  are large, and can be done without: of a run, one waits at most, beside what the bound is for, so that
+// worlds
+//              need not stand still until it is written.
 // Full         has_room() is false from `waiting_bytes_max` on; whoever hands over stops making more.
 #pragma once
 
@@ -40,7 +43,12 @@ class StorageThread {
     using RunNumber = std::uint64_t;
     /// Called on the storage thread once the record is on the disk.
     using Done = std::function<void()>;
-    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, EndMark>;
+    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, Checkpoint, EndMark>;
+    /// What has become of a run's checkpoint; shared with whoever made it.
+    struct CheckpointWriting {
+        std::atomic<bool> waits = false;                                          // for the disk
+        std::atomic<std::chrono::nanoseconds> took = std::chrono::nanoseconds{0}; // the last, to pack and to write
+    };
 
     explicit StorageThread(RunFile::Options options, std::chrono::milliseconds retry_after = retry_time);
     /// Writes what waits, as far as that can be done now, and ends.
@@ -65,10 +73,14 @@ class StorageThread {
     /// A file that is there and has been read.
     RunNumber adopt(std::unique_ptr<RunFile> file);
     void write(RunNumber run, Batch batch);
+    /// None of the run's waits any more. writing: waits, until it is on the disk.
+    void write(RunNumber run, Checkpoint checkpoint, std::shared_ptr<CheckpointWriting> writing);
     void close(RunNumber run, Ending ending);
 
     /// Whether everything handed over is written.
-    bool idle() const { return waiting_bytes_.load(std::memory_order_acquire) == 0; }
+    bool idle() const {
+        return waiting_bytes_.load(std::memory_order_acquire) == 0 && waiting_checkpoints_.load() == 0;
+    }
     bool has_room() const { return waiting_bytes_.load(std::memory_order_relaxed) < waiting_bytes_max; }
     /// Why nothing gets onto the disk at present; nothing if it does.
     std::optional<std::string> trouble() const;
@@ -77,6 +89,7 @@ class StorageThread {
     struct Item {
         std::optional<Record> record;
         Done done;
+        std::shared_ptr<CheckpointWriting> writing; // of a checkpoint
         std::size_t bytes = 0;
     };
     struct Closing {
@@ -93,6 +106,7 @@ class StorageThread {
         std::vector<Item> waiting;
         std::vector<Item> written; // not told yet
         std::optional<Closing> closing;
+        std::chrono::nanoseconds commit_took{0};
         bool said_large = false;
     };
 
@@ -108,14 +122,14 @@ class StorageThread {
     bool commit(Run& run, const std::vector<Item>& items);
     bool take_place(Run& run);
     bool end(Run& run);
-    void tell(std::vector<Item>& items);
+    void tell(const Run& run, std::vector<Item>& items);
     bool fail(Run& run, const base::Refusal& why);
     base::Result<void> open(Run& run);
     void set_trouble(const std::string& why);
 
     const RunFile::Options options_;
     const std::chrono::milliseconds retry_after_;
-    std::atomic<std::size_t> waiting_bytes_ = 0;
+    std::atomic<std::size_t> waiting_bytes_ = 0, waiting_checkpoints_ = 0;
 
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;

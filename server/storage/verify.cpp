@@ -1,6 +1,7 @@
 #include "server/storage/verify.h"
 
 #include "server/base/inline_executor.h"
+#include "server/storage/checkpoint.h"
 #include "server/storage/mismatch.h"
 #include "server/storage/rerun.h"
 
@@ -25,6 +26,7 @@ struct StoredGeneration {
     std::vector<IslandOutcome> outcomes;
     std::vector<simulation::GenerationStatistics> statistics;
     std::vector<HashLink> links;
+    std::vector<StoredCheckpoint> checkpoints;
     std::uint64_t last_tick = 0; // that the file tells of, of this generation
 };
 
@@ -60,7 +62,8 @@ class StretchCheck {
             differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
         if (done_.difference)
             return done_;
-        auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born}, changes, {}, executor_);
+        auto rerun =
+            Rerun::from(file_, {.opening = first.opening, .born = first.born}, beginning(), changes, {}, executor_);
         if (!rerun)
             return rerun.error();
         const double began_s = rerun->world().moment().simulated_s;
@@ -92,6 +95,12 @@ class StretchCheck {
         agreeing_part_ = "the beginning of the generation";
     }
 
+    /// Where the run begins within the stretch's first generation; nullptr if it does not.
+    const StoredCheckpoint* beginning() const {
+        const StoredGeneration& first = stretch_.front();
+        return first.opening.moment.tick < file_.identity().first_tick ? &first.checkpoints.front() : nullptr;
+    }
+
     void check_beginning_of_run() {
         const RunIdentity& identity = file_.identity();
         const StoredGeneration& first = stretch_.front();
@@ -102,7 +111,9 @@ class StretchCheck {
                    same(agrees_, compare(first.born, begun.born)));
         } else {
             // What a fork began with, nothing in its file gives again but what was asked for.
-            (void)same(agrees_, compare_requested(first.opening.parameters.requested, identity.parameters));
+            const StoredCheckpoint* within = beginning();
+            const simulation::ParameterSet& set = within ? within->parameters : first.opening.parameters;
+            (void)same(agrees_, compare_requested(set.requested, identity.parameters));
         }
         if (done_.difference)
             done_.difference->agrees.reset();
@@ -122,9 +133,18 @@ class StretchCheck {
     void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> told) {
         const World& world = rerun.world();
         auto link = stored.links.begin();
+        auto checkpoint = std::ranges::upper_bound(stored.checkpoints, world.moment().tick, {},
+                                                   [](const StoredCheckpoint& at) { return at.moment.tick; });
         std::uint64_t told_tick = world.moment().tick;
         while (world.moment().tick < stored.last_tick && !world.generation_over()) {
-            rerun.advance_tick(executor_);
+            if (checkpoint != stored.checkpoints.end() && checkpoint->moment.tick == world.moment().tick + 1) {
+                rerun.advance_tick(executor_, checkpoint->journal_entries);
+                if (!check_checkpoint(world, *checkpoint++))
+                    return;
+                rerun.make_changes();
+            } else {
+                rerun.advance_tick(executor_);
+            }
             const StoredMoment now{world.moment().generation, world.moment().tick};
             if (now.tick % ticks_per_link != 0)
                 continue;
@@ -141,6 +161,24 @@ class StretchCheck {
             ++link;
         }
         told(world.moment().tick - told_tick);
+    }
+
+    /// Whether nothing was found.
+    bool check_checkpoint(const World& world, const StoredCheckpoint& stored) {
+        const StoredMoment now{world.moment().generation, world.moment().tick};
+        simulation::WorldState state{
+            .moment = stored.moment, .parameters = stored.parameters, .islands = {}, .ended = {}};
+        if (const auto unpacked = unpack(stored.state, world.shapes(), state); !unpacked)
+            return same(now, Mismatch{"the checkpoint", unpacked.error().message, "a state of this world"});
+        std::optional<Mismatch> found = compare(state, world.state(executor_));
+        if (found)
+            found->part = "the checkpoint: " + found->part;
+        if (!same(now, found ? std::move(found) : compare(stored.hash, world.hash())))
+            return false;
+        agrees_ = now;
+        agreeing_part_ = "the checkpoint";
+        ++done_.checkpoints;
+        return true;
     }
 
     void check_end(const World& world, const StoredGeneration& stored, bool goes_on) {
@@ -243,13 +281,17 @@ class Reader {
         return {};
     }
 
-    /// Of a generation, once the one after it has been read.
+    /// Of a generation, with its checkpoints, once the one after it has been read.
     Result<void> read_links(StoredGeneration& generation) {
         generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
         auto links = file_.links(generation.opening.moment.tick, generation.last_tick);
         if (!links)
             return links.error();
         generation.links = *std::move(links);
+        auto checkpoints = file_.checkpoints(generation.opening.moment.tick, generation.last_tick);
+        if (!checkpoints)
+            return checkpoints.error();
+        generation.checkpoints = *std::move(checkpoints);
         return {};
     }
 
@@ -263,6 +305,7 @@ void add(Verified& sum, const Verified& stretch) {
     sum.generations += stretch.generations;
     sum.ticks += stretch.ticks;
     sum.hashes += stretch.hashes;
+    sum.checkpoints += stretch.checkpoints;
     sum.simulated_s += stretch.simulated_s;
     sum.difference = stretch.difference;
 }
@@ -287,7 +330,8 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
     const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
     constexpr std::size_t organisms_at_once = 1'000'000;
     Reader reader{file};
-    const std::uint64_t ticks_in_all = reader.contents().tick - std::min(reader.contents().tick, file.first_tick());
+    const std::uint64_t ticks_in_all =
+        reader.contents().tick - std::min(reader.contents().tick, file.identity().first_tick);
     std::atomic<std::uint64_t> ticks = 0;
     const auto count = [&](std::uint64_t more) {
         const std::uint64_t sum = ticks.fetch_add(more, std::memory_order_relaxed) + more;

@@ -1,7 +1,8 @@
 // Verify: a run simulated again, and everything that its file tells of it held against that.
 //
 //   the run's beginning → the first generation, as it is stored
-//   each generation → its state hashes → fitness, deaths, statistics → the next generation, as it is stored
+//   each generation → its state hashes and checkpoints → fitness, deaths, statistics → the next generation, as it is
+//   stored
 //
 // A generation that is held whole is simulated from what is stored, and is itself held against what the one before
 // gives; so stretches from one such generation to the next need not wait for one another. A stretch is one generation,
@@ -39,7 +40,7 @@ struct Difference {
 /// What has been held against a new simulation.
 struct Verified {
     std::uint64_t generations = 0; // from their beginnings; the last may be unfinished
-    std::uint64_t ticks = 0, hashes = 0;
+    std::uint64_t ticks = 0, hashes = 0, checkpoints = 0;
     double simulated_s = 0;
     std::optional<Difference> difference; // nothing: all agrees
 };

@@ -4,6 +4,7 @@
 #include "server/base/inline_executor.h"
 #include "server/runtime/simulation_thread.h"
 #include "tests/support/manual_clock.h"
+#include "tests/unit/storage/recorded_run.h"
 
 #include <gtest/gtest.h>
 
@@ -386,6 +387,43 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
     while (look().first < last_tick) {
     }
     EXPECT_EQ(look().second, hash_of_a_world_advanced_directly());
+}
+
+TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
+    storage::TemporaryFolder folder;
+    auto data = storage::DataFolder::open(folder.path());
+    base::StateHash hashes[2];
+    for (const auto per_look : {1us, 20'000us}) {
+        storage::StorageThread thread{{}};
+        storage::Recorder recorder{*data, thread};
+        clock.per_look = per_look;
+        Mailbox letters;
+        SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
+                            {},      &recorder};
+        const auto tell = [&](simulation::Command command) {
+            letters.try_push(CommandMail{std::move(command), {}, [](auto&&...) -> CommandAnswer { return {}; }});
+            kept.pass();
+        };
+        tell(create("w", 3));
+        tell(simulation::SetSpeed{"w", std::nullopt});
+        tell(simulation::RunUntilTick{"w", 1000});
+        const simulation::World& run = (*kept.laboratory().find("w"))->world;
+        while (run.moment().tick < 1000)
+            kept.pass();
+        while (!thread.idle())
+            std::this_thread::sleep_for(1ms);
+        const auto file = storage::RunFile::open_read_only(data->file_of("w"));
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto checkpoints = (*file)->checkpoints(0, run.moment().tick);
+        ASSERT_TRUE(checkpoints) << to_text(checkpoints.error());
+        EXPECT_EQ(checkpoints->empty(), per_look == 1us);
+        hashes[per_look != 1us] = run.hash();
+        recorder.end("w", {3, 1}, run.moment().tick);
+        while (!thread.idle())
+            std::this_thread::sleep_for(1ms);
+        std::filesystem::remove(data->ended_file_of("w", {3, 1}));
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
 }
 
 } // namespace

@@ -78,6 +78,9 @@ class RecordedRun {
         }
     }
 
+    /// Of the last tick; to be called before anything is asked for there, as a server does.
+    void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
+
     /// Begins again in a file of its own.
     void reset(
         base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {

@@ -39,7 +39,9 @@ class RunFileTest : public testing::Test {
         RecordedRun run{*data, thread};
         run.advance(130);
         run.command(set_parameter("mutation_chance", 0.5));
-        run.advance(410);
+        run.advance(200);
+        run.checkpoint();
+        run.advance(210);
         run.command(set_parameter("food_health", 7.0));
         run.recorder().close_all(run.laboratory());
         return data->file_of("w");
@@ -196,8 +198,8 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
     EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
     std::filesystem::remove(path);
     const std::string newer = recorded();
-    change(newer, "PRAGMA user_version = 2");
-    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 2"));
+    change(newer, "PRAGMA user_version = 3");
+    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 3"));
 }
 
 TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {

@@ -1,0 +1,77 @@
+// World state: a world within a generation, as far as it does not follow from how that generation began: what is laid
+// over a world that stands at the beginning to have it go on from there, bit for bit.
+//
+// Left out is what follows (bodies, boxes, sizes, chromosomes: from seed, parameters and who was born), and what is
+// known only so that it need not be looked for again (near pairs, views of items, the order in memory).
+//
+// Determinism  columns are by id, so that equal worlds have equal states, whatever was done to them before.
+#pragma once
+
+#include "server/base/column.h"
+#include "server/physics/bodies.h"
+#include "server/simulation/items.h"
+#include "server/simulation/living.h"
+#include "server/simulation/parameters.h"
+#include "server/simulation/statistics.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace evod::simulation {
+
+struct Moment {
+    std::uint64_t tick = 0;            // ticks since the run began
+    std::uint64_t generation = 1;      // 1 for the first
+    std::uint64_t generation_tick = 0; // ticks since the generation began
+    double simulated_s = 0;            // sum of the lengths of all ticks
+
+    friend bool operator==(const Moment&, const Moment&) = default;
+};
+
+/// Numbers of the generation that do not follow from Fate.
+struct IslandCounts {
+    std::uint64_t food_eaten = 0, poison_eaten = 0;
+    std::uint32_t starved_count = 0, poisoned_count = 0;
+    std::uint64_t too_fast_count = 0, speed_limit_count = 0;
+
+    friend bool operator==(const IslandCounts&, const IslandCounts&) = default;
+};
+
+/// How many of each kind an island has; with it goes the shape of its state.
+struct IslandShape {
+    std::uint32_t organisms = 0; // that were born
+    bool has_bodies = true;      // else there is nothing of the rest
+    std::uint32_t crates = 0, food = 0, poison = 0;
+
+    friend bool operator==(const IslandShape&, const IslandShape&) = default;
+};
+
+struct IslandState {
+    struct Organism {
+        physics::Coordinate x = 0, y = 0;
+        float velocity_x = 0, velocity_y = 0; // px/s
+        float health = 0;
+        friend bool operator==(const Organism&, const Organism&) = default;
+    };
+    struct Crate {
+        physics::Coordinate x = 0, y = 0;
+        float velocity_x = 0, velocity_y = 0; // px/s
+        friend bool operator==(const Crate&, const Crate&) = default;
+    };
+    Fate fate;
+    IslandCounts counts;
+    base::Column<Organism> organisms; // all zeros for the dead; none where there are no bodies
+    std::vector<Crate> crates;
+    base::Column<Items::Item> food, poison;
+
+    friend bool operator==(const IslandState&, const IslandState&) = default;
+};
+
+struct WorldState {
+    Moment moment;
+    ParameterSet parameters;
+    std::vector<IslandState> islands;
+    std::vector<GenerationStatistics> ended; // once the generation is over: one per island
+};
+
+} // namespace evod::simulation

@@ -1,0 +1,208 @@
+// A world that is laid over the beginning of its generation goes on as the one whose state it was.
+#include "server/simulation/world_state.h"
+
+#include "server/base/inline_executor.h"
+#include "server/simulation/world.h"
+#include "tests/support/thread_executor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace evod::simulation {
+namespace {
+
+using testing::HasSubstr;
+
+Parameters with(std::vector<Assignment> assignments) {
+    Parameters parameters;
+    parameters.population_size = 60;
+    parameters.generation_s = 8;
+    parameters.food_count = 60;
+    parameters.poison_count = 60;
+    return assign(parameters, assignments).value();
+}
+
+/// Worlds that differ in what their state is made of.
+std::vector<Parameters> varied_worlds() {
+    return {
+        with({}),
+        with({{"crate_count", 12u}, {"obstacle_count", 8u}, {"integrator", std::string{"explicit_euler"}}}),
+        with({{"respawn_s", 1.5}, {"crate_count", 5u}, {"max_speed_px_s", 60.0}}),
+        with({{"respawn", false}, {"integrator", std::string{"backward_euler"}}}),
+        with({{"island_count", 5u},
+              {"population_size", 9u},
+              {"poison_count", 400u}, // some islands die out, and wait
+              {"respawn_s", 3.0},
+              {"migration", std::string{"ring"}},
+              {"migration_epoch", 1u}}),
+        with({{"population_size", 1500u}, // put in order in memory as they move
+              {"island_width_px", 8000.0},
+              {"food_count", 900u},
+              {"generation_s", 3.0}}),
+        with({{"fitness", std::string{"rastrigin"}}, {"island_count", 2u}}),
+    };
+}
+
+class WorldStateTest : public testing::Test {
+  protected:
+    /// The world at the beginning of its generation, made anew, brought to the state.
+    base::Result<World> again(const World& world, const WorldState& state, base::Executor& with) {
+        std::vector<evolution::NextGeneration> born;
+        for (const Island& island : world.islands())
+            born.push_back(island.born());
+        World::History history = world.history();
+        if (world.generation_over())
+            history.pop_back();
+        World restored{world.seed(), world.opening(), std::move(born), std::move(history), with};
+        if (auto done = restored.restore(state, with); !done)
+            return done.error();
+        return restored;
+    }
+    static void change_something(World& world, std::uint32_t choice) {
+        const std::vector<Assignment> changes[] = {
+            {{"food_health", 5.0 + choice % 30}},
+            {{"force_per_unit", 0.5 + choice % 3}},
+            {{"population_size", 8 + choice % 9}, {"food_radius_min", 21.0}}, // for the next generation, and bounds
+            {{"flee_rule", std::string{"always"}}}};
+        world.request_parameters(assign(world.parameters().requested, changes[choice / 64 % 4]).value());
+    }
+
+    static std::vector<double> numbers(const std::vector<GenerationStatistics>& islands) {
+        std::vector<double> found;
+        for (const GenerationStatistics& island : islands)
+            for_each_number(island,
+                            [&](const std::string&, auto value) { found.push_back(static_cast<double>(value)); });
+        return found;
+    }
+
+    base::InlineExecutor executor;
+    support::ThreadExecutor three_threads{3};
+};
+
+TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
+    std::mt19937 random{3};
+    int over = 0, moments = 0;
+    for (const Parameters& parameters : varied_worlds()) {
+        const bool large = parameters.population_size > 1000;
+        const std::uint32_t ticks_max = large ? 150 : 700;
+        for (int round = 0; round < (large ? 10 : 32); ++round) {
+            World world{parameters, base::Seed{static_cast<std::uint64_t>(round)}};
+            for (auto ticks = random() % ticks_max; ticks > 0; --ticks) {
+                world.advance_tick(executor);
+                if (random() % 200 == 0)
+                    change_something(world, static_cast<std::uint32_t>(random()));
+            }
+            const WorldState state =
+                world.state(round % 2 == 0 ? static_cast<base::Executor&>(executor) : three_threads);
+            auto restored = again(world, state, three_threads);
+            ASSERT_TRUE(restored) << to_text(restored.error());
+            ASSERT_EQ(restored->hash(), world.hash()) << world.moment().generation_tick;
+            EXPECT_EQ(restored->moment(), world.moment());
+            EXPECT_EQ(restored->generation_over(), world.generation_over());
+            EXPECT_EQ(restored->state(executor).islands, state.islands);
+            over += world.generation_over();
+            ++moments;
+            const std::uint32_t ticks_after = large ? 100 : 1000;
+            for (std::uint32_t tick = 0; tick < ticks_after; ++tick) {
+                world.advance_tick(executor);
+                restored->advance_tick(three_threads);
+                ASSERT_EQ(restored->hash(), world.hash()) << "after " << tick + 1 << " ticks";
+                if (random() % 300 == 0) {
+                    const auto choice = static_cast<std::uint32_t>(random());
+                    change_something(world, choice);
+                    change_something(*restored, choice);
+                }
+            }
+            ASSERT_EQ(restored->history().size(), world.history().size());
+            for (std::size_t i = 0; i < world.history().size(); ++i)
+                EXPECT_EQ(numbers(restored->history()[i]), numbers(world.history()[i]));
+        }
+    }
+    EXPECT_GE(moments, 200);
+    EXPECT_GE(over, 5);
+}
+
+TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
+    Parameters parameters = with({{"generation_s", 1.0}, {"island_count", 2u}});
+    World world{parameters, base::Seed{2}};
+    for (int tick = 0; tick < 120; ++tick)
+        world.advance_tick(executor);
+    ASSERT_TRUE(world.generation_over());
+    // What the generation's statistics were made with is not what holds now.
+    world.request_parameters(assign(world.parameters().requested,
+                                    std::vector<Assignment>{{"base_health_min", 90.0}, {"base_health_max", 95.0}})
+                                 .value());
+    auto restored = again(world, world.state(executor), three_threads);
+    ASSERT_TRUE(restored) << to_text(restored.error());
+    EXPECT_TRUE(restored->generation_over());
+    EXPECT_EQ(restored->history().back()[1].diversity, world.history().back()[1].diversity);
+    for (int tick = 0; tick < 200; ++tick) {
+        world.advance_tick(executor);
+        restored->advance_tick(three_threads);
+        ASSERT_EQ(restored->hash(), world.hash());
+    }
+}
+
+TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
+    const Parameters parameters = with({{"crate_count", 3u}, {"respawn_s", 2.0}, {"poison_count", 200u}});
+    World world{parameters, base::Seed{9}};
+    for (int tick = 0; tick < 200; ++tick)
+        world.advance_tick(executor);
+    ASSERT_LT(world.alive_count(), 60u);
+    ASSERT_GT(world.alive_count(), 2u);
+    const WorldState sound = world.state(executor);
+    const auto of = [&](CauseOfDeath cause) {
+        return static_cast<std::size_t>(std::ranges::find(sound.islands[0].fate.cause, cause) -
+                                        sound.islands[0].fate.cause.begin());
+    };
+    const std::size_t living = of(CauseOfDeath::Alive), gone = of(CauseOfDeath::Poisoned);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<std::pair<const char*, std::function<void(WorldState&)>>> wrongs = {
+        {"moment", [](WorldState& s) { ++s.moment.tick; }},
+        {"moment", [](WorldState& s) { ++s.moment.generation; }},
+        {"moment", [](WorldState& s) { s.moment.simulated_s = std::nan(""); }},
+        {"moment", [](WorldState& s) { s.moment.tick = s.moment.generation_tick = 100'000; }},
+        {"parameters", [](WorldState& s) { s.parameters.active.damping = 0.5; }},
+        {"parameters", [](WorldState& s) { s.parameters.requested.body_size_min = 300; }},
+        {"islands", [](WorldState& s) { s.islands.clear(); }},
+        {"over", [](WorldState& s) { s.ended.resize(1); }},
+        {"number of its organisms", [](WorldState& s) { s.islands[0].fate.lived_ticks.pop_back(); }},
+        {"number of its organisms", [](WorldState& s) { s.islands[0].organisms.pop_back(); }},
+        {"crates", [](WorldState& s) { s.islands[0].crates.pop_back(); }},
+        {"crate", [](WorldState& s) { s.islands[0].crates[1].x = -1; }},
+        {"crate", [](WorldState& s) { s.islands[0].crates[1].velocity_x = 1e30f; }},
+        {"fast", [&](WorldState& s) { s.islands[0].organisms[living].velocity_y = nan; }},
+        {"fast", [&](WorldState& s) { s.islands[0].organisms[living].x = physics::elsewhere; }},
+        {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = nan; }},
+        {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 0; }},
+        {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
+        {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
+        {"lost", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(3); }},
+        {"lost", [&](WorldState& s) { s.islands[0].organisms[gone].health = 1; }},
+        {"dead", [&](WorldState& s) { s.islands[0].fate.cause[gone] = CauseOfDeath::Starved; }},
+        {"food", [](WorldState& s) { s.islands[0].food.pop_back(); }},
+        {"food", [](WorldState& s) { s.islands[0].food[3].y = 1 << 30; }},
+        {"food", [](WorldState& s) { s.islands[0].food[3].x = s.islands[0].food[3].y = 0; }},
+        {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 200; }},
+        {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = 321; }},
+        {"poison", [](WorldState& s) { s.islands[0].poison[3].due_tick = Items::none; }},
+    };
+    for (const auto& [what, spoil] : wrongs) {
+        WorldState state = sound;
+        spoil(state);
+        const auto refused = again(world, state, executor);
+        ASSERT_FALSE(refused) << what;
+        EXPECT_THAT(refused.error().message, HasSubstr(what));
+    }
+    EXPECT_TRUE(again(world, sound, executor));
+}
+
+} // namespace
+} // namespace evod::simulation
