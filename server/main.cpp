@@ -210,17 +210,24 @@ int main(int argument_count, char** arguments) {
     verify.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
 
     console::ExportOptions export_options;
+    export_options.threads = options.threads;
     CLI::App& export_ = *app.add_subcommand("export", "Write what a run file holds as rows for other programs");
     export_.add_option("run", export_options.run, "Run file, NAME.evod; the run need not be over")->required();
     export_
         .add_option("--what", export_options.what,
-                    "generations: their statistics; organisms: parents, genes and fate of each; events: the commands")
-        ->check(CLI::IsMember({"generations", "organisms", "events"}))
+                    "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                    "whom; events: the commands")
+        ->check(CLI::IsMember({"generations", "organisms", "lineage", "events"}))
         ->required();
+    export_.add_option("--of", export_options.of,
+                       "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
     export_.add_option("--format", export_options.format, "csv, or jsonl: an object of JSON a line")
         ->check(CLI::IsMember({"csv", "jsonl"}))
         ->capture_default_str();
     export_.add_option("--output", export_options.output, "File; without it, standard output");
+    export_.add_option("--threads", export_options.threads, "Threads that simulate again what is not held any more")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
 
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");

@@ -14,7 +14,8 @@ import tempfile
 import unittest
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
-EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
+EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2,
+              "migrant_count": 4}
 GENES = ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"]
 
 
@@ -297,6 +298,62 @@ class Export(Case):
         self.assertEqual(json.loads(rows[3]["request"])["set_parameters"]["parameters"][0],
                          {"name": "food_health", "value": {"real": 7}})
 
+    def lineage(self, run, *arguments):
+        rows = list(csv.DictReader(io.StringIO(evod("export", run, "--what", "lineage", *arguments), newline="")))
+        return {(int(row["generation"]), int(row["island"]), int(row["organism"])): row for row in rows}
+
+    @staticmethod
+    def parents(row):
+        return [tuple(int(row[f"parent_{which}{of}"]) for of in ("_generation", "_island", ""))
+                for which in ("first", "second")]
+
+    def test_lineage_tells_parents_where_they_lived(self):
+        self.rows(plain, "lineage")
+        family = self.lineage(plain)
+        organisms = {tuple(int(row[x]) for x in ("generation", "island", "organism")): row
+                     for row in self.rows(plain, "organisms")}
+        self.assertEqual(list(family), list(organisms))
+        children, kept, strangers = {}, {}, set()
+        for name, row in family.items():
+            self.assertEqual((row["origin"], row["fitness"]), (organisms[name]["origin"], organisms[name]["fitness"]))
+            if name[0] == 1:
+                self.assertEqual({row[x] for x in row if x.startswith("parent")}, {""})
+                continue
+            parents = self.parents(row)
+            strangers |= {name[0] for parent in parents if parent[1] != name[1]}
+            if row["origin"] == "child":
+                for parent in set(parents):
+                    children[parent] = children.get(parent, 0) + 1
+            else:
+                self.assertEqual(parents[0], parents[1])
+                kept[parents[0]] = kept.get(parents[0], 0) + 1
+                for gene in GENES:  # wherever it came from, it is the same
+                    self.assertEqual(organisms[name][gene], organisms[parents[0]][gene])
+        self.assertEqual(strangers, {3})  # migration is after every second generation
+        for name, row in family.items():
+            counts = ("", "") if name[0] == 4 else (str(children.get(name, 0)), str(kept.get(name, 0)))
+            self.assertEqual((row["child_count"], row["kept_count"]), counts)
+
+    def test_lineage_of_one_is_its_ancestors(self):
+        family = self.lineage(plain)
+        for last in (4, 0, 11), (3, 1, 0), (1, 1, 3):
+            ancestors = self.lineage(plain, "--of", ":".join(map(str, last)))
+            generations = [name[0] for name in ancestors]
+            self.assertEqual(generations, sorted(generations, reverse=True))
+            wanted, found = {last}, {}
+            while wanted:
+                found |= {name: family[name] for name in wanted}
+                wanted = {parent for name in wanted if name[0] > 1 for parent in self.parents(family[name])}
+            self.assertEqual(ancestors, found)
+        for of, words in {
+            "5:0:0": "--of: got 5, allowed a generation from 1 to 4",
+            "4:2:0": "--of: got 2, allowed an island from 0 to 1",
+            "4:1:12": "--of: got 12, allowed an organism from 0 to 11",
+            "4:1": "--of: got 4:1, allowed GENERATION:ISLAND:ORGANISM",
+        }.items():
+            self.assertIn(words, evod("export", plain, "--what", "lineage", "--of", of, status=1))
+        self.assertIn("only with --what lineage", evod("export", plain, "--what", "events", "--of", "1:0:0", status=1))
+
     def test_a_file_takes_what_stdout_would(self):
         path = self.folder + "/organisms.jsonl"
         self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
@@ -306,7 +363,7 @@ class Export(Case):
     def test_what_is_wrong_is_named(self):
         path = self.copy(plain)
         for arguments, words in {
-            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "events"],
+            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
             (path,): ["--what is required"],
         }.items():
