@@ -56,6 +56,8 @@ Result<void> write_rows(const Exported& run, const ExportOptions& options, std::
     }
     if (options.what == "events")
         return write_events(run, out, format);
+    if (options.what == "population")
+        return write_population(run, out, format, options.generation.value_or(run.file.last_generation()));
     return write_lineage(run, out, format, organism_named(options.of));
 }
 
@@ -65,6 +67,8 @@ Result<void> check(const ExportOptions& options) {
         return wrong_option("--of", "only with --what lineage", options.of);
     if (!options.of.empty() && !organism_named(options.of))
         return wrong_option("--of", "GENERATION:ISLAND:ORGANISM", options.of);
+    if (options.generation && options.what != "population")
+        return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
     return {};
 }
 

@@ -2,17 +2,20 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace evod::console {
 
 struct ExportOptions {
-    std::string run;            // path of a run file
-    std::string what;           // as export_tables.h names them
-    std::string of;             // "GENERATION:ISLAND:ORGANISM", of the lineage; empty: everyone
-    std::string format = "csv"; // or "jsonl"
-    std::string output;         // path; empty: stdout
-    std::size_t threads = 1;    // that simulate again what is not held
+    std::string run;                         // path of a run file
+    std::string what;                        // as export_tables.h names them
+    std::string of;                          // "GENERATION:ISLAND:ORGANISM", of the lineage; empty: everyone
+    std::optional<std::uint64_t> generation; // of the population; otherwise the last that has begun
+    std::string format = "csv";              // or "jsonl"
+    std::string output;                      // path; empty: stdout
+    std::size_t threads = 1;                 // that simulate again what is not held
 };
 
 /// Returns the exit status: 0, or 1 with a sentence on stderr if the file cannot be read or is damaged, or the output

@@ -1,6 +1,7 @@
 #include "server/console/export_tables.h"
 
 #include "evod/v1/commands.pb.h"
+#include "server/console/population_file.h"
 #include "server/console/report.h"
 #include "server/storage/generation_reader.h"
 #include "server/storage/lineage.h"
@@ -220,6 +221,29 @@ Result<void> write_lineage(const Exported& run, std::ostream& out, Table::Format
     if (wrong)
         return no_such(*wrong);
     return done;
+}
+
+Result<void> write_population(const Exported& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
+    const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
+    if (generation < first || generation > last)
+        return Refusal{.code = base::RefusalCode::NotFound,
+                       .message = run.file.path() + " does not hold the beginning of that generation",
+                       .violations = {{"--generation", std::to_string(first) + " to " + std::to_string(last),
+                                       std::to_string(generation)}}};
+    const auto whole = storage::GenerationReader{run.file, run.executor}.read(generation);
+    if (!whole)
+        return whole.error();
+    Table table{out, format, population_columns()};
+    for (std::size_t island = 0; island < whole->begun.born.size(); ++island) {
+        const evolution::GeneMatrix& genes = whole->begun.born[island].genes;
+        for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
+            table.number(island).number(organism);
+            for (const float gene : evolution::column(genes, organism))
+                table.number(gene);
+            table.end_row();
+        }
+    }
+    return {};
 }
 
 Result<void> write_events(const Exported& run, std::ostream& out, Table::Format format) {

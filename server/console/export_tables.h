@@ -3,6 +3,7 @@
 //   generations  statistics, one row per generation and island, as `evod run --csv` writes them
 //   organisms    one row per organism: parents, genes, fitness, death
 //   lineage      one row per organism: parents and where they lived, and how many came of it
+//   population   one row per organism of one generation: genes, for another world to begin with
 //   events       the journal: one row per command that was applied
 //
 // Rows are written as they are read, a generation at a time; generations that are not held any more are simulated
@@ -42,6 +43,11 @@ base::Result<void> write_organisms(const Exported& run, std::ostream& out, Table
 /// of  only this organism and its ancestors, the newest first; refused if there is none of that name.
 base::Result<void> write_lineage(const Exported& run, std::ostream& out, Table::Format format,
                                  const std::optional<OrganismName>& of);
+/// As another world can begin with it (population_file.h).
+///
+/// generation  whose beginning is written; refused if the run has not begun it.
+base::Result<void> write_population(const Exported& run, std::ostream& out, Table::Format format,
+                                    std::uint64_t generation);
 base::Result<void> write_events(const Exported& run, std::ostream& out, Table::Format format);
 
 } // namespace evod::console

@@ -28,7 +28,8 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                          .parameters = begun.opening.parameters.requested,
                          .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
                          .first_generation = generation,
-                         .forked_from = origin.identity().run_id},
+                         .forked_from = origin.identity().run_id,
+                         .first_population = origin.identity().first_population},
                         {}, &begun);
     if (!file)
         return file.error();

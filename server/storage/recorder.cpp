@@ -62,11 +62,13 @@ RunRecorder* Recorder::of(const std::string& world) {
 RunRecorder& Recorder::begin(const simulation::Entry& entry) {
     using namespace std::chrono;
     const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
-    const auto number = thread_.create(folder_.file_of(entry.name), {.name = entry.name,
-                                                                     .run_id = entry.run_id,
-                                                                     .seed = entry.world.seed(),
-                                                                     .parameters = entry.world.parameters().requested,
-                                                                     .began_unix_ms = now.count()});
+    const auto number =
+        thread_.create(folder_.file_of(entry.name), {.name = entry.name,
+                                                     .run_id = entry.run_id,
+                                                     .seed = entry.world.seed(),
+                                                     .parameters = entry.world.parameters().requested,
+                                                     .began_unix_ms = now.count(),
+                                                     .first_population = entry.world.first_population()});
     const auto [run, added] = runs_.emplace(entry.name, RunRecorder{thread_, number});
     EVOD_ASSERT(added);
     run->second.follow(entry.world);

@@ -27,6 +27,7 @@ struct RunIdentity {
     // A fork begins with a generation of another run; `parameters` are those that were asked for there.
     std::uint64_t first_generation = 1;
     std::optional<simulation::RunId> forked_from = std::nullopt;
+    simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
 };
 
 /// Who asked for a command, and how.

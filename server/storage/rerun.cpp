@@ -63,7 +63,9 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
                        .message = file.path() + " holds no generation " + std::to_string(generation),
                        .violations = {}};
     if (!*begun)
-        return with_changes(file, simulation::World{file.identity().parameters, file.identity().seed}, *changes);
+        return with_changes(
+            file, simulation::World{file.identity().parameters, file.identity().seed, file.identity().first_population},
+            *changes);
     auto history = file.history(simulation::World::history_generations_kept);
     if (!history)
         return history.error();
@@ -80,9 +82,10 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
 
 Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, std::span<const ParameterChange> changes,
                           simulation::World::History history, base::Executor& executor) {
-    return with_changes(
-        file, simulation::World{file.identity().seed, begun.opening, begun.born, std::move(history), executor},
-        changes);
+    return with_changes(file,
+                        simulation::World{file.identity().seed, begun.opening, begun.born, std::move(history), executor,
+                                          file.identity().first_population},
+                        changes);
 }
 
 Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,

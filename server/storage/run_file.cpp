@@ -33,6 +33,7 @@ const Columns link_columns = {"tick", "low", "high"};
 const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
 const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
 const Columns run_columns = {"key", "value"};
+const Columns first_population_columns = {"island", "organism_count", "chromosomes"};
 
 Columns statistics_columns() {
     Columns columns;
@@ -63,6 +64,19 @@ bool read_into(std::vector<T>& values, const std::string& bytes) {
     values.resize(bytes.size() / sizeof(T));
     if (!bytes.empty())
         std::memcpy(values.data(), bytes.data(), bytes.size());
+    return true;
+}
+
+std::span<const std::byte> bytes_of(const evolution::GeneMatrix& genes) {
+    return std::as_bytes(std::span{genes.data(), static_cast<std::size_t>(genes.size())});
+}
+
+/// false if the bytes are not those of so many chromosomes.
+bool read_into(evolution::GeneMatrix& genes, std::uint64_t organisms, const std::string& bytes) {
+    if (bytes.size() != organisms * evolution::gene_count * sizeof(float))
+        return false;
+    genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
+    std::memcpy(genes.data(), bytes.data(), bytes.size());
     return true;
 }
 
@@ -222,6 +236,8 @@ void RunFile::create_tables() {
     database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
     database_.run(R"(
 CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE first_population (island INTEGER PRIMARY KEY, organism_count INTEGER NOT NULL, chromosomes BLOB NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
 CREATE TABLE parameters (number INTEGER PRIMARY KEY, revision INTEGER NOT NULL, active TEXT NOT NULL,
     requested TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
 CREATE TABLE journal (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, client TEXT NOT NULL,
@@ -262,6 +278,13 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("began_unix_ms", std::to_string(identity.began_unix_ms));
     put("first_generation", std::to_string(identity.first_generation));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
+    if (!identity.first_population)
+        return;
+    RowWriter first_population{database_, "first_population", first_population_columns};
+    for (std::size_t island = 0; island < identity.first_population->size(); ++island) {
+        const evolution::GeneMatrix& genes = (*identity.first_population)[island];
+        first_population.natural(island).integer(genes.cols()).bytes(bytes_of(genes)).finish();
+    }
 }
 
 Result<void> RunFile::read_identity() {
@@ -332,7 +355,33 @@ Result<void> RunFile::read_identity() {
     constexpr std::size_t keys = 9;
     if (known != keys)
         return damaged("its table run");
+    if (auto read = read_first_population(); !read)
+        return read;
     return read_thinning();
+}
+
+Result<void> RunFile::read_first_population() {
+    // Files of before there were such runs have no such table.
+    if (database_.number("SELECT count(*) FROM sqlite_schema WHERE name = 'first_population'") == 0)
+        return {};
+    std::vector<evolution::GeneMatrix> islands;
+    RowReader rows{database_, "first_population", first_population_columns, "1 ORDER BY island"};
+    while (rows.next()) {
+        const std::uint64_t island = rows.natural(), organisms = rows.natural();
+        const std::string chromosomes = rows.bytes();
+        if (!rows.sound() || island != islands.size() || !read_into(islands.emplace_back(), organisms, chromosomes))
+            return damaged(row_of("first_population", island));
+    }
+    if (database_.failed())
+        return failure();
+    if (islands.empty())
+        return {};
+    identity_.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
+    // A fork does not begin with it.
+    if (identity_.first_generation == 1 &&
+        !faults_of(identity_.first_population, identity_.parameters, "first_population").empty())
+        return damaged("its table first_population");
+    return {};
 }
 
 Result<void> RunFile::read_thinning() {
@@ -505,12 +554,10 @@ Result<std::vector<evolution::NextGeneration>> RunFile::born_in(const simulation
         born.survivor_count = static_cast<std::uint32_t>(rows.integer());
         born.clamped_count = rows.natural();
         const std::string genes = rows.bytes(), parents = rows.bytes();
-        if (!rows.sound() || island != islands.size() ||
-            genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents) ||
+        if (!rows.sound() || island != islands.size() || !read_into(born.genes, organisms, genes) ||
+            !read_into(born.parents, parents) ||
             (!born.parents.empty() && born.parents.size() != organisms)) // the first generation has none
             return bad();
-        born.genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
-        std::memcpy(born.genes.data(), genes.data(), genes.size());
         islands.push_back(std::move(born));
     }
     if (database_.failed())
@@ -773,7 +820,7 @@ void RunFile::write(const GenerationBegun& begun) {
             .natural(born.elite_count)
             .natural(born.survivor_count)
             .natural(born.clamped_count)
-            .bytes(std::as_bytes(std::span{born.genes.data(), static_cast<std::size_t>(born.genes.size())}))
+            .bytes(bytes_of(born.genes))
             .bytes(bytes_of(born.parents))
             .finish();
     }

@@ -43,8 +43,8 @@ class RunFile {
     /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
     /// was to create it did not come to the end of it.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
-    /// Gives a file that is not open here another name, with all that SQLite keeps beside it: whoever is reading it goes
-    /// on, and nothing of it is left under the old name.
+    /// Gives a file that is not open here another name, with all that SQLite keeps beside it: whoever is reading it
+    /// goes on, and nothing of it is left under the old name.
     static base::Result<void> rename(const std::string& from, const std::string& to);
     /// To be looked at, while a server writes to it too.
     static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
@@ -115,6 +115,7 @@ class RunFile {
     void create_tables();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
+    base::Result<void> read_first_population();
     base::Result<void> read_thinning();
     bool is_held(std::uint64_t generation) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);

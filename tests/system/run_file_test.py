@@ -28,12 +28,13 @@ def evod(*arguments, status=0):
 class Server:
     """A server with the world "small", as a context; ended in order when that is left."""
 
-    def __init__(self, folder, seed):
+    def __init__(self, folder, seed, *options):
         experiment = pathlib.Path(folder) / "small.json"
         experiment.write_text(json.dumps(EXPERIMENT))
         self.run = pathlib.Path(folder) / "small.evod"
         self.process = subprocess.Popen(
-            [EVOD, "--data", folder, "--port", "0", "--speed", "max", "--experiment", experiment, "--seed", str(seed)],
+            [EVOD, "--data", folder, "--port", "0", "--speed", "max", "--experiment", experiment, "--seed", str(seed),
+             *options],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         for line in self.process.stdout:
             if found := re.search(r"listening on (127\.0\.0\.1:\d+)", line):
@@ -354,6 +355,41 @@ class Export(Case):
             self.assertIn(words, evod("export", plain, "--what", "lineage", "--of", of, status=1))
         self.assertIn("only with --what lineage", evod("export", plain, "--what", "events", "--of", "1:0:0", status=1))
 
+    def test_a_population_is_what_another_world_begins_with(self):
+        path = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--generation", 3, "--output", path)
+        rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
+        self.assertEqual(list(rows[0]), ["island", "organism", *GENES])
+        self.assertEqual([list(row.values()) for row in rows],
+                         [[row[x] for x in rows[0]] for row in self.rows(plain, "organisms") if row["generation"] == "3"])
+        with Server(self.folder, 8, "--population", path) as server:
+            server.evoctl("until", "250", "--wait")
+            server.evoctl("reset")
+            server.evoctl("until", "130", "--wait")
+        for run in pathlib.Path(self.folder).glob("*.evod"):
+            self.assertIn("all agrees", evod("verify", run))
+            self.assertEqual(evod("export", run, "--what", "population", "--generation", 1), pathlib.Path(path).read_text())
+            again = self.folder + "/again.csv"
+            evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv", again)
+            self.assertEqual(evod("export", run, "--what", "generations").splitlines()[:3],
+                             pathlib.Path(again).read_text().splitlines())
+        # Without being told of it, the world goes on; told of another, it is not taken for that.
+        Server(self.folder, 8).end(signal.SIGTERM, 0)
+        evod("export", plain, "--what", "population", "--generation", 2, "--output", path)
+        self.assertIn("began with other organisms", evod("--data", self.folder, "--experiment", self.folder + "/small.json",
+                                                         "--population", path, status=1))
+        self.assertIn("--generation: got 5, allowed 1 to 4",
+                      evod("export", plain, "--what", "population", "--generation", 5, status=1))
+        self.assertIn("only with --what population",
+                      evod("export", plain, "--what", "events", "--generation", 1, status=1))
+
+    def test_a_world_is_created_with_a_population(self):
+        path = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--output", path)  # of the last generation
+        with Server(self.folder, 9) as server:
+            server.evoctl("create", "same", "--experiment", self.folder + "/small.json", "--population", path)
+        self.assertEqual(evod("export", self.folder + "/same.evod", "--what", "population"), pathlib.Path(path).read_text())
+
     def test_a_file_takes_what_stdout_would(self):
         path = self.folder + "/organisms.jsonl"
         self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
@@ -363,7 +399,7 @@ class Export(Case):
     def test_what_is_wrong_is_named(self):
         path = self.copy(plain)
         for arguments, words in {
-            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "events"],
+            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
             (path,): ["--what is required"],
         }.items():
