@@ -30,7 +30,7 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                          .first_generation = generation,
                          .forked_from = origin.identity().run_id,
                          .first_population = origin.identity().first_population},
-                        {}, &begun);
+                        {.keep_every = origin.keep_every()}, &begun);
     if (!file)
         return file.error();
     (*file)->begin();

@@ -159,8 +159,10 @@ Refusal RunFile::damaged(const std::string& what) const {
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
                                                  const Options& options, const GenerationBegun* beginning) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
+    file->keep_every_ = options.keep_every;
     if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    file->identity_ = identity;
     file->begin();
     file->create_tables();
     file->write_identity(identity);
@@ -168,7 +170,6 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
         file->write(*beginning);
     if (auto committed = file->commit(); !committed)
         return committed.error();
-    file->identity_ = identity;
     return file;
 }
 
@@ -278,6 +279,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("began_unix_ms", std::to_string(identity.began_unix_ms));
     put("first_generation", std::to_string(identity.first_generation));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
+    put("keep_every", std::to_string(keep_every_));
     if (!identity.first_population)
         return;
     RowWriter first_population{database_, "first_population", first_population_columns};
@@ -343,6 +345,11 @@ Result<void> RunFile::read_identity() {
             take(number_from<std::uint32_t>(value), identity_.model_version);
         } else if (key == "began_unix_ms") {
             take(number_from<std::int64_t>(value), identity_.began_unix_ms);
+        } else if (key == "keep_every") { // not in files of before there was a choice
+            take(number_from<std::uint64_t>(value), keep_every_);
+            if (!good || keep_every_ == 0)
+                return damaged("the row \"" + key + "\" of its table run");
+            continue;
         } else {
             continue;
         }
@@ -398,18 +405,27 @@ Result<void> RunFile::read_thinning() {
     return {};
 }
 
-bool RunFile::is_held(std::uint64_t generation) const {
-    return generation > thinning_.until_generation ||
-           (generation - identity_.first_generation) % thinning_.keep_every == 0;
+bool RunFile::is_held(std::uint64_t generation) {
+    const std::uint64_t place = generation - identity_.first_generation;
+    if (generation <= thinning_.until_generation)
+        return place % thinning_.keep_every == 0;
+    return place % keep_every_ == 0 || generation >= last_generation();
 }
 
 bool RunFile::is_link_held(std::uint64_t tick) const {
     return tick > thinning_.until_tick || tick / ticks_per_link % thinning_.keep_every == 0;
 }
 
-std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
-    return is_held(generation) ? generation
-                               : generation - (generation - identity_.first_generation) % thinning_.keep_every;
+std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) {
+    if (is_held(generation))
+        return generation;
+    const auto step_back = [&](std::uint64_t keep_every) {
+        generation -= (generation - identity_.first_generation) % keep_every;
+    };
+    step_back(keep_every_);
+    if (generation <= thinning_.until_generation)
+        step_back(thinning_.keep_every);
+    return generation;
 }
 
 std::optional<Refusal> RunFile::other_model() const {
@@ -474,6 +490,13 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uin
 Result<void> RunFile::hold_still() {
     database_.run("BEGIN");
     return read_thinning(); // what holds now
+}
+
+Result<void> RunFile::copy_to(const std::string& path) {
+    database_.copy_to(path);
+    if (database_.failed())
+        return failure();
+    return {};
 }
 
 std::uint64_t RunFile::last_generation() {
@@ -824,6 +847,12 @@ void RunFile::write(const GenerationBegun& begun) {
             .bytes(bytes_of(born.parents))
             .finish();
     }
+    // The one before is the last no more.
+    const std::uint64_t before = opening.moment.generation - 1;
+    if (before <= identity_.first_generation || (before - identity_.first_generation) % keep_every_ == 0)
+        return;
+    for (const char* table : {"population", "outcome"})
+        database_.run(("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before)).c_str());
 }
 
 void RunFile::write(const GenerationEnded& ended) {
@@ -888,7 +917,9 @@ Result<void> RunFile::thin_if_large() {
         return {};
     // Once only the first is left of the older ones, there is nothing to halve.
     const std::uint64_t twice = thinning_.keep_every > last ? 1 : 2;
-    Thinning next{.keep_every = twice * thinning_.keep_every, .until_generation = last - 2, .until_tick = 0};
+    Thinning next{.keep_every = twice * std::max(thinning_.keep_every, keep_every_),
+                  .until_generation = last - 2,
+                  .until_tick = 0};
     const std::string until = std::to_string(next.until_generation), every = std::to_string(next.keep_every);
     next.until_tick = static_cast<std::uint64_t>(database_.number(
         ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));
