@@ -37,6 +37,7 @@ struct ServeOptions {
     bool keep_nothing = false;
     std::string durability = "full";
     std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
+    std::uint64_t keep_every = storage::RunFile::Options{}.keep_every;
 };
 
 /// Says why evod cannot start, and what to do.
@@ -109,7 +110,8 @@ int serve(const ServeOptions& options) {
         .run_files = {.durability =
                           options.durability == "relaxed" ? storage::Durability::Relaxed : storage::Durability::Full,
                       .vfs = nullptr,
-                      .file_bytes_max = options.file_bytes_max},
+                      .file_bytes_max = options.file_bytes_max,
+                      .keep_every = options.keep_every},
         .first_world = std::move(create),
         .first_world_asked = !options.experiment_file.empty() || options.seed || !options.population_file.empty(),
         .first_seed_asked = options.seed.has_value(),
@@ -175,6 +177,11 @@ int main(int argument_count, char** arguments) {
            "simulated again, and statistics are kept")
         ->check(CLI::Range(std::int64_t{1} << 20, std::int64_t{1} << 50))
         ->capture_default_str();
+    app.add_option("--keep-every", options.keep_every,
+                   "New run files hold each of so many generations whole, and the first and the last; the others can "
+                   "still be simulated again, and statistics are kept")
+        ->check(CLI::Range(1, 1'000'000'000))
+        ->capture_default_str();
     app.footer("Without a subcommand evod is a server.");
 
     console::RunOptions run_options;
@@ -224,12 +231,13 @@ int main(int argument_count, char** arguments) {
     export_options.threads = options.threads;
     CLI::App& export_ = *app.add_subcommand("export", "Write what a run file holds as rows for other programs");
     export_.add_option("run", export_options.run, "Run file, NAME.evod; the run need not be over")->required();
-    export_
-        .add_option("--what", export_options.what,
-                    "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
-                    "whom; population: the genes of one generation, for --population; events: the commands")
-        ->check(CLI::IsMember({"generations", "organisms", "lineage", "population", "events"}))
-        ->required();
+    CLI::Option* what =
+        export_
+            .add_option(
+                "--what", export_options.what,
+                "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                "whom; population: the genes of one generation, for --population; events: the commands")
+            ->check(CLI::IsMember({"generations", "organisms", "lineage", "population", "events"}));
     export_.add_option("--of", export_options.of,
                        "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
     export_
@@ -238,10 +246,16 @@ int main(int argument_count, char** arguments) {
     export_.add_option("--format", export_options.format, "csv, or jsonl: an object of JSON a line")
         ->check(CLI::IsMember({"csv", "jsonl"}))
         ->capture_default_str();
-    export_.add_option("--output", export_options.output, "File; without it, standard output");
+    CLI::Option* output = export_.add_option("--output", export_options.output, "File; without it, standard output");
     export_.add_option("--threads", export_options.threads, "Threads that simulate again what is not held any more")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+
+    export_
+        .add_option("--bundle", export_options.bundle,
+                    "Folder to make, with a copy of the run file, all tables, checksums and how to repeat the run")
+        ->excludes(what)
+        ->excludes(output);
 
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");

@@ -1,5 +1,6 @@
 #include "server/console/export.h"
 
+#include "server/console/bundle.h"
 #include "server/console/export_tables.h"
 #include "server/runtime/worker_pool.h"
 
@@ -63,6 +64,8 @@ Result<void> write_rows(const Exported& run, const ExportOptions& options, std::
 
 /// What is wrong with the options together, as far as they alone tell.
 Result<void> check(const ExportOptions& options) {
+    if (options.what.empty() && options.bundle.empty())
+        return wrong_option("--what", "one of its words, or --bundle FOLDER instead", "nothing");
     if (!options.of.empty() && options.what != "lineage")
         return wrong_option("--of", "only with --what lineage", options.of);
     if (!options.of.empty() && !organism_named(options.of))
@@ -83,6 +86,9 @@ Result<void> export_to(const ExportOptions& options) {
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held;
+    const auto executor = runtime::make_executor(options.threads);
+    if (!options.bundle.empty())
+        return write_bundle({**file, *executor}, options.bundle);
     std::ofstream output;
     if (!options.output.empty()) {
         output.open(options.output, std::ios::binary);
@@ -91,7 +97,6 @@ Result<void> export_to(const ExportOptions& options) {
     }
     std::ios::sync_with_stdio(false);
     std::ostream& out = options.output.empty() ? std::cout : output;
-    const auto executor = runtime::make_executor(options.threads);
     if (Result<void> written = write_rows({**file, *executor}, options, out); !written)
         return written;
     if (!out.flush())

@@ -233,9 +233,17 @@ Result<void> write_population(const Exported& run, std::ostream& out, Table::For
     const auto whole = storage::GenerationReader{run.file, run.executor}.read(generation);
     if (!whole)
         return whole.error();
+    std::vector<evolution::GeneMatrix> population;
+    for (const evolution::NextGeneration& born : whole->begun.born)
+        population.push_back(born.genes);
+    return write_population(out, format, population);
+}
+
+Result<void> write_population(std::ostream& out, Table::Format format,
+                              const std::vector<evolution::GeneMatrix>& population) {
     Table table{out, format, population_columns()};
-    for (std::size_t island = 0; island < whole->begun.born.size(); ++island) {
-        const evolution::GeneMatrix& genes = whole->begun.born[island].genes;
+    for (std::size_t island = 0; island < population.size(); ++island) {
+        const evolution::GeneMatrix& genes = population[island];
         for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
             table.number(island).number(organism);
             for (const float gene : evolution::column(genes, organism))

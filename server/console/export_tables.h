@@ -48,6 +48,8 @@ base::Result<void> write_lineage(const Exported& run, std::ostream& out, Table::
 /// generation  whose beginning is written; refused if the run has not begun it.
 base::Result<void> write_population(const Exported& run, std::ostream& out, Table::Format format,
                                     std::uint64_t generation);
+base::Result<void> write_population(std::ostream& out, Table::Format format,
+                                    const std::vector<evolution::GeneMatrix>& population);
 base::Result<void> write_events(const Exported& run, std::ostream& out, Table::Format format);
 
 } // namespace evod::console

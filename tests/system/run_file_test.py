@@ -390,6 +390,49 @@ class Export(Case):
             server.evoctl("create", "same", "--experiment", self.folder + "/small.json", "--population", path)
         self.assertEqual(evod("export", self.folder + "/same.evod", "--what", "population"), pathlib.Path(path).read_text())
 
+    def bundle(self, run, *names):
+        folder = pathlib.Path(self.folder) / "bundle"
+        shutil.rmtree(folder, ignore_errors=True)
+        evod("export", run, "--bundle", folder)
+        self.assertEqual(sorted(file.name for file in folder.iterdir()),
+                         sorted(["REPEAT.md", "SHA256SUMS", "events.csv", "experiment.json", "generations.csv",
+                                 "lineage.csv", "organisms.csv", *names]))
+        subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=folder, check=True)
+        for what in "generations", "organisms", "lineage", "events":
+            self.assertEqual((folder / f"{what}.csv").read_text(),
+                             evod("export", folder / "small.evod", "--what", what))
+        self.assertIn("all agrees", evod("verify", folder / "small.evod"))
+        return folder
+
+    def repeat(self, folder):
+        """Does what REPEAT.md says."""
+        commands = re.findall("^    (.*)$", (folder / "REPEAT.md").read_text(), re.M)
+        for command in commands:
+            words = [EVOD if word == "evod" else word for word in command.split()]
+            subprocess.run(words, cwd=folder, check=True, stdout=subprocess.PIPE)
+        return len(commands)
+
+    def test_a_bundle_says_how_the_run_is_repeated(self):
+        self.assertEqual(self.repeat(self.bundle(plain, "small.evod")), 4)
+        folder = self.bundle(changed, "small.evod")
+        self.assertEqual(self.repeat(folder), 2)
+        self.assertIn("Parameters were changed while it ran, 2 times", (folder / "REPEAT.md").read_text())
+        self.assertIn("is there already", evod("export", plain, "--bundle", folder, status=1))
+        self.assertIn("/nowhere/b: No such", evod("export", plain, "--bundle", "/nowhere/b", status=1))
+        damaged = self.copy(plain, "UPDATE statistics SET alive_count = 99 WHERE generation = 2")
+        evod("export", damaged, "--bundle", self.folder + "/half", status=1)
+        self.assertFalse(os.path.exists(self.folder + "/half"))
+
+    def test_a_bundle_is_of_one_moment_while_a_server_writes(self):
+        plate = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--output", plate)
+        with Server(self.folder, 4, "--population", plate, "--keep-every", "5") as server:
+            server.evoctl("until", "1500", "--wait")
+            server.evoctl("run")
+            folder = self.bundle(server.run, "small.evod", "population.csv")
+            self.assertEqual(self.repeat(folder), 4)
+            self.assertEqual((folder / "population.csv").read_text(), pathlib.Path(plate).read_text())
+
     def test_a_file_takes_what_stdout_would(self):
         path = self.folder + "/organisms.jsonl"
         self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
@@ -401,12 +444,13 @@ class Export(Case):
         for arguments, words in {
             (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
-            (path,): ["--what is required"],
+            (path, "--what", "events", "--bundle", self.folder + "/b"): ["--what excludes --bundle"],
         }.items():
             said = evod("export", *arguments, status=2)
             for word in words:
                 self.assertIn(word, said)
         for arguments, words in {
+            (path,): ["--what: got nothing", "--bundle FOLDER"],
             ("/nowhere.evod", "--what", "events"): ["/nowhere.evod: there is no such file"],
             (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No such"],
             (path, "--what", "events", "--output", path): ["--output: got " + path, "another file than the run file"],
