@@ -4,6 +4,7 @@
 #include "server/console/export.h"
 #include "server/console/fork.h"
 #include "server/console/parameter_list.h"
+#include "server/console/population_file.h"
 #include "server/console/run.h"
 #include "server/console/verify.h"
 #include "server/network/random_ids.h"
@@ -28,7 +29,7 @@ struct ServeOptions {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = wire::default_port;
     std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
-    std::string experiment_file;
+    std::string experiment_file, population_file;
     std::optional<std::uint64_t> seed;
     std::string speed;
     bool start = false;
@@ -36,6 +37,7 @@ struct ServeOptions {
     bool keep_nothing = false;
     std::string durability = "full";
     std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
+    std::uint64_t keep_every = storage::RunFile::Options{}.keep_every;
 };
 
 /// Says why evod cannot start, and what to do.
@@ -107,6 +109,10 @@ int serve(const ServeOptions& options) {
     }
     if (options.seed)
         create.seed = base::Seed{*options.seed};
+    auto population = console::load_population(options.population_file, create.parameters);
+    if (!population)
+        return fail("--population: " + to_text(population.error()));
+    create.first_population = *std::move(population);
 
     std::string data_folder = options.data_folder;
     if (data_folder.empty() && !options.keep_nothing) {
@@ -116,21 +122,22 @@ int serve(const ServeOptions& options) {
                         "give --keep-nothing");
         data_folder = *folder;
     }
-    network::ServerOptions server_options{.bind_address = options.bind_address,
-                                          .port = options.port,
-                                          .threads = options.threads,
-                                          .data_folder = data_folder,
-                                          .run_files = {.durability = options.durability == "relaxed"
-                                                                          ? storage::Durability::Relaxed
-                                                                          : storage::Durability::Full,
-                                                        .vfs = nullptr,
-                                                        .file_bytes_max = options.file_bytes_max},
-                                          .replay = {},
-                                          .first_world = std::move(create),
-                                          .first_world_asked = !options.experiment_file.empty() || options.seed,
-                                          .first_seed_asked = options.seed.has_value(),
-                                          .first_speed = {},
-                                          .first_run = options.start};
+    network::ServerOptions server_options{
+        .bind_address = options.bind_address,
+        .port = options.port,
+        .threads = options.threads,
+        .data_folder = data_folder,
+        .run_files = {.durability =
+                          options.durability == "relaxed" ? storage::Durability::Relaxed : storage::Durability::Full,
+                      .vfs = nullptr,
+                      .file_bytes_max = options.file_bytes_max,
+                      .keep_every = options.keep_every},
+        .replay = {},
+        .first_world = std::move(create),
+        .first_world_asked = !options.experiment_file.empty() || options.seed || !options.population_file.empty(),
+        .first_seed_asked = options.seed.has_value(),
+        .first_speed = {},
+        .first_run = options.start};
     if (!options.speed.empty())
         server_options.first_speed = *parse_speed(options.speed);
 
@@ -163,6 +170,10 @@ int main(int argument_count, char** arguments) {
     app.add_option("--experiment", options.experiment_file, "JSON file with the parameters of the first world");
     app.add_option("--seed", options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance")
         ->check(whole_number);
+    app.add_option(
+        "--population", options.population_file,
+        "CSV file of `evod export --what population`: the first world begins with these organisms instead of "
+        "drawn ones");
     app.add_option("--speed", options.speed, "Simulated seconds per second, 0.001 to 10000, or max")
         ->check([](const std::string& text) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
@@ -184,6 +195,11 @@ int main(int argument_count, char** arguments) {
            "simulated again, and statistics are kept")
         ->check(CLI::Range(std::int64_t{1} << 20, std::int64_t{1} << 50))
         ->capture_default_str();
+    app.add_option("--keep-every", options.keep_every,
+                   "New run files hold each of so many generations whole, and the first and the last; the others can "
+                   "still be simulated again, and statistics are kept")
+        ->check(CLI::Range(1, 1'000'000'000))
+        ->capture_default_str();
     app.footer("Without a subcommand evod is a server.");
 
     console::RunOptions run_options;
@@ -192,6 +208,8 @@ int main(int argument_count, char** arguments) {
     CLI::App& run = *app.add_subcommand("run", "Run an experiment without a network");
     run.add_option("experiment", run_options.experiment, "JSON file; without one, the default world");
     run.add_option("--seed", run_options.seed, "Otherwise the file's, or one drawn by chance")->check(whole_number);
+    run.add_option("--population", run_options.population,
+                   "CSV file of `evod export --what population`: begin with these organisms instead of drawn ones");
     run.add_option("--generations", run_options.generations,
                    "How many; takes the place of generation_limit, 0 is no limit");
     run.add_option("--threads", run_options.threads, "Threads that simulate")
@@ -242,17 +260,34 @@ int main(int argument_count, char** arguments) {
     verify.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
 
     console::ExportOptions export_options;
+    export_options.threads = options.threads;
     CLI::App& export_ = *app.add_subcommand("export", "Write what a run file holds as rows for other programs");
     export_.add_option("run", export_options.run, "Run file, NAME.evod; the run need not be over")->required();
+    CLI::Option* what =
+        export_
+            .add_option(
+                "--what", export_options.what,
+                "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                "whom; population: the genes of one generation, for --population; events: the commands")
+            ->check(CLI::IsMember({"generations", "organisms", "lineage", "population", "events"}));
+    export_.add_option("--of", export_options.of,
+                       "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
     export_
-        .add_option("--what", export_options.what,
-                    "generations: their statistics; organisms: parents, genes and fate of each; events: the commands")
-        ->check(CLI::IsMember({"generations", "organisms", "events"}))
-        ->required();
+        .add_option("--generation", export_options.generation, "Of the population; otherwise the last that has begun")
+        ->check(whole_number);
     export_.add_option("--format", export_options.format, "csv, or jsonl: an object of JSON a line")
         ->check(CLI::IsMember({"csv", "jsonl"}))
         ->capture_default_str();
-    export_.add_option("--output", export_options.output, "File; without it, standard output");
+    CLI::Option* output = export_.add_option("--output", export_options.output, "File; without it, standard output");
+    export_.add_option("--threads", export_options.threads, "Threads that simulate again what is not held any more")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+
+    export_
+        .add_option("--bundle", export_options.bundle,
+                    "Folder to make, with a copy of the run file, all tables, checksums and how to repeat the run")
+        ->excludes(what)
+        ->excludes(output);
 
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");

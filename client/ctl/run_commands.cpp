@@ -1,7 +1,9 @@
 // What changes a world's course: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
+#include "client/ctl/population_file.h"
 #include "client/ctl/text.h"
+#include "proto/wire/framing.h"
 
 #include <CLI/CLI.hpp>
 
@@ -26,7 +28,7 @@ void print_world(const Common& common, const v1::Response& response) {
 // ---- create, delete, reset -------------------------------------------------------------------------------------
 
 struct CreateOptions {
-    std::string name, experiment;
+    std::string name, experiment, population;
     std::vector<std::string> words;
     std::optional<std::uint64_t> seed;
 };
@@ -44,11 +46,33 @@ ExperimentFile read_experiment(const std::string& path, const Registry& registry
     return *std::move(experiment);
 }
 
+void add_population(const std::string& path, v1::CreateWorld& command) {
+    std::ifstream file{path, std::ios::binary};
+    if (!file.is_open()) {
+        throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read"};
+    }
+    const auto islands = read_population(file);
+    if (!islands) {
+        stop_for("the population file " + path + " is wrong:", islands.error());
+    }
+    command.mutable_population()->Assign(islands->begin(), islands->end());
+    // What else is in the request takes much less than the room that is left for it here.
+    constexpr std::size_t rest_bytes_max = 32 << 10;
+    if (command.ByteSizeLong() + rest_bytes_max > *wire::server_limits.control_bytes_max) {
+        throw Stop{ExitCode::Usage, "the population file " + path +
+                                        " holds more than a request can carry, some 43,000 organisms: begin such a "
+                                        "world with evod --population"};
+    }
+}
+
 void create(const Common& common, const CreateOptions& options) {
     Caller caller{common};
     v1::Request request;
     auto& command = *request.mutable_create_world();
     command.set_name(options.name);
+    if (!options.population.empty()) {
+        add_population(options.population, command);
+    }
     std::optional<std::uint64_t> seed;
     if (!options.experiment.empty() || !options.words.empty()) {
         const Registry registry = caller.registry();
@@ -315,6 +339,8 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
     create_command->add_option("--set", options->words, "Parameters as NAME=VALUE; the others have their defaults");
     create_command->add_option("--experiment", options->experiment,
                                "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
+    create_command->add_option("--population", options->population,
+                               "CSV file of `evod export --what population` to begin with");
     create_command->footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
                            "  evoctl create big --set population_size=10000 scale_with_population=true");
     create_command->callback([&, options] { selected = [&, options] { create(common, *options); }; });

@@ -1,21 +1,22 @@
 // `evod export`: what a run file holds, as rows for other programs.
-//
-//   generations  statistics, one row per generation and island, as `evod run --csv` writes them
-//   organisms    one row per organism of the generations that are held whole: parents, genes, fitness, death
-//   events       the journal: one row per command that was applied
-//
-// Rows are written as they are read, a generation at a time.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace evod::console {
 
 struct ExportOptions {
-    std::string run; // path of a run file
-    std::string what;
-    std::string format = "csv"; // or "jsonl"
-    std::string output;         // path; empty: stdout
+    std::string run;                         // path of a run file
+    std::string bundle;                      // folder to make instead; empty: none
+    std::string what;                        // as export_tables.h names them
+    std::string of;                          // "GENERATION:ISLAND:ORGANISM", of the lineage; empty: everyone
+    std::optional<std::uint64_t> generation; // of the population; otherwise the last that has begun
+    std::string format = "csv";              // or "jsonl"
+    std::string output;                      // path; empty: stdout
+    std::size_t threads = 1;                 // that simulate again what is not held
 };
 
 /// Returns the exit status: 0, or 1 with a sentence on stderr if the file cannot be read or is damaged, or the output

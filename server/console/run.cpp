@@ -2,6 +2,7 @@
 
 #include "server/console/experiment_file.h"
 #include "server/console/interview.h"
+#include "server/console/population_file.h"
 #include "server/console/progress_line.h"
 #include "server/console/report.h"
 #include "server/runtime/worker_pool.h"
@@ -106,6 +107,11 @@ int run(const RunOptions& options) {
         std::cerr << "evod run: " << base::to_text(experiment.error()) << '\n';
         return RunError;
     }
+    auto first_population = load_population(options.population, experiment->parameters);
+    if (!first_population) {
+        std::cerr << "evod run: --population: " << base::to_text(first_population.error()) << '\n';
+        return RunError;
+    }
     std::ofstream csv;
     std::optional<Table> table;
     if (!options.csv.empty()) {
@@ -122,7 +128,7 @@ int run(const RunOptions& options) {
     Cost cost;
     const auto start = Clock::now();
     const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
-    simulation::World world{experiment->parameters, *experiment->seed};
+    simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population)};
     cost.start_s = seconds_since(start);
 
     const bool several_islands = world.islands().size() > 1;

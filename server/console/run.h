@@ -12,6 +12,7 @@ namespace evod::console {
 
 struct RunOptions {
     std::string experiment; // path; empty: the defaults of the registry
+    std::string population; // path; empty: the first generation is drawn
     std::optional<std::uint64_t> seed;
     base::Seed drawn_seed;                    // by chance, for an experiment that has none
     std::optional<std::uint32_t> generations; // takes the place of generation_limit

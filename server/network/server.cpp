@@ -6,6 +6,7 @@
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
+#include "server/protocol/populations.h"
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -78,14 +79,16 @@ base::Result<void> Server::open_archive() {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
                              .message = path + " holds a world \"" + wanted.name + "\" that began with other " +
                                         in_what +
-                                        ": begin elsewhere with another --data, or start without --experiment and "
-                                        "--seed, and reset or delete that world",
+                                        ": begin elsewhere with another --data, or start without --experiment, --seed "
+                                        "and --population, and reset or delete that world",
                              .violations = {}};
     };
     if (there && !(there->parameters == wanted.parameters))
         return differs("parameters");
     if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value)
         return differs("seed (" + std::to_string(there->seed.value) + ")");
+    if (there && wanted.first_population && !simulation::same(there->first_population, wanted.first_population))
+        return differs("organisms");
     return {};
 }
 
@@ -121,6 +124,7 @@ void Server::begin_first_world() {
             assignment.set_name(std::string{parameter.name});
             *assignment.mutable_value() = protocol::to_proto(value);
         }
+        protocol::add_population(create, world.first_population);
         command_of_own(std::move(request));
     }
     if (options_.first_speed) {

@@ -1,6 +1,7 @@
 #include "server/protocol/commands.h"
 
 #include "server/protocol/parameters.h"
+#include "server/protocol/populations.h"
 #include "server/protocol/refusals.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world_name.h"
@@ -45,6 +46,11 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
                 command.parameters = *parameters;
             else
                 missing = parameters.error().violations;
+        }
+        if (missing.empty()) {
+            command.first_population = first_population_of(request, missing);
+            const auto faults = faults_of(command.first_population, command.parameters, "create_world.population");
+            missing.insert(missing.end(), faults.begin(), faults.end());
         }
         violations.insert(violations.end(), missing.begin(), missing.end());
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "server/base/random.h"
+#include "server/simulation/first_population.h"
 #include "server/simulation/parameters.h"
 
 #include <optional>
@@ -31,6 +32,7 @@ struct CreateWorld {
     Parameters parameters;
     base::Seed seed;
     RunId run_id;
+    FirstPopulation first_population = {}; // that a world with these parameters can have
 };
 struct DeleteWorld {
     std::string world;

@@ -178,8 +178,9 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
     if (auto refused = refusal_of(command.name))
         return *refused;
-    entries_.push_back(std::make_unique<Entry>(
-        Entry{command.name, command.run_id, RunControl{}, World{command.parameters, command.seed}}));
+    entries_.push_back(
+        std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{},
+                                      World{command.parameters, command.seed, command.first_population}}));
     return Applied{.world = command.name, .tick = 0, .parameters = {}};
 }
 
@@ -196,6 +197,13 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
+    if (auto faults = faults_of(entry.world.first_population(), entry.world.parameters().requested, "population");
+        !faults.empty())
+        return Refusal{.code = RefusalCode::FailedPrecondition,
+                       .message =
+                           "the world was given its first population, with which a run with the parameters asked "
+                           "for cannot begin: change them back, or create another world",
+                       .violations = std::move(faults)};
     entry.world.reset(command.seed.value_or(entry.world.seed()));
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;

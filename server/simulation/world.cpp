@@ -10,14 +10,16 @@
 #include <utility>
 
 namespace evod::simulation {
-World::World(const Parameters& parameters, base::Seed seed) : seed_{seed}, parameters_{parameters, parameters, 1} {
+World::World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population)
+    : seed_{seed}, parameters_{parameters, parameters, 1}, first_population_{std::move(first_population)} {
     begin_run();
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-             base::Executor& executor)
+             base::Executor& executor, FirstPopulation first_population)
     : seed_{seed}
     , parameters_{opening.parameters}
+    , first_population_{std::move(first_population)}
     , moment_{opening.moment}
     , history_{std::move(history)}
     , progress_{opening.progress} {
@@ -34,7 +36,7 @@ World World::at_its_opening(base::Executor& executor) const {
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
         before.pop_back();
-    return World{seed_, opening_, std::move(born), std::move(before), executor};
+    return World{seed_, opening_, std::move(born), std::move(before), executor, first_population_};
 }
 
 void World::reset(base::Seed seed) {
@@ -51,10 +53,12 @@ void World::begin_run() {
     progress_ = {};
     generation_over_ = false;
     make_islands();
+    EVOD_ASSERT(!first_population_ || first_population_->size() == p.island_count);
     std::vector<evolution::NextGeneration> first;
     for (std::uint32_t island = 0; island < p.island_count; ++island) {
         evolution::NextGeneration born;
-        born.genes = evolution::initial_population(p.population_size, p, seed_, island);
+        born.genes = first_population_ ? (*first_population_)[island]
+                                       : evolution::initial_population(p.population_size, p, seed_, island);
         first.push_back(std::move(born));
     }
     base::InlineExecutor executor; // a run is begun between two ticks, where none is at hand

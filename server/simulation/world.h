@@ -40,15 +40,19 @@ class World {
     /// Statistics of ended generations, oldest first, one element per generation with one entry per island.
     using History = std::deque<std::vector<GenerationStatistics>>;
 
-    /// parameters  valid. The first generation stands ready at (1, 0).
-    World(const Parameters& parameters, base::Seed seed);
+    /// The first generation stands ready at (1, 0).
+    ///
+    /// parameters        valid.
+    /// first_population  that a world with these parameters can have; nullptr: it is drawn.
+    World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population = {});
 
     /// At the beginning of a generation of a run, from where it goes on as that run did.
     ///
-    /// born     what bred it, shape (islands): opening.parameters.active.island_count.
-    /// history  statistics of the generations before it, as far as they are known.
+    /// born              what bred it, shape (islands): opening.parameters.active.island_count.
+    /// history           statistics of the generations before it, as far as they are known.
+    /// first_population  with which the run began, and begins if it is reset; nullptr: it is drawn.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-          base::Executor& executor);
+          base::Executor& executor, FirstPopulation first_population = {});
 
     /// Another world, as this one was at the first moment of its generation.
     World at_its_opening(base::Executor& executor) const;
@@ -62,7 +66,8 @@ class World {
     /// whoever has the hash of the one that was compares.
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
-    /// Begins the run again with the parameters last asked for.
+    /// Begins the run again with the parameters last asked for, and the same first population if one was given, which a
+    /// world with those parameters can have.
     void reset(base::Seed seed);
 
     /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while outcome() is
@@ -76,6 +81,7 @@ class World {
     base::Seed seed() const { return seed_; }
     base::StateHash hash() const { return hash_; }
     const ParameterSet& parameters() const { return parameters_; }
+    const FirstPopulation& first_population() const { return first_population_; }
     /// Takes a set that assign() has made from parameters().requested; each parameter holds from when its effect says.
     void request_parameters(const Parameters& requested);
 
@@ -115,6 +121,7 @@ class World {
 
     base::Seed seed_;
     ParameterSet parameters_;
+    FirstPopulation first_population_;
     Moment moment_;
     bool generation_over_ = false;
     base::StateHash hash_;

@@ -61,6 +61,21 @@ std::int64_t Database::number(const char* sql) {
     return statement.row() ? statement.integer(0) : 0;
 }
 
+void Database::copy_to(const std::string& path) {
+    if (failed())
+        return;
+    Database copy{path, Mode::Create};
+    if (!copy.failed()) {
+        sqlite3_backup* backup = sqlite3_backup_init(copy.handle_.get(), "main", handle_.get(), "main");
+        constexpr int all_pages = -1;
+        if (backup != nullptr)
+            sqlite3_backup_step(backup, all_pages);
+        copy.check(backup == nullptr ? sqlite3_errcode(copy.handle_.get()) : sqlite3_backup_finish(backup));
+    }
+    if (copy.failed())
+        error_ = path + ": " + copy.error();
+}
+
 void Statement::Finalize::operator()(sqlite3_stmt* handle) const {
     sqlite3_finalize(handle);
 }

@@ -38,6 +38,8 @@ class Database {
     void run(const char* sql);
     /// The whole number that a query gives; 0 if it gives none.
     std::int64_t number(const char* sql);
+    /// Makes a file with all that is in this database; if it is being read, what was there when that began.
+    void copy_to(const std::string& path);
 
   private:
     friend class Statement;

@@ -29,8 +29,9 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                          .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
                          .first_generation = generation,
                          .first_tick = begun.opening.moment.tick,
-                         .forked_from = origin.identity().run_id},
-                        {}, &begun);
+                         .forked_from = origin.identity().run_id,
+                         .first_population = origin.identity().first_population},
+                        {.keep_every = origin.keep_every()}, &begun);
     if (!file)
         return file.error();
     (*file)->begin();

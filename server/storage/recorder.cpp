@@ -18,7 +18,9 @@ RunIdentity identity_of(const simulation::Entry& entry) {
             .parameters = entry.world.parameters().requested,
             .began_unix_ms = now.count(),
             .first_generation = entry.world.moment().generation,
-            .forked_from = {}};
+            .first_tick = entry.world.moment().tick,
+            .forked_from = {},
+            .first_population = entry.world.first_population()};
 }
 
 } // namespace

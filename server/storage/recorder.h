@@ -16,11 +16,11 @@ namespace evod::storage {
 
 /// A command that was applied, and who is told once that is on the disk.
 struct CommandRecord {
-    std::uint64_t tick = 0;         // after which it was applied
-    simulation::RunControl control; // as it was then
-    Origin origin;
-    std::string answer;
-    StorageThread::Done done;
+    std::uint64_t tick = 0;              // after which it was applied
+    simulation::RunControl control = {}; // as it was then
+    Origin origin = {};
+    std::string answer = {};
+    StorageThread::Done done = {};
 };
 
 /// Of one run.

@@ -28,6 +28,7 @@ struct RunIdentity {
     std::uint64_t first_generation = 1;
     std::uint64_t first_tick = 0; // the ticks before it; with those of a generation over, it begins with a checkpoint
     std::optional<simulation::RunId> forked_from = std::nullopt;
+    simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
 };
 
 /// Who asked for a command, and how.

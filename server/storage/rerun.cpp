@@ -109,7 +109,8 @@ Result<Rerun> Rerun::begun_at(RunFile& file, std::uint64_t generation, const Sto
                            file.path() + " does not hold the beginning of generation " + std::to_string(generation),
                        .violations = {}};
     if (!*begun)
-        return with_changes(file, simulation::World{identity.parameters, identity.seed}, changes, 0);
+        return with_changes(file, simulation::World{identity.parameters, identity.seed, identity.first_population},
+                            changes, 0);
     // Of a run that begins within a generation, nothing before is known.
     std::optional<StoredCheckpoint> first;
     if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
@@ -131,7 +132,8 @@ Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, con
                           std::span<const ParameterChange> changes, simulation::World::History history,
                           base::Executor& executor) {
     const simulation::Moment& opening = begun.opening.moment;
-    simulation::World world{file.identity().seed, begun.opening, begun.born, std::move(history), executor};
+    simulation::World world{file.identity().seed, begun.opening, begun.born,
+                            std::move(history),   executor,      file.identity().first_population};
     if (checkpoint == nullptr) {
         // A change that came between the end of a generation and the beginning of the next is in that beginning
         // already.

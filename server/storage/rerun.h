@@ -63,6 +63,15 @@ class Rerun {
                                       std::size_t history_count, base::Executor& executor);
     /// The same for a tick that the file tells of; refused for another.
     static base::Result<Rerun> before(RunFile& file, std::uint64_t tick, base::Executor& executor);
+    /// At the first moment of a generation, or at a checkpoint of it.
+    ///
+    /// generation     whose beginning is held.
+    /// checkpoint     of that generation; nullptr: its beginning, or that of the file.
+    /// changes        all of the file, as parameter_changes() gives them.
+    /// history_count  as in before().
+    static base::Result<Rerun> begun_at(RunFile& file, std::uint64_t generation, const StoredCheckpoint* checkpoint,
+                                        std::span<const ParameterChange> changes, std::size_t history_count,
+                                        base::Executor& executor);
     /// The same from what has been read; of the file only its identity is looked at.
     ///
     /// begun       what can be the beginning of a generation; the run's own model is this program's.
@@ -93,11 +102,6 @@ class Rerun {
     }
     /// The changes of parameters of a run that this program can simulate.
     static base::Result<std::vector<ParameterChange>> changes_of(RunFile& file);
-    /// generation  whose beginning is held.
-    /// checkpoint  of that generation; nullptr: its beginning, or that of the file.
-    static base::Result<Rerun> begun_at(RunFile& file, std::uint64_t generation, const StoredCheckpoint* checkpoint,
-                                        std::span<const ParameterChange> changes, std::size_t history_count,
-                                        base::Executor& executor);
     /// after_entry  up to this entry of the journal, changes are in the world already.
     static base::Result<Rerun> with_changes(const RunFile& file, simulation::World world,
                                             std::span<const ParameterChange> changes, std::uint64_t after_entry);

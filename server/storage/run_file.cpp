@@ -36,6 +36,7 @@ const Columns checkpoint_columns = {
 const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
 const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
 const Columns run_columns = {"key", "value"};
+const Columns first_population_columns = {"island", "organism_count", "chromosomes"};
 
 Columns statistics_columns() {
     Columns columns;
@@ -72,6 +73,19 @@ bool read_into(std::vector<T>& values, const std::string& bytes) {
     values.resize(bytes.size() / sizeof(T));
     if (!bytes.empty())
         std::memcpy(values.data(), bytes.data(), bytes.size());
+    return true;
+}
+
+std::span<const std::byte> bytes_of(const evolution::GeneMatrix& genes) {
+    return std::as_bytes(std::span{genes.data(), static_cast<std::size_t>(genes.size())});
+}
+
+/// false if the bytes are not those of so many chromosomes.
+bool read_into(evolution::GeneMatrix& genes, std::uint64_t organisms, const std::string& bytes) {
+    if (bytes.size() != organisms * evolution::gene_count * sizeof(float))
+        return false;
+    genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
+    std::memcpy(genes.data(), bytes.data(), bytes.size());
     return true;
 }
 
@@ -156,6 +170,7 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
                                                  const Options& options, const GenerationBegun* beginning,
                                                  const Checkpoint* checkpoint) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
+    file->keep_every_ = options.keep_every;
     if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
     file->identity_ = identity;
@@ -245,6 +260,8 @@ void RunFile::create_tables() {
     database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
     database_.run(R"(
 CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE first_population (island INTEGER PRIMARY KEY, organism_count INTEGER NOT NULL, chromosomes BLOB NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
 CREATE TABLE parameters (number INTEGER PRIMARY KEY, revision INTEGER NOT NULL, active TEXT NOT NULL,
     requested TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
 CREATE TABLE journal (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, client TEXT NOT NULL,
@@ -296,6 +313,14 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("first_generation", std::to_string(identity.first_generation));
     put("first_tick", std::to_string(identity.first_tick));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
+    put("keep_every", std::to_string(keep_every_));
+    if (!identity.first_population)
+        return;
+    RowWriter first_population{database_, "first_population", first_population_columns};
+    for (std::size_t island = 0; island < identity.first_population->size(); ++island) {
+        const evolution::GeneMatrix& genes = (*identity.first_population)[island];
+        first_population.natural(island).integer(genes.cols()).bytes(bytes_of(genes)).finish();
+    }
 }
 
 Result<void> RunFile::read_identity() {
@@ -356,6 +381,11 @@ Result<void> RunFile::read_identity() {
             take(number_from<std::uint32_t>(value), identity_.model_version);
         } else if (key == "began_unix_ms") {
             take(number_from<std::int64_t>(value), identity_.began_unix_ms);
+        } else if (key == "keep_every") { // not in files of before there was a choice
+            take(number_from<std::uint64_t>(value), keep_every_);
+            if (!good || keep_every_ == 0)
+                return damaged("the row \"" + key + "\" of its table run");
+            continue;
         } else {
             continue;
         }
@@ -372,7 +402,33 @@ Result<void> RunFile::read_identity() {
         identity_.first_tick = static_cast<std::uint64_t>(database_.number(
             ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(identity_.first_generation))
                 .c_str()));
+    if (auto read = read_first_population(); !read)
+        return read;
     return read_thinning();
+}
+
+Result<void> RunFile::read_first_population() {
+    // Files of before there were such runs have no such table.
+    if (database_.number("SELECT count(*) FROM sqlite_schema WHERE name = 'first_population'") == 0)
+        return {};
+    std::vector<evolution::GeneMatrix> islands;
+    RowReader rows{database_, "first_population", first_population_columns, "1 ORDER BY island"};
+    while (rows.next()) {
+        const std::uint64_t island = rows.natural(), organisms = rows.natural();
+        const std::string chromosomes = rows.bytes();
+        if (!rows.sound() || island != islands.size() || !read_into(islands.emplace_back(), organisms, chromosomes))
+            return damaged(row_of("first_population", island));
+    }
+    if (database_.failed())
+        return failure();
+    if (islands.empty())
+        return {};
+    identity_.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
+    // A fork does not begin with it.
+    if (identity_.first_generation == 1 &&
+        !faults_of(identity_.first_population, identity_.parameters, "first_population").empty())
+        return damaged("its table first_population");
+    return {};
 }
 
 Result<void> RunFile::read_thinning() {
@@ -390,9 +446,11 @@ Result<void> RunFile::read_thinning() {
     return {};
 }
 
-bool RunFile::is_held(std::uint64_t generation) const {
-    return generation > thinning_.until_generation ||
-           (generation - identity_.first_generation) % thinning_.keep_every == 0;
+bool RunFile::is_held(std::uint64_t generation) {
+    const std::uint64_t place = generation - identity_.first_generation;
+    if (generation <= thinning_.until_generation)
+        return place % thinning_.keep_every == 0;
+    return place % keep_every_ == 0 || generation >= last_generation();
 }
 
 bool RunFile::is_link_held(std::uint64_t tick) const {
@@ -406,9 +464,16 @@ std::uint64_t RunFile::next_link_held(std::uint64_t after) const {
     return (kept <= thinned ? kept : std::max(next, thinned + 1)) * ticks_per_link;
 }
 
-std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) const {
-    return is_held(generation) ? generation
-                               : generation - (generation - identity_.first_generation) % thinning_.keep_every;
+std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) {
+    if (is_held(generation))
+        return generation;
+    const auto step_back = [&](std::uint64_t keep_every) {
+        generation -= (generation - identity_.first_generation) % keep_every;
+    };
+    step_back(keep_every_);
+    if (generation <= thinning_.until_generation)
+        step_back(thinning_.keep_every);
+    return generation;
 }
 
 std::optional<Refusal> RunFile::other_model() const {
@@ -504,6 +569,13 @@ std::uint64_t RunFile::last_journal_entry() {
     return static_cast<std::uint64_t>(database_.number("SELECT max(number) FROM journal"));
 }
 
+Result<void> RunFile::copy_to(const std::string& path) {
+    database_.copy_to(path);
+    if (database_.failed())
+        return failure();
+    return {};
+}
+
 std::uint64_t RunFile::last_generation() {
     return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM generation"));
 }
@@ -581,12 +653,10 @@ Result<std::vector<evolution::NextGeneration>> RunFile::born_in(const simulation
         born.survivor_count = static_cast<std::uint32_t>(rows.integer());
         born.clamped_count = rows.natural();
         const std::string genes = rows.bytes(), parents = rows.bytes();
-        if (!rows.sound() || island != islands.size() ||
-            genes.size() != organisms * evolution::gene_count * sizeof(float) || !read_into(born.parents, parents) ||
+        if (!rows.sound() || island != islands.size() || !read_into(born.genes, organisms, genes) ||
+            !read_into(born.parents, parents) ||
             (!born.parents.empty() && born.parents.size() != organisms)) // the first generation has none
             return bad();
-        born.genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
-        std::memcpy(born.genes.data(), genes.data(), genes.size());
         islands.push_back(std::move(born));
     }
     if (database_.failed())
@@ -926,10 +996,16 @@ void RunFile::write(const GenerationBegun& begun) {
             .natural(born.elite_count)
             .natural(born.survivor_count)
             .natural(born.clamped_count)
-            .bytes(std::as_bytes(std::span{born.genes.data(), static_cast<std::size_t>(born.genes.size())}))
+            .bytes(bytes_of(born.genes))
             .bytes(bytes_of(born.parents))
             .finish();
     }
+    // The one before is the last no more.
+    const std::uint64_t before = opening.moment.generation - 1;
+    if (before <= identity_.first_generation || (before - identity_.first_generation) % keep_every_ == 0)
+        return;
+    for (const char* table : {"population", "outcome", "checkpoint"})
+        database_.run(("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before)).c_str());
 }
 
 void RunFile::write(const GenerationEnded& ended) {
@@ -1017,7 +1093,9 @@ Result<void> RunFile::thin_if_large() {
         return {};
     // Once only the first is left of the older ones, there is nothing to halve.
     const std::uint64_t twice = thinning_.keep_every > last ? 1 : 2;
-    Thinning next{.keep_every = twice * thinning_.keep_every, .until_generation = last - 2, .until_tick = 0};
+    Thinning next{.keep_every = twice * std::max(thinning_.keep_every, keep_every_),
+                  .until_generation = last - 2,
+                  .until_tick = 0};
     const std::string until = std::to_string(next.until_generation), every = std::to_string(next.keep_every);
     next.until_tick = static_cast<std::uint64_t>(database_.number(
         ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));

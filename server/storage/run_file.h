@@ -34,6 +34,9 @@ class RunFile {
         Durability durability = Durability::Full;
         const char* vfs = nullptr;                           // as Database takes it
         std::int64_t file_bytes_max = std::int64_t{2} << 30; // see thin_if_large()
+        // Of new files: only each of so many generations, counted from the file's first, is held for good; and the
+        // last, while it is. A file keeps this to its end.
+        std::uint64_t keep_every = 1;
     };
 
     /// A new file; refused if there is one.
@@ -64,6 +67,8 @@ class RunFile {
 
     /// From now on what is there now is read, whatever a server writes meanwhile.
     base::Result<void> hold_still();
+    /// What hold_still() holds, as a file of its own, where there is none yet.
+    base::Result<void> copy_to(const std::string& path);
     base::Result<std::optional<EndMark>> end_mark();
     /// The entries from number `first` on, at most `count`.
     base::Result<std::vector<JournalEntry>> journal(std::uint64_t first = 1, std::uint32_t count = ~0u);
@@ -81,8 +86,10 @@ class RunFile {
     base::Result<std::optional<GenerationBegun>> beginning_of(std::uint64_t generation);
     /// Whether the hash after this tick, a multiple of ticks_per_link, is one that is held if it came to be written.
     bool is_link_held(std::uint64_t tick) const;
-    /// The last generation up to this one whose beginning is held.
-    std::uint64_t held_at_or_before(std::uint64_t generation) const;
+    /// The last generation up to this one whose beginning is held; itself if the run has not begun it.
+    std::uint64_t held_at_or_before(std::uint64_t generation);
+    /// See Options::keep_every.
+    std::uint64_t keep_every() const { return keep_every_; }
     /// Nothing if the generation has not ended, or its outcome is not held any more.
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
     /// One entry per island; nothing if the generation has not ended, or its statistics are not held.
@@ -140,7 +147,8 @@ class RunFile {
     base::Result<void> read_thinning();
     /// Whether SQLite finds a table and its indices sound; "1": the whole file, until the first fault.
     base::Result<void> check_tree(const std::string& of);
-    bool is_held(std::uint64_t generation) const;
+    base::Result<void> read_first_population();
+    bool is_held(std::uint64_t generation);
     /// The first tick after this one of which is_link_held().
     std::uint64_t next_link_held(std::uint64_t after) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
@@ -162,6 +170,7 @@ class RunFile {
     std::int64_t read_parameters_number_ = 0;
     bool marked_ = false; // there may be an end mark
     Thinning thinning_;
+    std::uint64_t keep_every_ = 1;
     std::int64_t file_bytes_max_;
 
   public:

@@ -105,7 +105,7 @@ class StretchCheck {
         const RunIdentity& identity = file_.identity();
         const StoredGeneration& first = stretch_.front();
         if (identity.first_generation == 1) {
-            const World world{identity.parameters, identity.seed};
+            const World world{identity.parameters, identity.seed, identity.first_population};
             const GenerationBegun begun = beginning_of(world);
             (void)(same(agrees_, compare(first.opening, begun.opening)) &&
                    same(agrees_, compare(first.born, begun.born)));

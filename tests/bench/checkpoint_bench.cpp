@@ -48,9 +48,9 @@ int main(int argc, char** argv) {
     std::vector<double> plain_ms, with_checkpoint_ms, copying_ms;
     {
         storage::StorageThread thread{{}};
-        storage::RunRecorder recorder{
-            thread,
-            thread.create(path, {.name = "w", .run_id = {}, .seed = {1}, .parameters = world.parameters().requested})};
+        const auto number = thread.create(
+            path, {.name = "w", .run_id = {}, .seed = {1}, .parameters = world.parameters().requested}, {});
+        storage::RunRecorder recorder{thread, number, {}, 0};
         recorder.follow(world);
         for (std::uint32_t tick = 0; tick < 60; ++tick)
             world.advance_tick(*executor);
@@ -67,7 +67,6 @@ int main(int argc, char** argv) {
                 (tick == ticks_between ? with_checkpoint_ms : plain_ms).push_back(1e3 * whole.elapsed().wall);
             }
         }
-        recorder.close(world.moment().tick, false);
     }
     const simulation::WorldState state = world.state(*executor);
     const bench::Stopwatch packing;

@@ -106,11 +106,53 @@ class Run(Folder):
             ("--set", "generation_s=nan"): ["--set generation_s: got nan"],
             ("--csv", "/nowhere/run.csv"): ["--csv: cannot write /nowhere/run.csv"],
             ("/nowhere.json",): ["/nowhere.json: cannot be read: No such file"],
+            ("--population", "/nowhere.csv"): ["--population: /nowhere.csv: cannot be read: No such file"],
         }.items():
             with self.subTest(arguments):
                 done = evod("run", *arguments, status=1)
                 for word in words:
                     self.assertIn(word, done.stderr)
+
+
+class Population(Folder):
+    heading = "island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius\n"
+    two = ["--set", "population_size=2", "--set", "generation_s=1", "--generations", "1", "--seed", "1"]
+
+    def run_with(self, rows, *arguments, status=0):
+        return evod("run", "--population", self.file(self.heading + rows, "plate.csv"), *self.two, *arguments, status=status)
+
+    def test_a_run_begins_with_it(self):
+        path = self.folder.name + "/run.csv"
+        done = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,50\n", "--csv", path)
+        row = next(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
+        self.assertEqual([float(row["normal_speed_" + of]) for of in ("min", "mean", "max")], [100, 100.75, 101.5])
+        windows = self.run_with("0,0,100,110,120,130,140,150\r\n0,1,101.5,90,80,70.25,60,50\r\n")
+        self.assertEqual(state(done.stdout), state(windows.stdout))
+        other = self.run_with("0,0,100,110,120,130,140,150\n0,1,101.5,90,80,70.25,60,51\n")
+        self.assertNotEqual(state(done.stdout), state(other.stdout))
+
+    def test_what_is_wrong_is_named(self):
+        good = "0,0,100,110,120,130,140,150\n"
+        for rows, word in {
+            good: "population[0]: got 1 organism, allowed 2 organisms (population_size)",
+            good + "0,1,100,110,20,130,140,150\n": "population[0].organism[1].body_size: got 20, allowed 40 to 200",
+            good + "1,0,100,110,120,130,140,150\n": "population: got 2 islands, allowed 1 island (island_count)",
+            good + "0,2,100,110,120,130,140,150\n": "line 3: got \"0,2,100,110,120,130,140,150\", allowed organism 1 of",
+            good + "0,1,100,110,120,130,140\n": "line 3: got \"0,1,100,110,120,130,140\", allowed an island, an organism",
+            good + "0,1,100,110,120,130,140,\n": "line 3: got ",
+            good + "0,1,100,110,many,130,140,150\n": "line 3: got ",
+            good + "0,1,100,110,nan,130,140,150\n": "body_size: got nan",
+            good + "0,1,100,110,120,130,140,150,160\n": "line 3: got ",
+            "1,0,100,110,120,130,140,150\n": "line 2: got ",
+            "": "holds no organism",
+        }.items():
+            with self.subTest(rows):
+                said = self.run_with(rows, status=1).stderr
+                self.assertIn("evod run: --population: ", said)
+                self.assertIn("plate.csv: ", said)
+                self.assertIn(word, said)
+        self.assertIn("line 1: got \"{}\", allowed the heading island,",
+                      evod("run", "--population", self.file("{}", "plate.csv"), status=1).stderr)
 
 
 class Check(Folder):

@@ -14,7 +14,8 @@ import tempfile
 import unittest
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
-EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2}
+EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2,
+              "migrant_count": 4}
 GENES = ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius"]
 
 
@@ -27,12 +28,13 @@ def evod(*arguments, status=0):
 class Server:
     """A server with the world "small", as a context; ended in order when that is left."""
 
-    def __init__(self, folder, seed):
+    def __init__(self, folder, seed, *options):
         experiment = pathlib.Path(folder) / "small.json"
         experiment.write_text(json.dumps(EXPERIMENT))
         self.run = pathlib.Path(folder) / "small.evod"
         self.process = subprocess.Popen(
-            [EVOD, "--data", folder, "--port", "0", "--speed", "max", "--experiment", experiment, "--seed", str(seed)],
+            [EVOD, "--data", folder, "--port", "0", "--speed", "max", "--experiment", experiment, "--seed", str(seed),
+             *options],
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         for line in self.process.stdout:
             if found := re.search(r"listening on (127\.0\.0\.1:\d+)", line):
@@ -297,6 +299,140 @@ class Export(Case):
         self.assertEqual(json.loads(rows[3]["request"])["set_parameters"]["parameters"][0],
                          {"name": "food_health", "value": {"real": 7}})
 
+    def lineage(self, run, *arguments):
+        rows = list(csv.DictReader(io.StringIO(evod("export", run, "--what", "lineage", *arguments), newline="")))
+        return {(int(row["generation"]), int(row["island"]), int(row["organism"])): row for row in rows}
+
+    @staticmethod
+    def parents(row):
+        return [tuple(int(row[f"parent_{which}{of}"]) for of in ("_generation", "_island", ""))
+                for which in ("first", "second")]
+
+    def test_lineage_tells_parents_where_they_lived(self):
+        self.rows(plain, "lineage")
+        family = self.lineage(plain)
+        organisms = {tuple(int(row[x]) for x in ("generation", "island", "organism")): row
+                     for row in self.rows(plain, "organisms")}
+        self.assertEqual(list(family), list(organisms))
+        children, kept, strangers = {}, {}, set()
+        for name, row in family.items():
+            self.assertEqual((row["origin"], row["fitness"]), (organisms[name]["origin"], organisms[name]["fitness"]))
+            if name[0] == 1:
+                self.assertEqual({row[x] for x in row if x.startswith("parent")}, {""})
+                continue
+            parents = self.parents(row)
+            strangers |= {name[0] for parent in parents if parent[1] != name[1]}
+            if row["origin"] == "child":
+                for parent in set(parents):
+                    children[parent] = children.get(parent, 0) + 1
+            else:
+                self.assertEqual(parents[0], parents[1])
+                kept[parents[0]] = kept.get(parents[0], 0) + 1
+                for gene in GENES:  # wherever it came from, it is the same
+                    self.assertEqual(organisms[name][gene], organisms[parents[0]][gene])
+        self.assertEqual(strangers, {3})  # migration is after every second generation
+        for name, row in family.items():
+            counts = ("", "") if name[0] == 4 else (str(children.get(name, 0)), str(kept.get(name, 0)))
+            self.assertEqual((row["child_count"], row["kept_count"]), counts)
+
+    def test_lineage_of_one_is_its_ancestors(self):
+        family = self.lineage(plain)
+        for last in (4, 0, 11), (3, 1, 0), (1, 1, 3):
+            ancestors = self.lineage(plain, "--of", ":".join(map(str, last)))
+            generations = [name[0] for name in ancestors]
+            self.assertEqual(generations, sorted(generations, reverse=True))
+            wanted, found = {last}, {}
+            while wanted:
+                found |= {name: family[name] for name in wanted}
+                wanted = {parent for name in wanted if name[0] > 1 for parent in self.parents(family[name])}
+            self.assertEqual(ancestors, found)
+        for of, words in {
+            "5:0:0": "--of: got 5, allowed a generation from 1 to 4",
+            "4:2:0": "--of: got 2, allowed an island from 0 to 1",
+            "4:1:12": "--of: got 12, allowed an organism from 0 to 11",
+            "4:1": "--of: got 4:1, allowed GENERATION:ISLAND:ORGANISM",
+        }.items():
+            self.assertIn(words, evod("export", plain, "--what", "lineage", "--of", of, status=1))
+        self.assertIn("only with --what lineage", evod("export", plain, "--what", "events", "--of", "1:0:0", status=1))
+
+    def test_a_population_is_what_another_world_begins_with(self):
+        path = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--generation", 3, "--output", path)
+        rows = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
+        self.assertEqual(list(rows[0]), ["island", "organism", *GENES])
+        self.assertEqual([list(row.values()) for row in rows],
+                         [[row[x] for x in rows[0]] for row in self.rows(plain, "organisms") if row["generation"] == "3"])
+        with Server(self.folder, 8, "--population", path) as server:
+            server.evoctl("until", "250", "--wait")
+            server.evoctl("reset")
+            server.evoctl("until", "130", "--wait")
+        for run in pathlib.Path(self.folder).glob("*.evod"):
+            self.assertIn("all agrees", evod("verify", run))
+            self.assertEqual(evod("export", run, "--what", "population", "--generation", 1), pathlib.Path(path).read_text())
+            again = self.folder + "/again.csv"
+            evod("run", plain.with_suffix(".json"), "--seed", 8, "--population", path, "--generations", 1, "--csv", again)
+            self.assertEqual(evod("export", run, "--what", "generations").splitlines()[:3],
+                             pathlib.Path(again).read_text().splitlines())
+        # Without being told of it, the world goes on; told of another, it is not taken for that.
+        Server(self.folder, 8).end(signal.SIGTERM, 0)
+        evod("export", plain, "--what", "population", "--generation", 2, "--output", path)
+        self.assertIn("began with other organisms", evod("--data", self.folder, "--experiment", self.folder + "/small.json",
+                                                         "--population", path, status=1))
+        self.assertIn("--generation: got 5, allowed 1 to 4",
+                      evod("export", plain, "--what", "population", "--generation", 5, status=1))
+        self.assertIn("only with --what population",
+                      evod("export", plain, "--what", "events", "--generation", 1, status=1))
+
+    def test_a_world_is_created_with_a_population(self):
+        path = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--output", path)  # of the last generation
+        with Server(self.folder, 9) as server:
+            server.evoctl("create", "same", "--experiment", self.folder + "/small.json", "--population", path)
+        self.assertEqual(evod("export", self.folder + "/same.evod", "--what", "population"), pathlib.Path(path).read_text())
+
+    def bundle(self, run, *names):
+        folder = pathlib.Path(self.folder) / "bundle"
+        shutil.rmtree(folder, ignore_errors=True)
+        evod("export", run, "--bundle", folder)
+        self.assertEqual(sorted(file.name for file in folder.iterdir()),
+                         sorted(["REPEAT.md", "SHA256SUMS", "events.csv", "experiment.json", "generations.csv",
+                                 "lineage.csv", "organisms.csv", *names]))
+        subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=folder, check=True)
+        for what in "generations", "organisms", "lineage", "events":
+            self.assertEqual((folder / f"{what}.csv").read_text(),
+                             evod("export", folder / "small.evod", "--what", what))
+        self.assertIn("all agrees", evod("verify", folder / "small.evod"))
+        return folder
+
+    def repeat(self, folder):
+        """Does what REPEAT.md says."""
+        commands = re.findall("^    (.*)$", (folder / "REPEAT.md").read_text(), re.M)
+        for command in commands:
+            words = [EVOD if word == "evod" else word for word in command.split()]
+            subprocess.run(words, cwd=folder, check=True, stdout=subprocess.PIPE)
+        return len(commands)
+
+    def test_a_bundle_says_how_the_run_is_repeated(self):
+        self.assertEqual(self.repeat(self.bundle(plain, "small.evod")), 4)
+        folder = self.bundle(changed, "small.evod")
+        self.assertEqual(self.repeat(folder), 2)
+        self.assertIn("Parameters were changed while it ran, 2 times", (folder / "REPEAT.md").read_text())
+        self.assertIn("is there already", evod("export", plain, "--bundle", folder, status=1))
+        self.assertIn("/nowhere/b: No such", evod("export", plain, "--bundle", "/nowhere/b", status=1))
+        damaged = self.copy(plain, "UPDATE statistics SET alive_count = 99 WHERE generation = 2")
+        evod("export", damaged, "--bundle", self.folder + "/half", status=1)
+        self.assertFalse(os.path.exists(self.folder + "/half"))
+
+    def test_a_bundle_is_of_one_moment_while_a_server_writes(self):
+        plate = self.folder + "/plate.csv"
+        evod("export", plain, "--what", "population", "--output", plate)
+        with Server(self.folder, 4, "--population", plate, "--keep-every", "5") as server:
+            server.evoctl("until", "1500", "--wait")
+            server.evoctl("run")
+            folder = self.bundle(server.run, "small.evod", "population.csv")
+            self.assertEqual(self.repeat(folder), 4)
+            self.assertEqual((folder / "population.csv").read_text(), pathlib.Path(plate).read_text())
+
     def test_a_file_takes_what_stdout_would(self):
         path = self.folder + "/organisms.jsonl"
         self.assertEqual(evod("export", plain, "--what", "organisms", "--format", "jsonl", "--output", path), "")
@@ -306,14 +442,15 @@ class Export(Case):
     def test_what_is_wrong_is_named(self):
         path = self.copy(plain)
         for arguments, words in {
-            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "events"],
+            (path, "--what", "genes"): ["--what", "genes", "generations", "organisms", "lineage", "population", "events"],
             (path, "--what", "events", "--format", "xml"): ["--format", "xml", "csv", "jsonl"],
-            (path,): ["--what is required"],
+            (path, "--what", "events", "--bundle", self.folder + "/b"): ["--what excludes --bundle"],
         }.items():
             said = evod("export", *arguments, status=2)
             for word in words:
                 self.assertIn(word, said)
         for arguments, words in {
+            (path,): ["--what: got nothing", "--bundle FOLDER"],
             ("/nowhere.evod", "--what", "events"): ["/nowhere.evod: there is no such file"],
             (path, "--what", "events", "--output", "/nowhere/events"): ["--output: cannot write /nowhere/events: No such"],
             (path, "--what", "events", "--output", path): ["--output: got " + path, "another file than the run file"],

@@ -418,7 +418,7 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
         ASSERT_TRUE(checkpoints) << to_text(checkpoints.error());
         EXPECT_EQ(checkpoints->empty(), per_look == 1us);
         hashes[per_look != 1us] = run.hash();
-        recorder.end("w", {3, 1}, run.moment().tick);
+        recorder.end("w", {3, 1}, {.tick = run.moment().tick});
         while (!thread.idle())
             std::this_thread::sleep_for(1ms);
         std::filesystem::remove(data->ended_file_of("w", {3, 1}));

@@ -176,6 +176,36 @@ TEST_F(OneWorld, ResetKeepsSpeedSeedAndParametersAskedForUnlessToldOtherwise) {
     EXPECT_EQ(entry().world.seed(), base::Seed{77});
 }
 
+TEST_F(OneWorld, AGivenFirstPopulationIsBegunWithAgainAsLongAsItCanBe) {
+    const auto population = std::make_shared<const std::vector<evolution::GeneMatrix>>(
+        1, evolution::initial_population(10, parameters, base::Seed{99}, 0));
+    ASSERT_TRUE(laboratory.apply(CreateWorld{"given", parameters, base::Seed{1}, {}, population}).has_value());
+    World& world = laboratory.entries().back()->world;
+    const auto begins_with_it = [&] {
+        return (world.islands()[0].born().genes == population->front()).all() && world.moment().tick == 0;
+    };
+    EXPECT_TRUE(begins_with_it());
+    EXPECT_NE(world.hash(), entry().world.hash());
+    for (int tick = 0; tick < 20; ++tick)
+        world.advance_tick(executor);
+    EXPECT_FALSE(begins_with_it());
+    ASSERT_TRUE(laboratory.apply(ResetWorld{"given", base::Seed{2}, {}}).has_value());
+    EXPECT_TRUE(begins_with_it());
+
+    const auto set_population = [&](std::uint32_t size) {
+        return laboratory.apply(SetParameters{
+            .world = "given", .assignments = {{"population_size", size}}, .dry_run = false, .expected_revision = {}});
+    };
+    ASSERT_TRUE(set_population(11).has_value());
+    const auto refused = laboratory.apply(ResetWorld{"given", {}, {}});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().code, RefusalCode::FailedPrecondition);
+    EXPECT_THAT(to_text(refused.error()),
+                HasSubstr("population[0]: got 10 organisms, allowed 11 organisms (population_size)"));
+    ASSERT_TRUE(set_population(10).has_value());
+    EXPECT_TRUE(laboratory.apply(ResetWorld{"given", {}, {}}).has_value());
+}
+
 TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
     const Parameters before = entry().world.parameters().requested;
     EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);

@@ -338,8 +338,8 @@ TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
     simulation::World world{parameters, {1}};
     world.advance_tick(executor);
     const auto number =
-        thread->create(data.file_of("w"), {.name = "w", .run_id = {}, .seed = {1}, .parameters = parameters});
-    RunRecorder recorder{*thread, number};
+        thread->create(data.file_of("w"), {.name = "w", .run_id = {}, .seed = {1}, .parameters = parameters}, {});
+    RunRecorder recorder{*thread, number, {}, 0};
     recorder.follow(world);
     EXPECT_FALSE(recorder.checkpoint_due(world, 2s)) << "as long as that is not too long";
     EXPECT_TRUE(recorder.checkpoint_due(world, 1ms));

@@ -68,6 +68,8 @@ std::string told_by(RunFile& file) {
     }
     for (const HashLink& link : *file.links(0, file.contents().tick))
         text << link.tick << ' ' << to_text(link.hash) << '\n';
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
+        text << checkpoint.moment.tick << ' ' << to_text(checkpoint.hash) << ' ' << checkpoint.state << '\n';
     return text.str();
 }
 

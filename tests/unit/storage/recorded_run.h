@@ -61,8 +61,11 @@ inline v1::Request set_parameter(const std::string& name, simulation::ParameterV
 class RecordedRun {
   public:
     /// folder, thread: outlive it.
-    RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7}) : recorder_{folder, thread} {
-        EXPECT_TRUE(laboratory_.apply(simulation::CreateWorld{"w", small_world(), seed, {1, 2}}));
+    RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
+                simulation::FirstPopulation first_population = {})
+        : recorder_{folder, thread} {
+        EXPECT_TRUE(
+            laboratory_.apply(simulation::CreateWorld{"w", small_world(), seed, {1, 2}, std::move(first_population)}));
         recorder_.begin(entry());
     }
 

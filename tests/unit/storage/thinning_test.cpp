@@ -1,5 +1,7 @@
 #include "server/storage/fork.h"
-#include "server/storage/rerun.h"
+#include "server/storage/generation_reader.h"
+#include "server/storage/lineage.h"
+#include "server/storage/mismatch.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -27,6 +29,10 @@ class ThinningTest : public testing::Test {
             }
             run.advance(1);
             hashes.push_back(run.world().hash());
+            if (run.world().moment().generation_tick == 1)
+                begun.push_back(beginning_of(run.world()));
+            if (run.world().generation_over())
+                ended.push_back(end_of(run.world()));
         }
         run.recorder().close_all(run.laboratory());
     }
@@ -35,6 +41,8 @@ class ThinningTest : public testing::Test {
     DataFolder data;
     base::InlineExecutor executor;
     std::vector<base::StateHash> hashes; // by tick
+    std::vector<GenerationBegun> begun;  // from the first
+    std::vector<GenerationEnded> ended;
 };
 
 TEST_F(ThinningTest, KeepsTheFileSmallAndTheRunWhole) {
@@ -85,6 +93,67 @@ TEST_F(ThinningTest, WhatWasTakenOutIsSimulatedAgain) {
     ASSERT_TRUE(forked) << to_text(forked.error());
     const auto other = RunFile::open_read_only(data.file_of("fork"));
     EXPECT_TRUE((*other)->beginning_of(8)->has_value());
+}
+
+TEST_F(ThinningTest, EveryGenerationIsReadWhole) {
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE((*file)->hold_still());
+    GenerationReader reader{**file, executor};
+    const auto read = [&](std::uint64_t generation) {
+        SCOPED_TRACE(generation);
+        const auto whole = reader.read(generation);
+        ASSERT_TRUE(whole) << to_text(whole.error());
+        EXPECT_FALSE(compare(begun[generation - 1].opening, whole->begun.opening));
+        EXPECT_FALSE(compare(begun[generation - 1].born, whole->begun.born));
+        ASSERT_EQ(whole->ended.has_value(), generation <= ended.size());
+        if (whole->ended) {
+            EXPECT_FALSE(compare(ended[generation - 1].outcomes, whole->ended->outcomes));
+            EXPECT_FALSE(compare(ended[generation - 1].statistics, whole->ended->statistics));
+        }
+    };
+    for (std::uint64_t generation = 1; generation <= begun.size(); ++generation)
+        read(generation);
+    for (const std::uint64_t generation : {40u, 8u, 15u, 15u})
+        read(generation);
+}
+
+TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE((*file)->hold_still());
+    std::vector<std::vector<Family>> generations;
+    const auto forwards = each_generation(**file, executor, [&](std::uint64_t generation, const auto& families) {
+        generations.push_back(families);
+        return generation == generations.size();
+    });
+    ASSERT_TRUE(forwards) << to_text(forwards.error());
+    ASSERT_EQ(generations.size(), begun.size());
+    std::uint64_t expected = 90, strangers = 0;
+    const auto back = each_generation_back_from(
+        **file, expected, executor, [&](std::uint64_t generation, const std::vector<Family>& families) {
+            EXPECT_EQ(generation, expected--);
+            for (std::uint32_t island = 0; island < families.size(); ++island) {
+                const Family &there = families[island], &same = generations[generation - 1][island];
+                EXPECT_EQ(there.parents, same.parents);
+                EXPECT_EQ(there.child_count, same.child_count);
+                EXPECT_EQ(there.kept_count, same.kept_count);
+                EXPECT_EQ(there.fitness, ended[generation - 1].outcomes[island].fitness);
+                for (std::size_t organism = 0; organism < there.parents.size(); ++organism) {
+                    const auto [first, second] = there.parents[organism];
+                    strangers += first.island != island;
+                    // Whoever was kept has the genes of whom it is said to be, on whatever island that one lived.
+                    if (organism < there.survivor_count) {
+                        EXPECT_TRUE(
+                            (begun[generation - 1].born[island].genes.col(static_cast<Eigen::Index>(organism)) ==
+                             begun[generation - 2].born[first.island].genes.col(first.organism))
+                                .all());
+                    }
+                }
+            }
+            return true;
+        });
+    ASSERT_TRUE(back) << to_text(back.error());
+    EXPECT_EQ(expected, 0u);
+    EXPECT_GT(strangers, 0u);
 }
 
 TEST_F(ThinningTest, ALinkThatIsMissingWithoutHavingBeenTakenOutIsNamed) {

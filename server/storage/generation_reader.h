@@ -1,0 +1,40 @@
+// Generation reader: generations of a run file, each whole. One that is not held any more is simulated again.
+//
+// Determinism  the same bits as the first time: what the file still tells of such a generation is compared.
+#pragma once
+
+#include "server/base/executor.h"
+#include "server/storage/rerun.h"
+#include "server/storage/run_file.h"
+
+#include <optional>
+#include <vector>
+
+namespace evod::storage {
+
+struct WholeGeneration {
+    GenerationBegun begun;
+    std::optional<GenerationEnded> ended; // nothing while it has not
+};
+
+class GenerationReader {
+  public:
+    /// file  held still; outlives the reader, as does the executor.
+    GenerationReader(RunFile& file, base::Executor& executor) : file_{file}, executor_{executor} {}
+
+    /// A generation that has begun; those that are not held are best read in order. Refused where the file is damaged
+    /// there, and where what is not held follows another model.
+    base::Result<WholeGeneration> read(std::uint64_t generation);
+
+  private:
+    base::Result<WholeGeneration> simulate(std::uint64_t generation);
+    base::Result<void> stand_before(std::uint64_t generation);
+    base::Refusal damaged(std::uint64_t generation, const std::string& what) const;
+
+    RunFile& file_;
+    base::Executor& executor_;
+    std::optional<std::vector<ParameterChange>> changes_; // the run's, once they were needed
+    std::optional<Rerun> rerun_;                          // in the generation that was simulated last
+};
+
+} // namespace evod::storage
