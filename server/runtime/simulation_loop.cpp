@@ -176,6 +176,8 @@ void SimulationLoop::fork(CommandMail& mail) {
     const auto before = run_of(command);
     const simulation::Entry* origin = entry_in(command);
     auto refused = refusal_of(command);
+    if (origin && !refused && !command.at_generation && origin->world.moment().generation_tick == 0)
+        return answer(mail, laboratory_.fork(command, origin->world.at_its_opening(executor_, true)), before);
     if (!origin || refused || !command.at_generation)
         return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : laboratory_.apply(command), before);
     if (*command.at_generation == origin->world.moment().generation)
@@ -223,7 +225,7 @@ void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applie
     else if (std::holds_alternative<simulation::CreateWorld>(mail.command))
         recorder_->begin(**entry, std::move(command));
     else if (std::holds_alternative<simulation::ForkWorld>(mail.command))
-        recorder_->begin(**entry, std::move(command), before->run_id);
+        recorder_->begin_fork(**entry, before->run_id, std::move(command), executor_);
     else if (std::holds_alternative<simulation::ResetWorld>(mail.command))
         recorder_->begin_again(**entry, before->run_id, before->tick, std::move(command));
     else

@@ -29,14 +29,17 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     begin_generation(std::move(born), executor);
 }
 
-World World::at_its_opening(base::Executor& executor) const {
+World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_since) const {
+    Opening opening = opening_;
+    if (with_what_was_asked_since && moment_.generation_tick == 0)
+        opening.parameters = parameters_;
     std::vector<evolution::NextGeneration> born;
     for (const Island& island : islands_)
         born.push_back(island.born());
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
         before.pop_back();
-    return World{seed_, opening_, std::move(born), std::move(before), executor, first_population_};
+    return World{seed_, opening, std::move(born), std::move(before), executor, first_population_};
 }
 
 void World::reset(base::Seed seed) {

@@ -54,8 +54,9 @@ class World {
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {});
 
-    /// Another world, as this one was at the first moment of its generation.
-    World at_its_opening(base::Executor& executor) const;
+    /// Another world, as this one was at the first moment of its generation; with what was asked of it since, if this
+    /// is still that moment.
+    World at_its_opening(base::Executor& executor, bool with_what_was_asked_since = false) const;
 
     /// As much of the world as restore() needs to bring it here again.
     WorldState state(base::Executor& executor) const;

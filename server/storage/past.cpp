@@ -93,9 +93,11 @@ Result<PastMoment> Past::find(const WantedMoment& wanted, const simulation::Reco
             return next.error();
         last = *next ? (*next)->moment.tick : last;
     }
-    const std::uint64_t tick = wanted.tick.value_or(0);
-    if (tick > last - first)
-        return no_such("tick", range_text(0, last - first) + " in generation " + std::to_string(generation), tick);
+    // A fork may begin within its first generation.
+    const std::uint64_t begins = std::max(first, there.first_tick) - first;
+    const std::uint64_t tick = wanted.tick.value_or(begins);
+    if (tick < begins || tick > last - first)
+        return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
     return PastMoment{generation, first + tick};
 }
 

@@ -120,13 +120,23 @@ void Recorder::add(const std::string& world, RunRecorder run) {
     EVOD_ASSERT(added);
 }
 
-void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command,
-                     const std::optional<simulation::RunId>& forked_from) {
+void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
+    RunRecorder run{thread_};
+    run.number_ =
+        thread_.create(folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+    add(entry.name, std::move(run));
+}
+
+void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
+                          base::Executor& executor) {
     RunRecorder run{thread_};
     RunIdentity identity = identity_of(entry);
-    identity.forked_from = forked_from;
-    run.number_ =
-        thread_.create(folder_.file_of(entry.name), std::move(identity), run.first(entry.world, std::move(command)));
+    identity.forked_from = origin;
+    StorageThread::Batch first = run.first(entry.world, std::move(command));
+    // Within a generation its beginning is not enough: what came since is known to the origin alone.
+    if (entry.world.moment().generation_tick > 0)
+        first.records.emplace_back(checkpoint_of(entry.world, 0, executor));
+    run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity), std::move(first));
     add(entry.name, std::move(run));
 }
 

@@ -94,9 +94,11 @@ class Recorder {
         return {folder_.file_of(world), folder_.ended_file_of(world, run_id)};
     }
 
-    /// A world that has just begun its run, by this command. forked_from: the run that it was taken from.
-    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {},
-               const std::optional<simulation::RunId>& forked_from = {});
+    /// A world that has just begun its run, by this command.
+    void begin(const simulation::Entry& entry, std::optional<CommandRecord> command = {});
+    /// The same for one that was taken from another's run, where that was.
+    void begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
+                    base::Executor& executor);
     /// The same for a world that begins again: the run it had is over, after `tick`, and its file gets the name of one
     /// that has ended.
     void begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,

@@ -104,7 +104,7 @@ class StretchCheck {
     void check_beginning_of_run() {
         const RunIdentity& identity = file_.identity();
         const StoredGeneration& first = stretch_.front();
-        if (identity.first_generation == 1) {
+        if (!identity.forked_from) {
             const World world{identity.parameters, identity.seed, identity.first_population};
             const GenerationBegun begun = beginning_of(world);
             (void)(same(agrees_, compare(first.opening, begun.opening)) &&

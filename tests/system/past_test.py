@@ -233,6 +233,33 @@ class Fork(Case):
         verified = subprocess.run([EVOD, "verify", f"{self.folder}/f.evod"], capture_output=True, text=True)
         self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
+    def test_from_now(self):
+        """In the middle of a generation, where one is over, and before the first tick."""
+        self.live.call(create_world=c.CreateWorld(name="x", seed=5, parameters=plain.assignments(**CREATE)))
+        self.live.call(set_speed=c.SetSpeed(world="x", speed=w.Speed(max=True)))
+        for tick in (0, 77, 120, 310):
+            now = self.live.run_to(tick, "x") if tick else self.live.world("x")
+            if tick == 0:  # one that waits for the next generation, too
+                self.live.call(set_parameters=plain.set_parameters("x", food_health=7.0, population_size=15))
+            forked = self.live.call(fork_world=c.ForkWorld(world="x", name=f"now-{tick}")).world
+            self.assertEqual((forked.tick, forked.generation, forked.state_hash, forked.state),
+                             (tick, now.generation, now.state_hash, w.RUN_STATE_WAITING))
+        end = self.live.run_to(500, "x").state_hash
+        self.served.kill()  # from here on the files alone
+        again = self.server("--data", self.folder)
+        client = self.client(again)
+        for tick in (0, 77, 120, 310):
+            name = f"now-{tick}"
+            self.assertEqual(client.world(name).tick, tick)
+            client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
+            self.assertEqual(client.run_to(500, name).state_hash, end, name)
+        past = client.call(open_past=c.OpenPast(world="now-310")).world
+        self.assertEqual((past.tick, past.recording.first_tick), (310, 310))
+        again.end()
+        for tick in (0, 77, 120, 310):
+            verified = subprocess.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
+            self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
+
     def test_a_repeated_fork_is_made_once(self):
         request = {"request_id": 1000, "client_key": "key",
                    "fork_world": c.ForkWorld(world="w", name="f", at_generation=2)}
