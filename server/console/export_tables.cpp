@@ -22,9 +22,18 @@ using storage::RunFile;
 template <class OfGeneration>
 Result<void> for_each_generation(RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
     const std::uint64_t last = file.last_generation();
-    for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation)
+    for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
+        const auto opening = file.opening_of(generation);
+        if (!opening)
+            return opening.error();
+        if (!*opening) // each has one: that of the last must be wrong, and may be very far away
+            return Refusal{.code = base::RefusalCode::DataLoss,
+                           .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
+                                      ", and not of generation " + std::to_string(generation),
+                           .violations = {}};
         if (Result<void> done = of_generation(generation); !done)
             return done;
+    }
     return {};
 }
 
@@ -139,8 +148,12 @@ std::uint64_t generations_out_of_reach(RunFile& file) {
     std::uint64_t count = 0;
     const std::uint64_t last = file.last_generation();
     if (file.other_model())
-        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation)
+        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
+            const auto opening = file.opening_of(generation);
+            if (!opening || !*opening)
+                break; // damaged: whoever reads on is told
             count += file.held_at_or_before(generation) != generation;
+        }
     return count;
 }
 

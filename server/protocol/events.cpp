@@ -62,6 +62,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
     };
     std::visit(Overloaded{
                    [&](const simulation::CreateWorld&) { tell_world(*told.mutable_world_created()); },
+                   [&](const simulation::ForkWorld&) { tell_world(*told.mutable_world_created()); },
                    [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
                    [&](const simulation::DeleteWorld&) { told.mutable_world_deleted()->set_by(std::string{by}); },
                    [&](const simulation::SetParameters& set) {

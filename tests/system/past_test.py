@@ -260,6 +260,14 @@ class Fork(Case):
             verified = subprocess.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
             self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
+    def test_everybody_is_told_of_a_new_world(self):
+        watcher = self.client(self.served)
+        watcher.call(subscribe_events=c.SubscribeEvents())
+        self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=2))
+        event = watcher.next_event("world_created")
+        self.assertEqual((event.world, event.tick, event.world_created.world.generation), ("f", 120, 2))
+        self.assertRegex(event.world_created.by, "^plain ")
+
     def test_a_repeated_fork_is_made_once(self):
         request = {"request_id": 1000, "client_key": "key",
                    "fork_world": c.ForkWorld(world="w", name="f", at_generation=2)}
