@@ -147,8 +147,9 @@ Result<void> fill(const Exported& run, const fs::path& folder) {
         tables.emplace_back("population.csv", [](const Exported& from, std::ostream& out) {
             return write_population(out, csv, *from.file.identity().first_population);
         });
-    for (const auto& [name, write] : tables)
-        if (auto done = write_file(folder / name, [&](std::ostream& out) { return write(run, out); }); !done)
+    for (const auto& table : tables)
+        if (auto done = write_file(folder / table.first, [&](std::ostream& out) { return table.second(run, out); });
+            !done)
             return done;
     const auto repeat = repeat_text(run.file, file_name);
     if (!repeat)

@@ -193,7 +193,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (const auto file = storage::RunFile::open_read_only(place.path)) {
         (void)(*file)->check();
-        (void)(*file)->history(simulation::World::history_generations_kept);
+        (void)(*file)->history((*file)->last_generation() + 1, simulation::World::history_generations_kept);
         (void)(*file)->journal((*file)->contents().journal_entries);
     }
     for (const char* what : {"generations", "organisms", "events"})
