@@ -190,11 +190,12 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         const bool later = !applied && applied.error().code == base::RefusalCode::Unavailable;
         return runtime::CommandAnswer{
             *frame, [this, key = request.client_key(), request_id = request.request_id(), frame, event, later] {
-                outbox_.answer([this, key, request_id, frame, later] {
+                // At once: who subscribes after the answer hears of what comes after it.
+                outbox_.answer([this, key, request_id, frame, event, later] {
                     later ? retries_.forget(key, request_id, frame) : retries_.finish(key, request_id, frame);
+                    if (event)
+                        streams_.tell(*event);
                 });
-                if (event)
-                    outbox_.event([this, event] { streams_.tell(*event); });
             }};
     };
     storage::Origin origin{.client = session.by(), .client_key = key, .request_id = id, .request = bytes_of(request)};
