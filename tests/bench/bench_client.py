@@ -1,4 +1,5 @@
-"""A client of a real evod, for the programs beside: asks one thing after another."""
+"""A client of a real evod, for the programs beside: asks one thing after another. And how they print their figures."""
+import json
 import os
 import secrets
 import socket
@@ -68,3 +69,13 @@ def benchmark_world(organisms):
     area_px2 = organisms * 46_080
     return {"population_size": organisms, "food_count": organisms * 3, "poison_count": organisms * 2,
             "island_width_px": (area_px2 * 16 / 9) ** 0.5, "island_height_px": (area_px2 * 9 / 16) ** 0.5}
+
+
+def print_figures(figures, as_json):
+    """A line for each, or all as one object of JSON."""
+    if as_json:
+        print(json.dumps(figures))
+        return
+    for name, value in figures.items():
+        parts = value.items() if isinstance(value, dict) else [("", value)]
+        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))

@@ -8,7 +8,6 @@ thread's processor time, both over the simulation thread's time where nothing is
 generation, so that most of one is to be simulated again.
 """
 import argparse
-import json
 import statistics
 import subprocess
 import sys
@@ -24,7 +23,7 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
 
-from bench_client import Client, assignments, benchmark_world, thread_s  # noqa: E402
+from bench_client import Client, assignments, benchmark_world, print_figures, thread_s  # noqa: E402
 from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 
 first_tick, ticks = 60, max(4_900, 60_000_000 // options.organisms)  # two ends of a generation at least
@@ -100,14 +99,4 @@ def measure():
             "ready_after_kill_s": spread(measure_ready_after_kill())}
 
 
-def main():
-    figures = measure()
-    if options.json:
-        print(json.dumps(figures))
-        return
-    for name, value in figures.items():
-        parts = value.items() if isinstance(value, dict) else [("", value)]
-        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))
-
-
-main()
+print_figures(measure(), options.json)

@@ -6,7 +6,6 @@ The same ticks of the same run are simulated again and again at full speed on on
 30 pictures a second and without one; what is compared is the processor time of the simulation thread for those ticks.
 """
 import argparse
-import json
 import re
 import socket
 import statistics
@@ -24,7 +23,7 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
 
-from bench_client import Client, assignments, benchmark_world, thread_s  # noqa: E402
+from bench_client import Client, assignments, benchmark_world, print_figures, thread_s  # noqa: E402
 from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 
 parameters = benchmark_world(options.organisms)
@@ -150,14 +149,4 @@ def measure():
             "query_beside_ms": spread_ms(query_beside)}
 
 
-def main():
-    figures = measure()
-    if options.json:
-        print(json.dumps(figures))
-        return
-    for name, value in figures.items():
-        parts = value.items() if isinstance(value, dict) else [("", value)]
-        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))
-
-
-main()
+print_figures(measure(), options.json)
