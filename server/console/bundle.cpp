@@ -81,10 +81,7 @@ Result<void> write_checksums(const fs::path& folder) {
 /// How `evod run` gives the same numbers; or why it does not.
 Result<std::string> rerun_text(storage::RunFile& file) {
     const storage::RunIdentity& identity = file.identity();
-    const auto journal = file.journal();
-    if (!journal)
-        return journal.error();
-    const auto changes = parameter_changes(file, *journal);
+    const auto changes = parameter_changes(file);
     if (!changes)
         return changes.error();
     const std::uint64_t generations = file.last_generation_ended();

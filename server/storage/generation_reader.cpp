@@ -64,10 +64,7 @@ Result<void> GenerationReader::stand_before(std::uint64_t generation) {
         if (auto refused = file_.other_model())
             return *refused;
         if (!changes_) {
-            const auto journal = file_.journal();
-            if (!journal)
-                return journal.error();
-            auto changes = parameter_changes(file_, *journal);
+            auto changes = parameter_changes(file_);
             if (!changes)
                 return changes.error();
             changes_ = *std::move(changes);

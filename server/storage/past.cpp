@@ -112,10 +112,7 @@ Result<void> Past::extend(ComingChanges& coming) const {
     const auto file = open();
     if (!file)
         return file.error();
-    const auto journal = (*file)->journal();
-    if (!journal)
-        return journal.error();
-    const auto changes = parameter_changes(**file, *journal);
+    const auto changes = parameter_changes(**file);
     if (!changes)
         return changes.error();
     return coming.extend(**file, *changes);

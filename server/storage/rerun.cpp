@@ -28,10 +28,13 @@ std::optional<simulation::Command> command_of(const std::string& request) {
 
 } // namespace
 
-Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file, std::span<const JournalEntry> journal) {
+Result<std::vector<ParameterChange>> parameter_changes(RunFile& file) {
+    const auto journal = file.journal();
+    if (!journal)
+        return journal.error();
     std::vector<ParameterChange> changes;
     std::uint64_t tick = 0;
-    for (const JournalEntry& entry : journal) {
+    for (const JournalEntry& entry : *journal) {
         auto command = command_of(entry.origin.request);
         if (!command)
             return damaged(file, "entry " + std::to_string(entry.number) + " of its journal is no command");
@@ -48,10 +51,7 @@ Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file, std:
 Result<std::vector<ParameterChange>> Rerun::changes_of(RunFile& file) {
     if (auto refused = file.other_model())
         return *refused;
-    const auto journal = file.journal();
-    if (!journal)
-        return journal.error();
-    return parameter_changes(file, *journal);
+    return parameter_changes(file);
 }
 
 Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor& executor) {

@@ -20,8 +20,7 @@ struct ParameterChange {
 };
 
 /// Those of a file's journal, in order of ticks. Refused where an entry is no command, or earlier than the one before.
-base::Result<std::vector<ParameterChange>> parameter_changes(const RunFile& file,
-                                                             std::span<const JournalEntry> journal);
+base::Result<std::vector<ParameterChange>> parameter_changes(RunFile& file);
 
 /// What was asked of a world's parameters from some moment on, and when.
 class ComingChanges {

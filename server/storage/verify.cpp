@@ -319,10 +319,7 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
         return sound.error();
     if (auto refused = file.other_model())
         return *refused;
-    const auto journal = file.journal();
-    if (!journal)
-        return journal.error();
-    const auto changes = parameter_changes(file, *journal);
+    const auto changes = parameter_changes(file);
     if (!changes)
         return changes.error();
 
