@@ -173,10 +173,11 @@ class FullDisk(unittest.TestCase):
         crowd.write_text('{"population_size": 10000, "scale_with_population": true, "fitness": "gene_sum"}')
         server = self.serve("--seed", "3", "--speed", "max", "--experiment", str(crowd))
         control = self.client(server, "control")
+        # Answered when the file is there with all that was before, so that the run is what finds the disk full.
+        self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
         self.fill()
         asking = self.client(server, "waits")
         asking.ask(1, run=c.Run(generations=200))
-
         until(lambda: "commands are refused until it can be written again" in server.output(), "trouble")
 
         def stands():
@@ -184,7 +185,7 @@ class FullDisk(unittest.TestCase):
             return len(ticks) == 1 and ticks.pop() > 100
         until(stands, "it waits")
         self.assertLess(control.world().tick, 199)
-        self.assertEqual(control.call(1, **set_parameter("food_health", 5)).status.code, UNAVAILABLE)
+        self.assertEqual(control.call(2, **set_parameter("food_health", 5)).status.code, UNAVAILABLE)
         self.assertFalse(asking.is_told_something())
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
