@@ -51,6 +51,7 @@ class Case(unittest.TestCase):
 
     def server(self, *options):
         server = Server(*options)
+        self.addCleanup(server.log.close)
         self.addCleanup(server.kill)
         return server
 
