@@ -2,11 +2,14 @@
 
     EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (25)
 """
+import contextlib
+import itertools
 import os
 import pathlib
 import random
 import re
 import secrets
+import shutil
 import signal
 import socket
 import sqlite3
@@ -120,6 +123,42 @@ def journal(data, world="default"):
         return run.execute("SELECT number, tick, client_key, request_id FROM journal ORDER BY number").fetchall()
 
 
+def log_frames(path):
+    """The heads of what SQLite's write-ahead log holds since it last began anew, a page each; of one that was never
+    committed, too. A head is told from all others by its checksum."""
+    log = pathlib.Path(path).read_bytes() if os.path.exists(path) else b""
+    head_bytes, page_bytes = 24, 4096
+    heads = [log[at:at + head_bytes] for at in range(32, len(log) - page_bytes - head_bytes + 1, head_bytes + page_bytes)]
+    return list(itertools.takewhile(lambda head: head[8:16] == log[16:24], heads))
+
+
+def ends_a_commit(head):
+    return head[4:8] != bytes(4)
+
+
+def kill_while_it_writes_a_checkpoint(server, answered, after_s, written_bytes):
+    """Kills a server that makes its first checkpoint once it has written so many bytes since its last answer; or later,
+    if that never comes."""
+    def watch():
+        time.sleep(after_s)
+        # A checkpoint is due after two seconds of ticks, by the clock. Stopped within a tick for that long, it has one
+        # due with little to simulate again; stopped between two, it comes to it by itself.
+        server.process.send_signal(signal.SIGSTOP)
+        time.sleep(2.05)
+        server.process.send_signal(signal.SIGCONT)
+        answers, before, end = -1, 0, time.monotonic() + patience_s / 2
+        with open(f"/proc/{server.process.pid}/io", "rb", buffering=0) as io, contextlib.suppress(OSError):
+            while time.monotonic() < end:
+                written = int(re.search(rb"wchar: (\d+)", os.pread(io.fileno(), 1000, 0))[1])
+                if answers != len(answered):
+                    answers, before = len(answered), written
+                if written - before >= written_bytes:
+                    break
+                time.sleep(0.0002)
+        server.process.kill()
+    threading.Thread(target=watch, daemon=True).start()
+
+
 class Recovery(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -173,8 +212,40 @@ class Recovery(unittest.TestCase):
                 self.assertEqual(client.world().state_hash, last.state_hash)
             whole.end()
 
+    def ask_until_it_has_gone(self, server, chance, key, answered, look=lambda: None):
+        """Asks for one change after another until the server has been killed, then looks. What it was asked last may
+        have been done and may not; the next one, which is killed too, is asked again."""
+        request_id = max(answered, default=0)
+        try:
+            with Client(server, key) as client:
+                # What had been answered before is answered the same.
+                for known in sorted(answered)[-3:]:
+                    again = client.call(known, **set_parameter("food_health", answered[known][1]))
+                    self.assertEqual(again.applied_tick, answered[known][0])
+                while True:
+                    request_id += 1
+                    value = chance.uniform(1, 9)
+                    try:
+                        response = client.call(request_id, **set_parameter("food_health", value))
+                    except EOFError:
+                        answered[request_id] = (None, value)
+                        raise
+                    self.assertEqual(response.status.code, 0, response)
+                    answered[request_id] = (response.applied_tick, value)
+        except EOFError:
+            pass
+        server.process.wait(patience_s)
+        look()
+        # Sent again to the next server, the last one is done now if it was not.
+        if request_id in answered and answered[request_id][0] is None:
+            server = self.serve()
+            with Client(server, key) as client:
+                response = client.call(request_id, **set_parameter("food_health", answered[request_id][1]))
+                answered[request_id] = (response.applied_tick, answered[request_id][1])
+            server.kill()
+
     def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
-        chance, key, answered, request_id = random.Random(3), secrets.token_hex(8), {}, 0
+        chance, key, answered = random.Random(3), secrets.token_hex(8), {}
         options = ["--seed", "11", "--speed", "max"]
         server = self.serve(*options)
         with Client(server, "start") as client:  # once that is answered, all later servers have this world
@@ -183,33 +254,54 @@ class Recovery(unittest.TestCase):
         for kill in range(kills):
             server = self.serve("--threads", str(1 + kill % 3))
             threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
-            try:
-                with Client(server, key) as client:
-                    # What had been answered before is answered the same, and what had not may have been done or not.
-                    for known in sorted(answered)[-3:]:
-                        again = client.call(known, **set_parameter("food_health", answered[known][1]))
-                        self.assertEqual(again.applied_tick, answered[known][0])
-                    while True:
-                        request_id += 1
-                        value = chance.uniform(1, 9)
-                        try:
-                            response = client.call(request_id, **set_parameter("food_health", value))
-                        except EOFError:
-                            answered[request_id] = (None, value)
-                            raise
-                        self.assertEqual(response.status.code, 0, response)
-                        answered[request_id] = (response.applied_tick, value)
-            except EOFError:
-                pass
-            server.process.wait(patience_s)
-            # Sent again to the next server, the last one is done now if it was not.
-            if request_id in answered and answered[request_id][0] is None:
-                server = self.serve()
-                with Client(server, key) as client:
-                    response = client.call(request_id, **set_parameter("food_health", answered[request_id][1]))
-                    answered[request_id] = (response.applied_tick, answered[request_id][1])
-                server.kill()
+            self.ask_until_it_has_gone(server, chance, key, answered)
         self.assert_as_if_never_stopped(answered, key, *options)
+
+    def test_killed_while_it_writes_a_checkpoint_it_loses_nothing_and_does_nothing_twice(self):
+        # One generation, slow to simulate, in which nobody dies of hunger: all that is written, but for commands and
+        # hashes, are checkpoints of a megabyte.
+        crowd = pathlib.Path(self.data) / "crowd.json"
+        crowd.write_text('{"population_size": 40000, "scale_with_population": true, "reference_population": 50,'
+                         ' "generation_s": 3600, "health_loss_per_s": 0.1}')
+        options = ["--experiment", str(crowd), "--seed", "13", "--speed", "max"]
+        chance, key, answered = random.Random(5), secrets.token_hex(8), {}
+        server = self.serve(*options)
+        with Client(server, "start") as client:  # once that is answered, all later servers have this world
+            self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
+        server.kill()
+        wanted, lives, half_written, begun_with_one = max(3, kills // 25), 0, 0, 0
+        while half_written < wanted:
+            lives += 1
+            self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written} kills came while a checkpoint was written")
+            server = self.serve("--threads", str(1 + lives % 3))
+            before = log_frames(f"{self.data}/crowd.evod-wal")
+            # In the middle of it, or towards its end, so that the next server begins with it.
+            kill_while_it_writes_a_checkpoint(server, answered, chance.uniform(0, 0.3),
+                                              chance.uniform(100e3, 900e3) if lives % 2 == 0 else 1050e3)
+            self.ask_until_it_has_gone(server, chance, key, answered, self.look_at_what_is_left)
+            new = [frame for frame in self.left_frames if frame not in before]
+            committed = max((i for i, frame in enumerate(new) if ends_a_commit(frame)), default=-1)
+            half_written += len(new) - 1 - committed > 20  # pages, which a command does not take
+            begun_with_one += self.left_checkpoint is not None
+        print(f"killed {lives} times: {half_written} while a checkpoint was written; {begun_with_one} times the next server"
+              " began with one", flush=True)
+        self.assertGreater(begun_with_one, 0)
+        self.assert_as_if_never_stopped(answered, key, *options)
+
+    def look_at_what_is_left(self):
+        """By a server that was killed in the test above; changes nothing of it."""
+        self.left_frames = log_frames(f"{self.data}/crowd.evod-wal")
+        with tempfile.TemporaryDirectory() as copy:
+            shutil.copytree(self.data, copy, dirs_exist_ok=True)
+            with sqlite3.connect(f"{copy}/crowd.evod") as run:
+                (self.left_checkpoint,) = run.execute("SELECT max(tick) FROM checkpoint").fetchone()
+                run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?", (self.left_checkpoint,))
+            run.close()
+            if self.left_checkpoint is not None:  # whether the next server begins with it: it would know that it is none
+                refused = subprocess.run([evod, "--port", "0", "--data", copy], capture_output=True, text=True,
+                                         timeout=patience_s)
+                self.assertEqual(refused.returncode, 1)
+                self.assertIn(f"the row {self.left_checkpoint} of its table checkpoint", refused.stderr)
 
     def test_killed_again_while_it_recovers_it_loses_nothing_and_does_nothing_twice(self):
         crowd = pathlib.Path(self.data) / "crowd.json"
