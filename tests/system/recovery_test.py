@@ -193,24 +193,23 @@ class Recovery(unittest.TestCase):
             self.assertEqual(client.call(max(answered) + 1, pause=c.Pause()).status.code, 0)
             last = client.world()
         server.end()
-        with tempfile.TemporaryDirectory() as other:
-            whole = Server("--data", other, *options)
-            self.servers.append(whole)
-            number = 0
-            with Client(whole, "again") as client:
-                def run_to(tick):
-                    nonlocal number
-                    number += 1
-                    client.call(number, run_until_tick=c.RunUntilTick(tick=tick))
-                    until(lambda: client.world().tick == tick, f"tick {tick}")
-                for i in sorted(answered):
-                    tick, value = answered[i]
-                    run_to(tick)
-                    number += 1
-                    self.assertEqual(client.call(number, **set_parameter("food_health", value)).applied_tick, tick)
-                run_to(last.tick)
-                self.assertEqual(client.world().state_hash, last.state_hash)
-            whole.end()
+        whole = Server("--keep-nothing", *options)  # so that thousands of commands wait for no disk
+        self.servers.append(whole)
+        number = 0
+        with Client(whole, "again") as client:
+            def run_to(tick):
+                nonlocal number
+                number += 1
+                client.call(number, run_until_tick=c.RunUntilTick(tick=tick))
+                until(lambda: client.world().tick == tick, f"tick {tick}")
+            for i in sorted(answered):
+                tick, value = answered[i]
+                run_to(tick)
+                number += 1
+                self.assertEqual(client.call(number, **set_parameter("food_health", value)).applied_tick, tick)
+            run_to(last.tick)
+            self.assertEqual(client.world().state_hash, last.state_hash)
+        whole.end()
 
     def ask_until_it_has_gone(self, server, chance, key, answered, look=lambda: None):
         """Asks for one change after another until the server has been killed, then looks. What it was asked last may
