@@ -166,9 +166,8 @@ Refusal RunFile::damaged(const std::string& what) const {
     return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + what + " is not as it was written");
 }
 
-Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
-                                                 const Options& options, const GenerationBegun* beginning,
-                                                 const Checkpoint* checkpoint) {
+Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, const RunIdentity& identity,
+                                                    const Options& options) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
     file->keep_every_ = options.keep_every;
     if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
@@ -177,11 +176,20 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
     file->begin();
     file->create_tables();
     file->write_identity(identity);
+    return file;
+}
+
+Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
+                                                 const Options& options, const GenerationBegun* beginning,
+                                                 const Checkpoint* checkpoint) {
+    auto file = begin_new(path, identity, options);
+    if (!file)
+        return file.error();
     if (beginning != nullptr)
-        file->write(*beginning);
+        (*file)->write(*beginning);
     if (checkpoint != nullptr)
-        file->write(*checkpoint);
-    if (auto committed = file->commit(); !committed)
+        (*file)->write(*checkpoint);
+    if (auto committed = (*file)->commit(); !committed)
         return committed.error();
     return file;
 }

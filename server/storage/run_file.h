@@ -47,6 +47,9 @@ class RunFile {
                                                          const Options& options,
                                                          const GenerationBegun* beginning = nullptr,
                                                          const Checkpoint* checkpoint = nullptr);
+    /// A new file that is there with all that is written until commit(), or not at all; as after begin().
+    static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
+                                                            const Options& options);
     /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
     /// was to create it did not come to the end of it.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);

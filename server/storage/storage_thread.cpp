@@ -205,14 +205,17 @@ bool StorageThread::fail(Run& run, const Refusal& why) {
     return false;
 }
 
-Result<void> StorageThread::open(Run& run) {
-    if (run.file)
+Result<void> StorageThread::begin(Run& run) {
+    if (run.file) {
+        run.file->begin();
         return {};
+    }
     const std::string path = run.replaces ? DataFolder::next_file_of(run.path) : run.path;
     // One that was to be created may be there already, if it is not known how creating it went.
     Result<std::unique_ptr<RunFile>> file = RunFile::open(path, options_);
-    if (run.to_create && !file)
-        file = RunFile::create(path, *run.to_create, options_);
+    const bool is_new = run.to_create && !file;
+    if (is_new) // with all that it begins with, so that nobody finds one that has less
+        file = RunFile::begin_new(path, *run.to_create, options_);
     else if (run.to_create && (*file)->identity().run_id != run.to_create->run_id)
         file = Refusal{.code = base::RefusalCode::AlreadyExists,
                        .message = path + " is there already, and holds another run",
@@ -220,16 +223,17 @@ Result<void> StorageThread::open(Run& run) {
     if (!file)
         return file.error();
     run.file = *std::move(file);
+    if (!is_new)
+        run.file->begin();
     return {};
 }
 
 bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
     if (std::ranges::none_of(items, [](const Item& item) { return item.record.has_value(); }))
         return true;
-    if (auto opened = open(run); !opened)
-        return fail(run, opened.error());
     const auto began = std::chrono::steady_clock::now();
-    run.file->begin();
+    if (auto begun = begin(run); !begun)
+        return fail(run, begun.error());
     for (const Item& item : items)
         if (item.record)
             std::visit([&](const auto& record) { run.file->write(record); }, *item.record);

@@ -124,7 +124,8 @@ class StorageThread {
     bool end(Run& run);
     void tell(const Run& run, std::vector<Item>& items);
     bool fail(Run& run, const base::Refusal& why);
-    base::Result<void> open(Run& run);
+    /// Begins a transaction; where the file is not open it is opened, or made.
+    base::Result<void> begin(Run& run);
     void set_trouble(const std::string& why);
 
     const RunFile::Options options_;

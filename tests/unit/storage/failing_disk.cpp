@@ -11,8 +11,10 @@ std::atomic<std::uint64_t> operations_left = 0;
 std::atomic<bool> failed = false;
 std::atomic<Failure> how_to_fail = Failure::InputOutput;
 
-/// Whether the operation that is asked for now is the one to fail.
+/// Whether the operation that is asked for now is to fail.
 bool fails_now() {
+    if (failed && how_to_fail.load() == Failure::Gone)
+        return true;
     if (operations_left.load() == 0 || operations_left.fetch_sub(1) != 1)
         return false;
     failed = true;

@@ -1,16 +1,21 @@
-// Failing disk: SQLite's usual way to the disk, but for one write, sync or truncation that fails.
+// Failing disk: SQLite's usual way to the disk, but for one write, sync or truncation that fails, or all from one on.
 #pragma once
 
 #include <cstdint>
 
 namespace evod::storage {
 
-enum class Failure { InputOutput, Full, Torn }; // Torn: half of a write is made, then it fails
+enum class Failure {
+    InputOutput,
+    Full,
+    Torn, // half of a write is made, then it fails
+    Gone, // it is not made and nothing after it either, as if the program had been killed before it
+};
 
 /// The name to hand to RunFile::Options::vfs. Registers it when first asked.
 const char* failing_disk();
 
-/// The number `count` operation from now on fails, and no other; 0: none does.
+/// The number `count` operation from now on fails, and no other unless the disk is Gone; 0: none does.
 void fail_operation(std::uint64_t count, Failure how);
 
 /// Whether the operation that was to fail has.

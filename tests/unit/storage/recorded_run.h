@@ -84,6 +84,18 @@ class RecordedRun {
     /// Of the last tick; to be called before anything is asked for there, as a server does.
     void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
 
+    /// A world "fork" that begins where this one is.
+    void fork(
+        const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        v1::Request request;
+        request.mutable_fork_world()->set_world("w");
+        request.mutable_fork_world()->set_name("fork");
+        const auto applied = laboratory_.apply(simulation::ForkWorld{"w", "fork", {}, run_id});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.begin_fork(**laboratory_.find("fork"), entry().run_id, record_of(request, *applied, std::move(done)),
+                             executor_);
+    }
+
     /// Begins again in a file of its own.
     void reset(
         base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {

@@ -1,6 +1,6 @@
 #include "server/storage/storage_thread.h"
 
-#include "server/storage/rerun.h"
+#include "server/storage/archive.h"
 #include "tests/unit/storage/failing_disk.h"
 #include "tests/unit/storage/recorded_run.h"
 
@@ -18,7 +18,8 @@ class StorageThreadTest : public testing::Test {
   protected:
     StorageThreadTest() : data{*DataFolder::open(folder.path())} {}
 
-    TemporaryFolder folder;
+    // In memory where that can be: a disk is slow to say that it has everything.
+    TemporaryFolder folder{std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()};
     DataFolder data;
     base::InlineExecutor executor;
 };
@@ -146,6 +147,70 @@ std::string name_of(const testing::TestParamInfo<Failure>& how) {
 
 INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput, Failure::Full, Failure::Torn),
                          name_of);
+
+/// As if a server had been killed right before each of its operations of the disk in turn.
+TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
+    std::uint64_t operation = 0;
+    { DataFolder taken = std::move(data); }
+    do {
+        ASSERT_LT(++operation, 10'000u);
+        SCOPED_TRACE("killed before operation " + std::to_string(operation));
+        folder.clear();
+        fail_operation(operation, Failure::Gone);
+        std::vector<base::StateHash> hashes; // of the origin, by tick
+        std::atomic<std::uint64_t> told = 0;
+        std::uint64_t asked = 0;
+        {
+            auto own = DataFolder::open(folder.path());
+            StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk()}, 1ms};
+            RecordedRun run{*own, thread};
+            const auto tells = [&] {
+                ++asked;
+                return [&] { ++told; };
+            };
+            const auto wait = [&] {
+                while (told != asked && !thread.trouble())
+                    std::this_thread::yield();
+                return !thread.trouble();
+            };
+            const auto advance = [&] {
+                for (int tick = 0; tick < 70; ++tick) {
+                    hashes.push_back(run.world().hash());
+                    run.advance(1);
+                }
+                run.checkpoint();
+            };
+            for (int round = 0; round < 4; ++round) {
+                run.command(set_parameter("food_health", 1.0 * round), tells());
+                if (!wait())
+                    break;
+                advance(); // the checkpoint is written with the next command
+                if (round == 3)
+                    run.fork({5, 6}, tells());
+            }
+            hashes.push_back(run.world().hash());
+            (void)wait();
+        }
+        const auto archive = Archive::open(folder.path(), {}, executor);
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        for (const auto& entry : laboratory.entries()) {
+            const std::uint64_t tick = entry->world.moment().tick;
+            ASSERT_LT(tick, hashes.size());
+            EXPECT_EQ(entry->world.hash(), hashes[tick]) << entry->name << " at tick " << tick;
+        }
+        // What was told is there; the one command that nobody was told of may be, whole, or not.
+        const std::size_t there = (*archive)->take_answers().size();
+        EXPECT_GE(there, told);
+        EXPECT_LE(there, asked);
+        EXPECT_EQ(static_cast<bool>(laboratory.find("fork")), there == 5);
+        EXPECT_TRUE(told == 0 || laboratory.find("w"));
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+    } while (has_failed());
+    EXPECT_GT(operation, 10u);
+    fail_operation(0, Failure::Gone);
+}
 
 } // namespace
 } // namespace evod::storage
