@@ -83,7 +83,15 @@ TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->identity().seed.value, 5u);
 }
 
-/// Runs of some commits; in each another operation of the disk fails, until there is none left to fail.
+std::vector<std::uint64_t> ticks_of_checkpoints(RunFile& file) {
+    std::vector<std::uint64_t> ticks;
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
+        ticks.push_back(checkpoint.moment.tick);
+    return ticks;
+}
+
+/// Runs of some commits, with checkpoints; in each another operation of the disk fails, until there is none left to
+/// fail.
 class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
 
 TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
@@ -105,6 +113,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                 });
                 ASSERT_EQ(durable.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
                 run.advance(70);
+                run.checkpoint();
                 ended_hash = run.world().hash();
             }
             std::promise<void> begun_again;
@@ -114,6 +123,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
             });
             ASSERT_EQ(begun_again.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
             run.advance(70);
+            run.checkpoint();
             run.recorder().close_all(run.laboratory());
             hash = run.world().hash();
             // The end is waited for too: a thread that stops gives up what cannot be written.
@@ -121,20 +131,21 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                 std::this_thread::yield();
         }
         EXPECT_EQ(told, 5);
-        const auto expect_whole = [&](const std::string& path, std::size_t commands, std::uint64_t tick,
-                                      const base::StateHash& last) {
+        const auto expect_whole = [&](const std::string& path, std::size_t commands,
+                                      const std::vector<std::uint64_t>& checkpoints, const base::StateHash& last) {
             const auto file = RunFile::open_read_only(path);
             ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
             const auto checked = (*file)->check();
             ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
             EXPECT_EQ((*file)->journal()->size(), commands);
+            EXPECT_EQ(ticks_of_checkpoints(**file), checkpoints) << "operation " << operation;
             const auto recovered = recover(**file, executor);
             ASSERT_TRUE(recovered) << to_text(recovered.error());
-            EXPECT_EQ(recovered->world.moment().tick, tick);
+            EXPECT_EQ(recovered->world.moment().tick, checkpoints.back());
             EXPECT_EQ(recovered->world.hash(), last);
         };
-        expect_whole(data.ended_file_of("w", {1, 2}), 4, 280, ended_hash);
-        expect_whole(data.file_of("w"), 1, 70, hash);
+        expect_whole(data.ended_file_of("w", {1, 2}), 4, {140, 210, 280}, ended_hash);
+        expect_whole(data.file_of("w"), 1, {70}, hash);
     } while (has_failed());
     EXPECT_GT(operation, 10u);
     fail_operation(0, GetParam());
