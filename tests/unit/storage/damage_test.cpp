@@ -82,7 +82,7 @@ enum class Left {
 
 class DamageTest : public testing::TestWithParam<Left> {
   protected:
-    /// Four generations and a half with a command every 13 ticks.
+    /// Four generations and a half with a command every 13 ticks and a checkpoint every 90, of which three are kept.
     DamageTest() {
         auto data = DataFolder::open(folder.path());
         StorageThread thread{{}};
@@ -116,6 +116,8 @@ class DamageTest : public testing::TestWithParam<Left> {
                 write_out();
             hashes.push_back(run.world().hash());
             run.advance(1);
+            if (run.world().moment().tick % 90 == 50)
+                run.checkpoint();
         }
         hashes.push_back(run.world().hash());
         command("food_health", 7);
@@ -200,6 +202,7 @@ class DamageTest : public testing::TestWithParam<Left> {
         ASSERT_TRUE(file) << to_text(file.error());
         const auto checked = (*file)->check();
         ASSERT_TRUE(checked) << to_text(checked.error());
+        EXPECT_EQ((*file)->checkpoints(0, last_tick)->size(), 3u);
         whole = told_by(**file);
         known.insert(whole);
         ASSERT_EQ(sound.log.empty(), GetParam() == Left::Closed);
