@@ -244,17 +244,22 @@ class Recovery(unittest.TestCase):
             server.kill()
 
     def test_killed_at_random_moments_it_loses_nothing_and_does_nothing_twice(self):
-        chance, key, answered = random.Random(3), secrets.token_hex(8), {}
-        options = ["--seed", "11", "--speed", "max"]
-        server = self.serve(*options)
-        with Client(server, "start") as client:  # once that is answered, all later servers have this world
-            self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
-        server.kill()
-        for kill in range(kills):
-            server = self.serve("--threads", str(1 + kill % 3))
-            threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
-            self.ask_until_it_has_gone(server, chance, key, answered)
-        self.assert_as_if_never_stopped(answered, key, *options)
+        chance, options = random.Random(3), ["--seed", "11", "--speed", "max"]
+        at_once = 100  # kills of one world: what it was told is read at every start
+        for first in range(0, kills, at_once):
+            for file in pathlib.Path(self.data).iterdir():
+                file.unlink()
+            key, answered = secrets.token_hex(8), {}
+            server = self.serve(*options)
+            with Client(server, "start") as client:  # once that is answered, all later servers have this world
+                self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
+            server.kill()
+            for kill in range(first, min(kills, first + at_once)):
+                server = self.serve("--threads", str(1 + kill % 3))
+                threading.Timer(chance.uniform(0.005, 0.3), server.process.kill).start()
+                self.ask_until_it_has_gone(server, chance, key, answered)
+            self.assert_as_if_never_stopped(answered, key, *options)
+            print(f"killed {kill + 1} times; {len(answered)} commands since {first}", flush=True)
 
     def test_killed_while_it_writes_a_checkpoint_it_loses_nothing_and_does_nothing_twice(self):
         # One generation, slow to simulate, in which nobody dies of hunger: all that is written, but for commands and
