@@ -136,9 +136,9 @@ def ends_a_commit(head):
     return head[4:8] != bytes(4)
 
 
-def kill_while_it_writes_a_checkpoint(server, answered, after_s, written_bytes):
-    """Kills a server that makes its first checkpoint once it has written so many bytes since its last answer; or later,
-    if that never comes."""
+def kill_by_its_checkpoint(server, answered, after_s, written_bytes, whole):
+    """Kills a server by its first checkpoint, once it has written so many bytes since its last answer and, if that is to
+    be whole, has answered again; or later, if that never comes."""
     def watch():
         time.sleep(after_s)
         # A checkpoint is due after two seconds of ticks, by the clock. Stopped within a tick for that long, it has one
@@ -146,14 +146,15 @@ def kill_while_it_writes_a_checkpoint(server, answered, after_s, written_bytes):
         server.process.send_signal(signal.SIGSTOP)
         time.sleep(2.05)
         server.process.send_signal(signal.SIGCONT)
-        answers, before, end = -1, 0, time.monotonic() + patience_s / 2
+        answers, before, end = None, None, time.monotonic() + patience_s / 2
         with open(f"/proc/{server.process.pid}/io", "rb", buffering=0) as io, contextlib.suppress(OSError):
             while time.monotonic() < end:
                 written = int(re.search(rb"wchar: (\d+)", os.pread(io.fileno(), 1000, 0))[1])
-                if answers != len(answered):
-                    answers, before = len(answered), written
-                if written - before >= written_bytes:
+                new_answer = answers != len(answered)
+                if before is not None and written - before >= written_bytes and (new_answer or not whole):
                     break
+                if new_answer:
+                    answers, before = len(answered), written
                 time.sleep(0.0002)
         server.process.kill()
     threading.Thread(target=watch, daemon=True).start()
@@ -279,9 +280,8 @@ class Recovery(unittest.TestCase):
             self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written} kills came while a checkpoint was written")
             server = self.serve("--threads", str(1 + lives % 3))
             before = log_frames(f"{self.data}/crowd.evod-wal")
-            # In the middle of it, or towards its end, so that the next server begins with it.
-            kill_while_it_writes_a_checkpoint(server, answered, chance.uniform(0, 0.3),
-                                              chance.uniform(100e3, 900e3) if lives % 2 == 0 else 1050e3)
+            kill_by_its_checkpoint(server, answered, after_s=chance.uniform(0, 0.3),
+                                   written_bytes=chance.uniform(100e3, 900e3), whole=lives % 2 == 1)
             self.ask_until_it_has_gone(server, chance, key, answered, self.look_at_what_is_left)
             new = [frame for frame in self.left_frames if frame not in before]
             committed = max((i for i, frame in enumerate(new) if ends_a_commit(frame)), default=-1)
