@@ -102,11 +102,11 @@ StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::s
 }
 
 std::optional<base::Refusal> Recorder::refusal() const {
-    const auto trouble = thread_.trouble();
-    if (!trouble)
+    const auto why = trouble();
+    if (!why)
         return std::nullopt;
     return base::Refusal{.code = base::RefusalCode::Unavailable,
-                         .message = "nothing can be changed while it cannot be written down: " + *trouble,
+                         .message = "nothing can be changed while it cannot be written down: " + *why,
                          .violations = {}};
 }
 

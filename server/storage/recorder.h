@@ -85,6 +85,10 @@ class Recorder {
     std::optional<base::Refusal> refusal() const;
     /// Whether worlds may go on: what they have to say can be kept.
     bool has_room() const { return thread_.has_room(); }
+    /// Why nothing gets onto the disk at present; nothing if it does.
+    std::optional<std::string> trouble() const { return thread_.trouble(); }
+    /// As StorageThread does, when has_room() or trouble() have news.
+    void when_changed(std::function<void()> changed) { thread_.when_changed(std::move(changed)); }
 
     /// Of a world that has a file; nullptr for another.
     RunRecorder* of(const std::string& world);

@@ -154,11 +154,18 @@ std::optional<std::string> StorageThread::trouble() const {
     return trouble_.empty() ? std::nullopt : std::optional{trouble_};
 }
 
+void StorageThread::when_changed(std::function<void()> changed) {
+    const std::lock_guard lock{mutex_};
+    when_changed_ = std::move(changed);
+}
+
 void StorageThread::set_trouble(const std::string& why) {
     std::string before;
     {
         const std::lock_guard lock{mutex_};
         before = std::exchange(trouble_, why);
+        if (before != why && when_changed_)
+            when_changed_();
     }
     if (before.empty() && !why.empty())
         spdlog::error("{}; commands are refused until it can be written again", why);
@@ -168,11 +175,11 @@ void StorageThread::set_trouble(const std::string& why) {
 
 void StorageThread::work() {
     pthread_setname_np(pthread_self(), "storage"); // as `top -H` shows it
-    bool failed = false, stopping = false;
+    bool stopping = false;
     while (!stopping) {
         {
             std::unique_lock lock{mutex_};
-            if (failed) {
+            if (failed_) {
                 changed_.wait_for(lock, retry_after_, [this] { return stopping_; });
             } else {
                 changed_.wait(lock, [this] { return stopping_ || urgent_ || !handed_over_.empty(); });
@@ -190,18 +197,19 @@ void StorageThread::work() {
             for (auto& [number, closing] : std::exchange(closing_, {}))
                 runs_[number].closing = std::move(closing);
         }
-        failed = false;
+        failed_ = false;
         for (auto& [number, run] : runs_)
-            failed |= !write_out(run);
+            (void)write_out(run);
         std::erase_if(runs_, [](const auto& item) { return item.second.closing && item.second.closing->finished; });
-        if (!failed)
+        if (!failed_)
             set_trouble({});
     }
 }
 
 bool StorageThread::fail(Run& run, const Refusal& why) {
     run.file.reset();
-    set_trouble(why.message);
+    if (!std::exchange(failed_, true))
+        set_trouble(why.message); // that of the first, as long as it fails, however many do
     return false;
 }
 
@@ -256,7 +264,12 @@ void StorageThread::tell(const Run& run, std::vector<Item>& items) {
             waiting_checkpoints_.fetch_sub(1);
         }
     }
-    waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
+    const std::size_t before = waiting_bytes_.fetch_sub(bytes, std::memory_order_release);
+    if (before < waiting_bytes_max || before - bytes >= waiting_bytes_max)
+        return;
+    const std::lock_guard lock{mutex_};
+    if (when_changed_)
+        when_changed_();
 }
 
 bool StorageThread::write_out(Run& run) {

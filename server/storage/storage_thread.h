@@ -15,6 +15,7 @@
 // worlds
 //              need not stand still until it is written.
 // Full         has_room() is false from `waiting_bytes_max` on; whoever hands over stops making more.
+// News         of both, trouble and room, are called out: whoever sleeps meanwhile can be woken.
 #pragma once
 
 #include "server/storage/run_file.h"
@@ -84,6 +85,9 @@ class StorageThread {
     bool has_room() const { return waiting_bytes_.load(std::memory_order_relaxed) < waiting_bytes_max; }
     /// Why nothing gets onto the disk at present; nothing if it does.
     std::optional<std::string> trouble() const;
+    /// changed: called on the storage thread when trouble() says something else, or there is room again; must neither
+    /// block nor call back. The one before is called no more once this returns.
+    void when_changed(std::function<void()> changed);
 
   private:
     struct Item {
@@ -140,8 +144,10 @@ class StorageThread {
     RunNumber last_number_ = 0;
     bool urgent_ = false, stopping_ = false;
     std::string trouble_;
+    std::function<void()> when_changed_;
 
     std::map<RunNumber, Run> runs_; // the storage thread's own
+    bool failed_ = false;           // something, the last time that everything was to be written
     std::thread thread_;            // last: it uses the rest
 };
 
