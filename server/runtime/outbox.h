@@ -1,9 +1,9 @@
 // Outbox: what the simulation thread hands to the network thread: answers and events in order, and the newest pictures.
 //
 // Threads      filled by the simulation thread, taken by the network thread, which `wake` calls for.
-// Full         answers are at most as many as the mailbox and the sessions let in. Of events `events_max` wait; more
-// are
-//              dropped and counted. Of each world the newest picture waits; the ones it replaced are counted.
+// Full         answers are at most as many as the mailbox and the sessions let in, and news of the disk a few a second.
+//              Of events `events_max` wait; more are dropped and counted. Of each world the newest picture waits; the
+//              ones it replaced are counted.
 #pragma once
 
 #include "server/runtime/snapshot.h"

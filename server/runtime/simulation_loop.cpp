@@ -1,5 +1,7 @@
 #include "server/runtime/simulation_loop.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <memory>
 #include <numeric>
@@ -37,6 +39,8 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor&
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
     , past_{laboratory_, mailbox, executor, recorder} {
+    if (recorder_)
+        laboratory_.set_storage({});
     if (replay)
         past_.show(*std::move(replay));
 }
@@ -44,18 +48,22 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor&
 std::optional<Clock::time_point> SimulationLoop::pass() {
     mind_mail();
     mind_demand();
+    mind_storage();
     follow_worlds();
-    if (recorder_ && !recorder_->has_room())
-        return clock_.now() + slice; // the disk does not keep up: every world waits
 
     // Paced worlds that live first: they have a time to keep.
     std::optional<Clock::time_point> next;
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
+    if (waiting_since_ && !laboratory_.storage()->worlds_wait())
+        at_latest(*waiting_since_ + slow_disk_patience);
     const auto has_to_be_in_time = [](const simulation::Entry& entry) {
         return entry.control.speed.has_value() && !entry.recording;
     };
+    const auto wants_tick = [this](const simulation::Entry& entry) {
+        return entry.wants_tick() && !waits_for_the_disk(entry);
+    };
     for (const auto& entry : laboratory_.entries()) {
-        if (!has_to_be_in_time(*entry) || !entry->wants_tick())
+        if (!has_to_be_in_time(*entry) || !wants_tick(*entry))
             continue;
         Track& track = tracks_.find(entry->name)->second;
         const auto now = clock_.now();
@@ -69,7 +77,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         return keeps ? std::min(*keeps, now + slice) : now + slice;
     };
     for (const auto& entry : laboratory_.entries()) {
-        if (has_to_be_in_time(*entry) || !entry->wants_tick())
+        if (has_to_be_in_time(*entry) || !wants_tick(*entry))
             continue;
         Track& track = tracks_.find(entry->name)->second;
         if (!entry->control.speed || track.due <= clock_.now())
@@ -248,6 +256,35 @@ void SimulationLoop::mind_demand() {
     }
 }
 
+void SimulationLoop::mind_storage() {
+    if (!recorder_)
+        return;
+    // In this order, for room is made before trouble is over.
+    const auto trouble = recorder_->trouble();
+    worlds_wait_ = !recorder_->has_room();
+    if (!worlds_wait_ || trouble)
+        waiting_since_.reset();
+    else if (!waiting_since_)
+        waiting_since_ = clock_.now();
+    simulation::Storage now;
+    if (trouble) {
+        past_.stop_waiting();
+        now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
+    } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
+        now = {simulation::StorageState::Behind,
+               std::to_string(storage::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
+    }
+    const simulation::Storage before = *laboratory_.storage();
+    if (now == before)
+        return;
+    if (now.worlds_wait() && !before.worlds_wait())
+        spdlog::warn("worlds wait for the disk: {}", now.reason);
+    else if (before.worlds_wait() && !now.worlds_wait())
+        spdlog::info("worlds go on");
+    laboratory_.set_storage(now);
+    outputs_.storage(now);
+}
+
 void SimulationLoop::follow_worlds() {
     for (const auto& entry : laboratory_.entries())
         follow(*entry);
@@ -268,7 +305,8 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     Track& track = found->second;
     if (recorder_)
         track.recorder = recorder_->of(entry.name);
-    const bool wants_tick = entry.wants_tick();
+    // A short wait is part of its pace.
+    const bool wants_tick = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait());
     const double tick_s = entry.world.parameters().active.tick_s;
     const bool anew = track.run_id != entry.run_id || track.speed != entry.control.speed || track.tick_s != tick_s;
     if (wants_tick && (anew || !track.running)) {
@@ -277,8 +315,10 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         track.measured_since = track.due;
         track.ticks = 0;
     }
-    if (!wants_tick)
+    if (!wants_tick) {
         entry.ticks_per_s = 0;
+        track.changed |= track.running; // as when it is paused
+    }
     track.run_id = entry.run_id;
     track.speed = entry.control.speed;
     track.tick_s = tick_s;

@@ -1,12 +1,14 @@
 // Simulation loop: what the simulation thread does between two sleeps. Owns the laboratory and decides when a world
 // advances; what happens when it does is the laboratory's business and does not depend on this.
 //
-//   mail → paced worlds that are due → worlds at full speed and those that show the past, a slice each → journeys into
-//   the past, a slice → events, pictures → sleep until the next is due
+//   mail → how it stands with the disk → paced worlds that are due → worlds at full speed and those that show the past,
+//   a slice each → journeys into the past, a slice → events, pictures → sleep until the next is due
 //
 // Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
 //              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another
 //              world is due, so answers and paced worlds wait for one tick of another world at most.
+// Disk         while it has no room for what worlds have to say, those that live stand still. Mail, worlds that show
+//              the past, and pictures for who comes new go on.
 // Threads      called by one; that is the simulation thread.
 // Determinism  time decides how many ticks are taken, never what is in them.
 #pragma once
@@ -31,12 +33,16 @@ namespace evod::runtime {
 struct LoopOutputs {
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> events;
     std::function<void(SnapshotPtr)> picture;
+    /// It stands otherwise with writing down what worlds do.
+    std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
 };
 
 class SimulationLoop {
   public:
     static constexpr std::chrono::milliseconds slice{5};
     static constexpr std::chrono::milliseconds catch_up_max{50};
+    /// Worlds that wait for a disk which does write, as they do now and then, are worth telling of only after this.
+    static constexpr std::chrono::seconds slow_disk_patience{1};
 
     /// Everything handed in outlives the loop.
     ///
@@ -96,6 +102,9 @@ class SimulationLoop {
                 const std::optional<RunBefore>& before);
     void mind_arrivals();
     void mind_demand();
+    void mind_storage();
+    /// Whether it must not advance now, whatever it wants.
+    bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.recording; }
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
@@ -113,6 +122,8 @@ class SimulationLoop {
     const LoopOutputs outputs_;
     simulation::Laboratory laboratory_;
     storage::Recorder* recorder_;
+    bool worlds_wait_ = false;                       // those that live, for the disk
+    std::optional<Clock::time_point> waiting_since_; // for one that does write
     TimeTravel past_;
     std::map<std::string, Track, std::less<>> tracks_;
     Watches watches_;

@@ -10,15 +10,20 @@ SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Execu
                                    LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder,
                                    std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
+    , recorder_{recorder}
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
     , thread_{[this] {
         pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
+        if (recorder_)
+            recorder_->when_changed([this] { mailbox_.wake(); });
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
             if (!next || !mailbox_.pending())
                 mailbox_.wait(next);
         }
         loop_.close();
+        if (recorder_)
+            recorder_->when_changed({});
     }} {}
 
 void SimulationThread::stop() {

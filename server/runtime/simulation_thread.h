@@ -1,4 +1,5 @@
-// Simulation thread: the one that owns all worlds. Sleeps when nothing is due and no mail comes.
+// Simulation thread: the one that owns all worlds. Sleeps when nothing is due, no mail comes and the disk
+// has no news.
 #pragma once
 
 #include "server/runtime/simulation_loop.h"
@@ -21,6 +22,7 @@ class SimulationThread {
 
   private:
     Mailbox& mailbox_;
+    storage::Recorder* const recorder_;
     std::atomic<bool> stopping_ = false;
     SimulationLoop loop_;
     std::thread thread_;

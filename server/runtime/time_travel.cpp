@@ -106,8 +106,19 @@ void TimeTravel::look_at(const std::string& world, Seen then) {
     storage::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
     if (!recorder || recorder_->refusal())
         return see(false); // what is in the file is what there is
-    recorder->once_written(
-        [this, see] { mailbox_.push(QueryMail{[see](const simulation::Laboratory&) { see(true); }}); });
+    const std::uint64_t number = ++last_waiting_;
+    waiting_.emplace(number, see);
+    recorder->once_written([this, number] {
+        mailbox_.push(QueryMail{[this, number](const simulation::Laboratory&) {
+            if (auto waited = waiting_.extract(number))
+                waited.mapped()(true);
+        }});
+    });
+}
+
+void TimeTravel::stop_waiting() {
+    for (const auto& [number, see] : std::exchange(waiting_, {}))
+        see(false);
 }
 
 std::uint64_t TimeTravel::set_out(const storage::Past& past, const storage::PastMoment& to, Arrived arrived) {

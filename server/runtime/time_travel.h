@@ -57,6 +57,9 @@ class TimeTravel {
     bool under_way() const { return !journeys_.empty(); }
     /// Goes on with every journey in turn, a tick each, until `stop` says so or all are at their end.
     void travel(const std::function<bool()>& stop);
+    /// The disk makes trouble: who waits for it to tell of a past is shown what it tells now.
+    void stop_waiting();
+
     /// Worlds that have been taken to another moment since this was last called.
     std::vector<std::string> take_arrivals() { return std::exchange(arrivals_, {}); }
 
@@ -99,9 +102,10 @@ class TimeTravel {
     base::Executor& executor_;
     storage::Recorder* recorder_;
     std::map<std::string, Look, std::less<>> looks_; // by the name of the world that shows it
+    std::map<std::uint64_t, std::function<void(bool all_is_written)>> waiting_; // for the disk
     std::vector<Journey> journeys_;
     std::vector<std::string> arrivals_;
-    std::uint64_t last_journey_ = 0, last_look_ = 0;
+    std::uint64_t last_journey_ = 0, last_look_ = 0, last_waiting_ = 0;
 };
 
 } // namespace evod::runtime

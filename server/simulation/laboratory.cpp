@@ -181,6 +181,7 @@ Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
     entries_.push_back(
         std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{},
                                       World{command.parameters, command.seed, command.first_population}}));
+    entries_.back()->storage = storage_;
     return Applied{.world = command.name, .tick = 0, .parameters = {}};
 }
 
@@ -297,7 +298,15 @@ Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
     (void)world.take_events(); // were told of its origin
     const std::uint64_t tick = world.moment().tick;
     entries_.push_back(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
+    entries_.back()->storage = storage_;
     return Applied{.world = command.name, .tick = tick, .parameters = {}};
+}
+
+void Laboratory::set_storage(const Storage& storage) {
+    storage_ = storage;
+    for (const auto& entry : entries_)
+        if (!entry->recording)
+            entry->storage = storage;
 }
 
 } // namespace evod::simulation

@@ -42,6 +42,21 @@ struct Recording {
     std::uint64_t first_tick = 0, last_tick = 0;
 };
 
+/// How it stands with writing down what worlds do.
+enum class StorageState {
+    KeepsUp,
+    Behind,  // it is slower than worlds, which wait for it
+    Failing, // nothing can be written: commands are refused, worlds go on
+    Stalled, // nothing can be written: commands are refused, worlds wait
+};
+struct Storage {
+    StorageState state = StorageState::KeepsUp;
+    std::string reason; // empty while it keeps up
+
+    bool worlds_wait() const { return state == StorageState::Behind || state == StorageState::Stalled; }
+    friend bool operator==(const Storage&, const Storage&) = default;
+};
+
 /// A world in its laboratory.
 struct Entry {
     std::string name;
@@ -50,6 +65,7 @@ struct Entry {
     World world;
     double ticks_per_s = 0; // measured by whoever drives the laboratory; no part of the state
     std::optional<Recording> recording = std::nullopt; // nothing: the world lives. What happens in others is past
+    std::optional<Storage> storage = std::nullopt;     // nothing: what it does is not written down
 
     /// Whether it shows the past of another: such worlds are there for those who ask for them by name.
     bool is_look_back() const { return recording && !recording->past_of.empty(); }
@@ -79,6 +95,11 @@ class Laboratory {
     }
     /// Takes in a world that a fork begins with. Refused as CreateWorld is.
     base::Result<Applied> fork(const ForkWorld& command, World world);
+
+    /// Every world that lives, and every one to come, is written down, and it stands so with that. Said by whoever
+    /// drives the laboratory, for those who look at its worlds.
+    void set_storage(const Storage& storage);
+    const std::optional<Storage>& storage() const { return storage_; }
 
     /// Advances a world that wants a tick by one, and minds its goals.
     void advance(Entry& entry, base::Executor& executor);
@@ -112,6 +133,7 @@ class Laboratory {
 
     std::vector<std::unique_ptr<Entry>> entries_;
     std::vector<Event> events_;
+    std::optional<Storage> storage_;
 };
 
 } // namespace evod::simulation

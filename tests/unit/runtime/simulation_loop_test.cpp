@@ -8,8 +8,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <filesystem>
+#include <functional>
 #include <future>
 #include <set>
+#include <thread>
 
 namespace evod::runtime {
 namespace {
@@ -424,6 +428,181 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
         std::filesystem::remove(data->ended_file_of("w", {3, 1}));
     }
     EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+// ---- a disk that cannot be written to --------------------------------------------------------------------------
+
+/// A loop that writes into a folder which can be taken away, so that no new file can be made there.
+class LoopWithADisk : public Loop {
+  protected:
+    LoopWithADisk()
+        : data{*storage::DataFolder::open(folder.path())}
+        , thread{{}, 1ms}
+        , recorder{data, thread}
+        , kept{mailbox,
+               demand,
+               executor,
+               clock,
+               {.events = [](auto&&...) {},
+                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); },
+                .storage = [this](const simulation::Storage& storage) { told.push_back(storage.state); }},
+               {},
+               &recorder} {
+        thread.when_changed([this] { ++news; });
+        clock.per_look = 100us; // so that slices end
+    }
+    ~LoopWithADisk() override { give_back(); }
+
+    /// With its request, as it is read again when the past is shown.
+    void ask(v1::Request request) {
+        request.set_client_key("test");
+        request.set_request_id(++requests);
+        const auto command = protocol::to_command(request, {base::Seed{7}, {requests, 1}});
+        ASSERT_TRUE(command) << to_text(command.error());
+        mailbox.try_push(CommandMail{*command,
+                                     {.client = "somebody",
+                                      .client_key = "test",
+                                      .request_id = requests,
+                                      .request = request.SerializeAsString()},
+                                     [](auto&&...) -> CommandAnswer { return {}; }});
+    }
+    void ask_create(const std::string& name) {
+        v1::Request request;
+        request.mutable_create_world()->set_name(name);
+        auto& size = *request.mutable_create_world()->add_parameters();
+        size.set_name("population_size");
+        size.mutable_value()->set_count(5);
+        ask(std::move(request));
+    }
+    void ask_run(const std::string& name) {
+        v1::Request request;
+        request.mutable_run()->set_world(name);
+        ask(std::move(request));
+    }
+
+    void take_away() { std::filesystem::rename(folder.path(), away); }
+    void give_back() {
+        if (std::filesystem::exists(away))
+            std::filesystem::rename(away, folder.path());
+    }
+    void pass_until(const std::function<bool()>& condition) {
+        const auto end = std::chrono::steady_clock::now() + 60s;
+        do {
+            ASSERT_LT(std::chrono::steady_clock::now(), end) << "it never came to that";
+            clock.advance(1ms);
+            kept.pass();
+            std::this_thread::sleep_for(100us);
+        } while (!condition());
+    }
+    simulation::StorageState state() { return kept.laboratory().storage()->state; }
+    const simulation::Entry& entry(std::string_view name) { return **kept.laboratory().find(name); }
+    std::uint64_t tick(std::string_view name) { return entry(name).world.moment().tick; }
+
+    /// A world at full speed whose ticks are generations of half a megabyte.
+    void run_crowd() {
+        auto crowd = create("crowd", 2);
+        crowd.parameters.population_size = 10'000;
+        crowd.parameters.scale_with_population = true;
+        crowd.parameters.fitness = simulation::FitnessFunction::GeneSum;
+        send(crowd);
+        send(simulation::SetSpeed{"crowd", {}});
+        send(simulation::Run{"crowd", {}});
+    }
+
+    storage::TemporaryFolder folder;
+    const std::string away = folder.path() + "_away";
+    storage::DataFolder data;
+    std::vector<simulation::StorageState> told;
+    std::atomic<int> news = 0;
+    std::uint64_t requests = 0;
+    storage::StorageThread thread;
+    storage::Recorder recorder;
+    SimulationLoop kept;
+};
+
+TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
+    ask_create("w");
+    ask_run("w");
+    pass_until([&] { return tick("w") > 300; });
+    std::string look;
+    mailbox.push(PastMail{OpenPast{.world = "w", .at = {}, .owner = 1},
+                          [&](const Laboratory&, const base::Result<std::string>& name) {
+                              ASSERT_TRUE(name) << to_text(name.error());
+                              look = *name;
+                          }});
+    pass_until([&] { return !look.empty(); });
+    take_away();
+    run_crowd();
+    pass_until([&] { return state() == simulation::StorageState::Stalled; });
+    EXPECT_EQ(entry("w").storage->state, simulation::StorageState::Stalled);
+    EXPECT_EQ(entry("w").ticks_per_s, 0);
+    EXPECT_FALSE(entry(look).storage);
+    EXPECT_FALSE(kept.pass()) << "nothing is to be done until the disk has news";
+
+    const std::uint64_t stands = tick("w");
+    pictures.clear();
+    watch("w", 25, 7);
+    kept.pass();
+    ASSERT_EQ(pictures.size(), 1) << "somebody new";
+    EXPECT_EQ(pictures[0]->moment.tick, stands);
+    send(simulation::Run{look, {}});
+    pass_until([&] { return tick(look) > 100; });
+    EXPECT_EQ(tick("w"), stands);
+
+    const int news_before = news;
+    give_back();
+    pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
+    EXPECT_GE(news, news_before + 2) << "of room, and of the end of the trouble";
+    pass_until([&] { return tick("w") > stands; });
+    EXPECT_EQ(told.front(), simulation::StorageState::Failing);
+    EXPECT_EQ(told[1], simulation::StorageState::Stalled);
+    EXPECT_EQ(told.back(), simulation::StorageState::KeepsUp);
+}
+
+TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
+    ask_create("w");
+    kept.pass();
+    std::promise<void> writes_again;
+    recorder.of("w")->once_written([when = writes_again.get_future().share()] { when.wait(); });
+    run_crowd();
+    pass_until([&] { return !recorder.has_room(); });
+    kept.pass();
+    const std::uint64_t stands = tick("crowd");
+    const auto next = kept.pass();
+    ASSERT_TRUE(next);
+    EXPECT_GT(*next, clock.now()) << "there is time to sleep";
+    EXPECT_TRUE(told.empty());
+    clock.advance(SimulationLoop::slow_disk_patience);
+    EXPECT_FALSE(kept.pass());
+    EXPECT_EQ(state(), simulation::StorageState::Behind);
+    EXPECT_FALSE(recorder.refusal());
+    EXPECT_EQ(tick("crowd"), stands);
+    writes_again.set_value();
+    pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
+    EXPECT_EQ(told, (std::vector{simulation::StorageState::Behind, simulation::StorageState::KeepsUp}));
+    pass_until([&] { return tick("crowd") > stands; });
+}
+
+TEST_F(LoopWithADisk, WhoAsksForThePastWhenTroubleBeginsIsShownWhatIsWritten) {
+    take_away();
+    // In one mailbox: when the past is asked for, nobody knows yet that there is trouble.
+    ask_create("other");
+    ask_create("another");
+    bool answered = false;
+    mailbox.push(PastMail{OpenPast{.world = "other", .at = {}, .owner = 1},
+                          [&](const Laboratory&, const base::Result<std::string>& name) {
+                              EXPECT_FALSE(name) << "its file could not be made";
+                              answered = true;
+                          }});
+    pass_until([&] { return answered; });
+    EXPECT_EQ(state(), simulation::StorageState::Failing);
+    // Two files cannot be made, which is one trouble, however often it is tried.
+    for (int pass = 0; pass < 50; ++pass) {
+        kept.pass();
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_EQ(news, 1);
+    EXPECT_EQ(told, std::vector{simulation::StorageState::Failing});
 }
 
 } // namespace
