@@ -7,6 +7,7 @@
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/populations.h"
+#include "server/protocol/worlds.h"
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -69,6 +70,7 @@ base::Result<void> Server::open_archive() {
     if (!archive)
         return archive.error();
     archive_ = *std::move(archive);
+    host_.storage = protocol::to_proto(simulation::Storage{});
     host_.durability =
         options_.run_files.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
     if (!options_.first_world_asked)
@@ -180,7 +182,15 @@ void Server::run() {
                             streams_.tell(std::move(told));
                         });
                 },
-            .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }},
+            .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); },
+            .storage =
+                [this](const simulation::Storage& storage) {
+                    // As an answer is, so that it is not dropped among many events: newcomers are told of it, too.
+                    outbox_.answer([this, event = protocol::event_of(storage)] {
+                        host_.storage = event.storage_changed().storage();
+                        streams_.tell(event);
+                    });
+                }},
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
     signals_.async_wait([this](boost::system::error_code error, int signal) {

@@ -194,6 +194,8 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.add_features("codec:columns");
     *welcome.mutable_limits() = limits_message();
     welcome.set_durability(host_.durability);
+    if (host_.storage)
+        *welcome.mutable_storage() = *host_.storage;
     enqueue(encode_control(message), Kind::Unasked);
 }
 

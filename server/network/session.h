@@ -36,6 +36,7 @@ using SessionPtr = std::shared_ptr<Session>;
 struct SessionHost {
     std::string instance_id; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
+    std::optional<v1::Storage> storage; // as it stands now; nothing: runs are not kept
     std::function<void(Session&, v1::Request)> handle;
     std::function<void(Session&)> ended; // called once
 };

@@ -83,4 +83,10 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
     return told;
 }
 
+v1::Event event_of(const simulation::Storage& storage) {
+    v1::Event told;
+    *told.mutable_storage_changed()->mutable_storage() = to_proto(storage);
+    return told;
+}
+
 } // namespace evod::protocol

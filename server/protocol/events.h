@@ -1,4 +1,4 @@
-// Events as messages: those of the laboratory, and those that commands are.
+// Events as messages: those of the laboratory, those that commands are, and news of the disk.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -18,5 +18,8 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 /// by  who sent it: client name and address.
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory);
+
+/// It stands so with the disk from now on.
+v1::Event event_of(const simulation::Storage& storage);
 
 } // namespace evod::protocol

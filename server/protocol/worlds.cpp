@@ -43,6 +43,26 @@ v1::Speed to_proto(const simulation::Speed& speed) {
     return to;
 }
 
+v1::Storage to_proto(const simulation::Storage& storage) {
+    v1::Storage to;
+    to.set_reason(storage.reason);
+    switch (storage.state) {
+    case simulation::StorageState::KeepsUp:
+        to.set_state(v1::STORAGE_STATE_KEEPS_UP);
+        break;
+    case simulation::StorageState::Behind:
+        to.set_state(v1::STORAGE_STATE_BEHIND);
+        break;
+    case simulation::StorageState::Failing:
+        to.set_state(v1::STORAGE_STATE_FAILING);
+        break;
+    case simulation::StorageState::Stalled:
+        to.set_state(v1::STORAGE_STATE_STALLED);
+        break;
+    }
+    return to;
+}
+
 v1::WorldInfo to_proto(const simulation::Entry& entry) {
     const simulation::World& world = entry.world;
     const simulation::Moment& moment = world.moment();
@@ -75,6 +95,8 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
         recording.set_first_tick(entry.recording->first_tick);
         recording.set_last_tick(entry.recording->last_tick);
     }
+    if (entry.storage)
+        *to.mutable_storage() = to_proto(*entry.storage);
     return to;
 }
 

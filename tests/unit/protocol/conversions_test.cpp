@@ -88,8 +88,10 @@ class Lived : public testing::Test {
 
 TEST_F(Lived, AWorldIsToldCompletely) {
     entry().ticks_per_s = 60;
-    EXPECT_THAT(unset_in(to_proto(entry())),
-                testing::ElementsAre("outcome", "recording", "speed.max")); // it has not ended, it lives, and is paced
+    // It has not ended, it lives, and is paced.
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "recording", "speed.max", "storage"));
+    entry().storage = {.state = simulation::StorageState::Failing, .reason = "it is full"};
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "recording", "speed.max"));
     entry().recording = {.past_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
     EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "speed.max"));
     EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
@@ -169,9 +171,24 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
         ASSERT_TRUE(event);
         cases.insert(event->event_case());
     }
+    cases.insert(event_of(simulation::Storage{}).event_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
     // All but the two that the network itself tells.
     EXPECT_EQ(static_cast<int>(cases.size()) + 2, v1::Event::descriptor()->oneof_decl(0)->field_count());
+}
+
+TEST(Conversions, EveryStateOfTheDiskIsTold) {
+    const std::pair<simulation::StorageState, v1::StorageState> states[] = {
+        {simulation::StorageState::KeepsUp, v1::STORAGE_STATE_KEEPS_UP},
+        {simulation::StorageState::Behind, v1::STORAGE_STATE_BEHIND},
+        {simulation::StorageState::Failing, v1::STORAGE_STATE_FAILING},
+        {simulation::StorageState::Stalled, v1::STORAGE_STATE_STALLED}};
+    for (const auto& [state, told] : states) {
+        const auto event = event_of(simulation::Storage{state, "it is full"});
+        EXPECT_EQ(event.world(), "") << "is told to all";
+        EXPECT_EQ(event.storage_changed().storage().state(), told);
+        EXPECT_EQ(event.storage_changed().storage().reason(), "it is full");
+    }
 }
 
 TEST(Conversions, EveryParameterComesBackAsItWent) {
