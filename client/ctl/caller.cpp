@@ -62,6 +62,18 @@ v1::WorldInfo Caller::world(const std::string& name) {
     return call(std::move(request)).statistics().world();
 }
 
+v1::Storage Caller::storage() {
+    v1::Request request;
+    request.mutable_list_worlds();
+    const v1::Response response = call(std::move(request));
+    for (const v1::WorldInfo& world : response.worlds().worlds()) {
+        if (world.has_storage()) {
+            return world.storage();
+        }
+    }
+    return welcome_.storage(); // there is nothing that could wait
+}
+
 std::string to_json(const google::protobuf::Message& message, bool many_lines) {
     google::protobuf::util::JsonPrintOptions options;
     options.preserve_proto_field_names = true;
@@ -82,7 +94,7 @@ std::string state_of(const v1::WorldInfo& world) {
     case v1::RUN_STATE_WAITING:
         return "waiting";
     case v1::RUN_STATE_RUNNING:
-        return "running";
+        return link::worlds_wait(world.storage()) ? "waits for the disk" : "running";
     case v1::RUN_STATE_PAUSED:
         return "paused";
     case v1::RUN_STATE_TERMINATED:
@@ -100,6 +112,19 @@ std::string state_of(const v1::WorldInfo& world) {
         }
     default:
         return "unknown";
+    }
+}
+
+std::string trouble_of(const v1::Storage& storage) {
+    switch (storage.state()) {
+    case v1::STORAGE_STATE_FAILING:
+        return "commands are refused: " + storage.reason();
+    case v1::STORAGE_STATE_STALLED:
+        return "worlds wait for the disk, commands are refused: " + storage.reason();
+    case v1::STORAGE_STATE_BEHIND:
+        return "worlds wait for the disk: " + storage.reason();
+    default:
+        return "";
     }
 }
 

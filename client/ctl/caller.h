@@ -44,6 +44,8 @@ class Caller {
     Registry registry();
     /// The world that is meant, as it is now.
     v1::WorldInfo world(const std::string& name);
+    /// How it stands with the server's disk, as it is now.
+    v1::Storage storage();
 
     link::Connection& connection() { return connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
@@ -65,8 +67,10 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
     std::fwrite(output.data(), 1, output.size(), stdout);
 }
 
-/// "running", "paused", …
+/// "running", "paused", …, "waits for the disk".
 std::string state_of(const v1::WorldInfo& world);
+/// "commands are refused: the disk is full", "worlds wait for the disk: …"; empty while it keeps up.
+std::string trouble_of(const v1::Storage& storage);
 /// "2x", "max".
 std::string to_text(const v1::Speed& speed);
 /// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".

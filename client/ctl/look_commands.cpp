@@ -42,8 +42,9 @@ void status(const Common& common) {
                        std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
                        std::to_string(world.island_count()), std::to_string(world.seed())});
         }
+        const std::string trouble = trouble_of(caller.welcome().storage());
         return "evod " + caller.welcome().server_version() + " at " +
-               link::to_text(*link::parse_endpoint(common.server)) + "\n" +
+               link::to_text(*link::parse_endpoint(common.server)) + "\n" + (trouble.empty() ? "" : trouble + "\n") +
                (worlds.worlds().empty() ? "no worlds: make one with `evoctl create NAME`\n" : table.to_text());
     });
 }
@@ -99,6 +100,9 @@ void statistics(const Common& common) {
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
         std::string text = sentence(statistics.world()) + "\n";
+        if (const std::string trouble = trouble_of(statistics.world().storage()); !trouble.empty()) {
+            text += trouble + "\n";
+        }
         if (statistics.live_size() > 0) {
             Table live{{{"ISLAND", Align::Right},
                         {"ALIVE", Align::Right},

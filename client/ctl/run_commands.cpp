@@ -190,9 +190,22 @@ class Progress {
         }
     }
 
+    /// How it stands with the disk, if that is other than before.
+    void show(const v1::Storage& storage) {
+        const std::string trouble = trouble_of(storage);
+        if (trouble != trouble_) {
+            std::cerr << (live_ && shown_ ? "\n" : "") << (trouble.empty() ? "run files can be written again" : trouble)
+                      << '\n'
+                      << std::flush;
+            shown_ = false;
+        }
+        trouble_ = trouble;
+    }
+
   private:
     const bool live_ = ::isatty(STDERR_FILENO) == 1;
     bool shown_ = false;
+    std::string trouble_;
 };
 
 /// Waits until `reached(world)`, or the world stops running before, showing generations as they end.
@@ -213,6 +226,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
             if (world.run_id() != begun.run_id()) {
                 throw Stop{ExitCode::Refused, begun.name() + " was reset meanwhile"};
             }
+            progress.show(world.storage());
             if (reached(world) || world.state() != v1::RUN_STATE_RUNNING) {
                 for (const auto& event : caller.connection().take_events()) {
                     if (event.world() == begun.name() && event.has_generation_finished()) {

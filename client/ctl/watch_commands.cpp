@@ -72,6 +72,8 @@ class Watch {
         }
         if (redraw_) {
             load_past();
+        } else {
+            say(caller_.storage());
         }
         while (!interrupted() && !ended_) {
             if (redraw_ && Clock::now() >= draw_at_) {
@@ -118,8 +120,22 @@ class Watch {
         }
     }
 
+    /// Lines are for programs; how it stands with the disk is for whoever wonders why none comes.
+    void say(const v1::Storage& storage) {
+        const std::string trouble = trouble_of(storage);
+        if (!redraw_ && trouble != trouble_) {
+            std::cerr << (trouble.empty() ? "run files can be written again" : trouble) << '\n';
+        }
+        trouble_ = trouble;
+    }
+
     void take(const v1::Event& event) {
-        if (event.has_generation_finished()) {
+        if (event.has_storage_changed()) {
+            say(event.storage_changed().storage());
+            draw_at_ = {};
+        } else if (event.has_events_dropped() && !redraw_) {
+            say(caller_.storage());
+        } else if (event.has_generation_finished()) {
             lines_.push_back(line_of(event.generation_finished().statistics()));
             if (lines_.size() > width) {
                 lines_.pop_front();
@@ -177,7 +193,9 @@ class Watch {
     }
 
     void draw() {
-        std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n\n";
+        std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n";
+        const std::string trouble = trouble_of(world_.storage());
+        text += (trouble.empty() ? "" : trouble + "\n") + "\n";
         std::uint64_t alive = 0, born = 0, starved = 0, poisoned = 0;
         double health = 0;
         for (const auto& island : statistics_.live()) {
@@ -237,6 +255,7 @@ class Watch {
     std::deque<GenerationLine> lines_; // the newest `width`
     std::uint64_t seen_ = 0;           // generations that ended while watching
     std::ptrdiff_t drawn_lines_ = 0;
+    std::string trouble_; // of the disk, as it was last said
     Clock::time_point draw_at_{};
     bool ended_ = false, lost_ = false;
 };
@@ -290,6 +309,10 @@ std::string text_of(const v1::Event& event) {
         return where + "deleted by " + event.world_deleted().by();
     case v1::Event::kServerGoingAway:
         return "the server is shutting down";
+    case v1::Event::kStorageChanged: {
+        const std::string trouble = trouble_of(event.storage_changed().storage());
+        return trouble.empty() ? "run files can be written again" : trouble;
+    }
     case v1::Event::kEventsDropped:
         return std::to_string(event.events_dropped().dropped_count()) + " events were lost: too many at once";
     default:
@@ -311,6 +334,9 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     }
     if (!link::accepted(*answer)) {
         throw Stop{ExitCode::Refused, link::to_text(answer->status())};
+    }
+    if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
+        std::cerr << trouble << '\n'; // began before
     }
     bool lost = false;
     for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {

@@ -73,6 +73,11 @@ inline bool accepted(const evod::v1::Response& response) {
     return response.status().code() == evod::v1::CODE_OK;
 }
 
+/// Whether worlds that live wait for the server's disk.
+inline bool worlds_wait(const evod::v1::Storage& storage) {
+    return storage.state() == evod::v1::STORAGE_STATE_STALLED || storage.state() == evod::v1::STORAGE_STATE_BEHIND;
+}
+
 /// "INVALID_ARGUMENT: the message", then a line for each violation.
 std::string to_text(const evod::v1::Status& status);
 

@@ -48,8 +48,9 @@ float sheet(ImDrawList& list, const ImFont& font, float centre_x, float top, Col
     return other.y;
 }
 
-Colour state_colour(evod::v1::RunState state) {
-    return state == evod::v1::RUN_STATE_RUNNING ? palette::running : palette::stopped;
+Colour state_colour(const Watch& watch) {
+    const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING && !link::worlds_wait(watch.storage());
+    return runs ? palette::running : palette::stopped;
 }
 
 } // namespace
@@ -91,7 +92,7 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui) {
     const float title_end = write(list, gui.title(), {edge, (top_strip - gui.title().FontSize) / 2 - 1}, palette::text,
                                   title(picture->about));
 
-    const std::string state = shown_state(watch.control().state());
+    const std::string state = shown_state(watch.control().state(), watch.storage());
     const std::string help = "H help";
     const std::string place = place_and_speed(picture->about, watch.control());
     const float top_line = (top_strip - text.FontSize) / 2 - 1;
@@ -99,7 +100,7 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui) {
     const float state_begin = help_begin - 2 * edge - size_of(state, text).x;
     const float place_begin = state_begin - 2 * edge - size_of(place, text).x;
     write(list, text, {help_begin, top_line}, palette::text_quiet, help);
-    write(list, text, {state_begin, top_line}, state_colour(watch.control().state()), state);
+    write(list, text, {state_begin, top_line}, state_colour(watch), state);
     if (place_begin > title_end + edge) {
         write(list, text, {place_begin, top_line}, palette::text, place);
     }
@@ -116,6 +117,7 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui) {
 void Overlay::build_connection(const Watch& watch, const Gui& gui) {
     const link::ConnectionStatus status = watch.connection_status();
     const std::string server = link::to_text(watch.server());
+    const std::string trouble = shown_storage(watch.storage());
     std::string text;
     if (status.state == link::State::Failed) {
         text = "No connection to " + server + ": " + status.reason;
@@ -124,11 +126,14 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui) {
     } else if (const auto refusal = watch.refusal()) {
         text = *refusal + "\nW shows another world, Tab another island";
     } else if (watch.picture() == nullptr) {
-        text = "Waiting for the first picture …";
+        text = "Waiting for the first picture …" + (trouble.empty() ? "" : "\n" + trouble);
+    } else if (!trouble.empty()) {
+        text = trouble;
     } else {
         return;
     }
-    const bool bad = status.state == link::State::Failed || watch.refusal();
+    const bool bad = status.state == link::State::Failed || watch.refusal() ||
+                     (status.state == link::State::Connected && !trouble.empty());
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     sheet(*ImGui::GetForegroundDrawList(), gui.text(), window.x / 2,
           watch.picture() == nullptr ? window.y * 0.42f : top_strip + 16, bad ? palette::warning : palette::note, text);

@@ -1,5 +1,7 @@
 #include "client/viewer/readout.h"
 
+#include "client/link/connection.h"
+
 #include <cctype>
 #include <cmath>
 #include <cstdio>
@@ -42,12 +44,25 @@ std::string shown_speed(const evod::v1::Speed& speed) {
     return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse) : print("%g×", factor);
 }
 
-const char* shown_state(evod::v1::RunState state) {
+std::string shown_storage(const evod::v1::Storage& storage) {
+    switch (storage.state()) {
+    case evod::v1::STORAGE_STATE_FAILING:
+        return "Commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_STALLED:
+        return "Worlds wait for the disk, commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_BEHIND:
+        return "Worlds wait for the disk: " + storage.reason();
+    default:
+        return "";
+    }
+}
+
+const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage) {
     switch (state) {
     case evod::v1::RUN_STATE_WAITING:
         return "waiting – Space runs";
     case evod::v1::RUN_STATE_RUNNING:
-        return "running";
+        return link::worlds_wait(storage) ? "waits for the disk" : "running";
     case evod::v1::RUN_STATE_PAUSED:
         return "paused";
     case evod::v1::RUN_STATE_TERMINATED:

@@ -14,7 +14,11 @@ namespace evod::viewer {
 std::string with_separators(std::uint64_t number);     // 1234567 → "1,234,567"
 std::string shown_duration(double seconds);            // 75.25 → "1:15.2"
 std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
-const char* shown_state(evod::v1::RunState state);
+/// storage  as it stands: a world that runs may have to wait for it.
+const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage);
+
+/// What a person has to know of it: "Commands are refused: …", "Worlds wait for the disk: …"; empty while it keeps up.
+std::string shown_storage(const evod::v1::Storage& storage);
 
 /// Why the server says no, for a person: "There is no such island (9); allowed: 0 to 7".
 std::string shown_refusal(const evod::v1::Status& status);

@@ -34,7 +34,7 @@ std::string standing(const Watch& watch) {
     if (!control.known()) {
         return link::to_text(watch.server()) + " has shown no picture of " + quoted(watch.world());
     }
-    return quoted(control.world()) + " is " + shown_state(control.state()) + " at tick " +
+    return quoted(control.world()) + " is " + shown_state(control.state(), watch.storage()) + " at tick " +
            std::to_string(control.tick());
 }
 

@@ -94,6 +94,7 @@ void Watch::step(std::uint64_t ticks) {
 bool Watch::update(link::WorldView::Clock::time_point now) {
     if (const auto status = connection_.status(); status.connected_count != connected_count_) {
         connected_count_ = status.connected_count;
+        storage_ = status.welcome ? status.welcome->storage() : evod::v1::Storage{};
         ask_state();
     }
     // Events tell what became of what was answered, and have to be heard after it.
@@ -143,6 +144,7 @@ void Watch::take_command_answer(const link::Result<evod::v1::Response>& response
 
 void Watch::take_statistics(const evod::v1::Statistics& statistics) {
     control_.see(statistics.world());
+    storage_ = statistics.world().storage();
     last_generation_.assign(statistics.last().begin(), statistics.last().end());
 }
 
@@ -166,6 +168,12 @@ void Watch::take_event(const evod::v1::Event& event) {
     using Kind = evod::v1::Event::EventCase;
     if (event.event_case() == Kind::kServerGoingAway) {
         notices_.push_back("The server is going away");
+    } else if (event.event_case() == Kind::kStorageChanged) {
+        const bool was_trouble = !shown_storage(storage_).empty();
+        storage_ = event.storage_changed().storage();
+        if (was_trouble && shown_storage(storage_).empty()) {
+            notices_.push_back("Run files can be written again");
+        }
     } else if (event.event_case() == Kind::kEventsDropped) {
         ask_state();
     } else if (event.event_case() == Kind::kWorldCreated && refusal()) {

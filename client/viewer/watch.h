@@ -61,6 +61,8 @@ class Watch {
     link::ConnectionStatus connection_status() const { return connection_.status(); }
     /// Why the server shows no pictures: what it said to the subscription. Nullopt if it does, or has not answered.
     std::optional<std::string> refusal() const;
+    /// How it stands with the server's disk; without a state if it keeps nothing, or the world shows the past.
+    const evod::v1::Storage& storage() const { return storage_; }
     /// Sentences for a person, each told once: refused commands, a server that goes away, …
     std::vector<std::string> take_notices() { return std::exchange(notices_, {}); }
 
@@ -87,6 +89,7 @@ class Watch {
     link::WorldView view_;
     RunControl control_;
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
+    evod::v1::Storage storage_;
     std::vector<Unanswered> unanswered_;
     std::vector<std::string> notices_;
     std::uint64_t connected_count_ = 0;

@@ -1,6 +1,6 @@
 """Real servers whose disk is full for a while: a small tmpfs, and a file that takes what is left of it.
 
-    EVOD=… MESSAGES=… full_disk_test.py     skipped with status 77 where nothing may be mounted
+    EVOD=… EVOCTL=… MESSAGES=… full_disk_test.py     skipped with status 77 where nothing may be mounted
 """
 import os
 import pathlib
@@ -25,7 +25,8 @@ import recovery_test as recovery  # noqa: E402
 from recovery_test import Server, c, journal, set_parameter, session_pb2, until, w  # noqa: E402
 from evod.v1 import stream_pb2  # noqa: E402
 
-UNAVAILABLE = 14
+evoctl, UNAVAILABLE = os.environ["EVOCTL"], 14
+KEEPS_UP, FAILING, STALLED = w.STORAGE_STATE_KEEPS_UP, w.STORAGE_STATE_FAILING, w.STORAGE_STATE_STALLED
 
 
 class Client(recovery.Client):
@@ -34,6 +35,20 @@ class Client(recovery.Client):
 
     def answer(self):
         return next(m.response for m in iter(self.receive, None) if m.HasField("response"))
+
+    def storage_states(self, until):
+        """What it is told of the disk, up to that state."""
+        states = []
+        while not states or states[-1] != until:
+            event = next(m.event for m in iter(self.receive, None) if m.HasField("event"))
+            if event.HasField("storage_changed"):
+                storage = event.storage_changed.storage
+                assert event.world == "" and (storage.reason == "") == (storage.state == KEEPS_UP), event
+                states.append(storage.state)
+        return states
+
+    def storage(self):
+        return self.call(999, list_worlds=c.ListWorlds()).worlds.worlds[0].storage
 
     def is_told_something(self):
         return bool(select.select([self.socket], [], [], 0)[0])
@@ -87,6 +102,10 @@ class FullDisk(unittest.TestCase):
     def make_room(self):
         os.remove(f"{self.data}/big")
 
+    def status(self, server):
+        return subprocess.run([evoctl, "--server", f"127.0.0.1:{server.port}", "status"], capture_output=True, text=True,
+                              check=True, timeout=60).stdout
+
     def verify(self):
         done = subprocess.run([recovery.evod, "verify", f"{self.data}/default.evod"], capture_output=True, text=True,
                               timeout=600)
@@ -108,10 +127,19 @@ class FullDisk(unittest.TestCase):
     def test_commands_are_refused_and_worlds_go_on_until_there_is_room_again(self):
         self.mount(8)
         server = self.serve("--seed", "3", "--speed", "1000")
-        control, viewer = self.client(server, "control"), self.client(server, "viewer")
+        control, viewer, listens = (self.client(server, name) for name in ("control", "viewer", "listens"))
+        self.assertEqual(listens.welcome.storage.state, KEEPS_UP)
+        self.assertEqual(control.storage().state, KEEPS_UP)
+        listens.call(1, subscribe_events=c.SubscribeEvents(world="default"))
         viewer.call(1, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
         self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
         asking = self.fill_and_ask_for_what_cannot_be_written(server, control)
+        # Everybody is told, whenever he comes.
+        self.assertEqual(listens.storage_states(FAILING), [FAILING])
+        for storage in control.storage(), self.client(server, "later").welcome.storage:
+            self.assertEqual(storage.state, FAILING)
+            self.assertIn("full", storage.reason)
+        self.assertIn(f"commands are refused: {storage.reason}\n", self.status(server))
         # What needs no disk goes on: the world, its pictures, questions, what leaves no trace.
         seen = viewer.picture(lambda picture: True).tick
         seen = viewer.picture(lambda picture: picture.tick > seen + 3000).tick
@@ -123,6 +151,9 @@ class FullDisk(unittest.TestCase):
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
         until(lambda: "run files can be written again" in server.output(), "the end of the trouble")
+        self.assertEqual(listens.storage_states(KEEPS_UP), [KEEPS_UP])
+        self.assertEqual(control.storage(), w.Storage(state=KEEPS_UP))
+        self.assertNotIn("refused", self.status(server))
         # What was refused left no trace, and may be asked for again.
         self.assertEqual(control.call(10, **set_parameter("food_health", 5)).status.code, 0)
         paused = control.call(12, pause=c.Pause())
@@ -169,29 +200,65 @@ class FullDisk(unittest.TestCase):
     def test_worlds_wait_when_too_much_waits_for_the_disk(self):
         self.mount(400)
         crowd = pathlib.Path(self.data) / "default.json"
-        # A generation is a tick, and weighs half a megabyte.
+        # A generation is a tick, and weighs half a megabyte; so slow that trouble is noticed before there is no room.
         crowd.write_text('{"population_size": 10000, "scale_with_population": true, "fitness": "gene_sum"}')
-        server = self.serve("--seed", "3", "--speed", "max", "--experiment", str(crowd))
-        control = self.client(server, "control")
-        # Answered when the file is there with all that was before, so that the run is what finds the disk full.
-        self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
+        server = self.serve("--seed", "3", "--speed", "1", "--experiment", str(crowd))
+        control, listens = self.client(server, "control"), self.client(server, "listens")
+        listens.call(1, subscribe_events=c.SubscribeEvents())
+        watching = tempfile.TemporaryFile()
+        self.addCleanup(watching.close)
+        watch = subprocess.Popen([evoctl, "--server", f"127.0.0.1:{server.port}", "watch"], stdout=subprocess.DEVNULL,
+                                 stderr=watching)
+        self.addCleanup(watch.wait)
+        self.addCleanup(watch.kill)
+        self.assertEqual(control.call(1, run=c.Run(generations=20)).status.code, 0)
+        until(lambda: control.world().state == w.RUN_STATE_WAITING, "a past")
+        # Answered when the file holds all that was before, so that the run is what finds the disk full.
+        self.assertEqual(control.call(2, **set_parameter("food_health", 30)).status.code, 0)
         self.fill()
         asking = self.client(server, "waits")
         asking.ask(1, run=c.Run(generations=200))
-        until(lambda: "commands are refused until it can be written again" in server.output(), "trouble")
+        self.assertEqual(listens.storage_states(STALLED), [FAILING, STALLED])
+        self.assertIn("worlds wait for the disk", server.output())
 
-        def stands():
-            ticks = {control.world().tick for _ in range(200)}
-            return len(ticks) == 1 and ticks.pop() > 100
-        until(stands, "it waits")
-        self.assertLess(control.world().tick, 199)
-        self.assertEqual(control.call(2, **set_parameter("food_health", 5)).status.code, UNAVAILABLE)
-        self.assertFalse(asking.is_told_something())
+        # Those that live stand still, and say why.
+        world = control.world()
+        self.assertGreater(world.tick, 120)
+        self.assertLess(world.tick, 219)
+        self.assertEqual((world.state, world.ticks_per_s, world.storage.state), (w.RUN_STATE_RUNNING, 0, STALLED))
+        self.assertIn("full", world.storage.reason)
+        status = self.status(server)
+        self.assertIn(f"worlds wait for the disk, commands are refused: {world.storage.reason}\n", status)
+        self.assertRegex(status, r"default +waits for the disk +1x")
+        self.assertEqual(control.call(3, **set_parameter("food_health", 5)).status.code, UNAVAILABLE)
+        # Who comes now sees them, and the past.
+        newcomer = self.client(server, "newcomer")
+        self.assertEqual(newcomer.welcome.storage, world.storage)
+        newcomer.call(1, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
+        self.assertEqual(newcomer.picture(lambda picture: True).tick, world.tick)
+        look = newcomer.call(2, open_past=c.OpenPast(at=c.RunMoment(generation=5)))
+        self.assertEqual((look.status.code, look.world.generation), (0, 5), look.status.message)
+        self.assertFalse(look.world.HasField("storage"))
+        name = look.world.name
+        newcomer.call(3, subscribe_snapshots=c.SubscribeSnapshots(world=name, rate_hz=60))
+        self.assertEqual(newcomer.call(4, run_until_tick=c.RunUntilTick(world=name, tick=15)).status.code, 0)
+        newcomer.picture(lambda picture: (picture.world, picture.tick) == (name, 15))
+        sought = newcomer.call(5, seek=c.Seek(world=name, to=c.RunMoment(generation=2)))
+        self.assertEqual((sought.status.code, sought.world.generation), (0, 2), sought.status.message)
+        self.assertEqual(control.world().tick, world.tick)
+
         self.make_room()
         self.assertEqual(asking.answer().status.code, 0)
+        self.assertLessEqual(set(listens.storage_states(KEEPS_UP)[:-1]), {FAILING})
+        self.assertIn("worlds go on", server.output())
+        self.assertEqual(control.storage(), w.Storage(state=KEEPS_UP))
         until(lambda: control.world().state == w.RUN_STATE_WAITING, "all generations")
         last = control.world()
-        self.assertEqual(last.tick, 200)
+        self.assertEqual(last.tick, 220)
+        until(lambda: b"again" in os.pread(watching.fileno(), 1 << 16, 0), "the end of the trouble")
+        said = os.pread(watching.fileno(), 1 << 16, 0).decode()
+        self.assertRegex(said, r"^commands are refused: .*full.*\nworlds wait for the disk, commands are refused: (.*\n)+"
+                               r"run files can be written again\n$")
         server.end()
         self.verify()
 

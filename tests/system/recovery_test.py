@@ -67,7 +67,9 @@ class Client:
         self.key, self.socket = key, socket.create_connection(("127.0.0.1", server.port))
         self.socket.settimeout(patience_s)
         self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="kills")))
-        assert self.receive().HasField("welcome")
+        greeting = self.receive()
+        assert greeting.HasField("welcome")
+        self.welcome = greeting.welcome
 
     def __enter__(self):
         return self

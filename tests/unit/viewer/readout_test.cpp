@@ -19,6 +19,22 @@ TEST(Readout, WritesNumbersAndTimesAsPeopleReadThem) {
     EXPECT_EQ(shown_duration(3675.25), "61:15.2");
 }
 
+TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
+    evod::v1::Storage storage;
+    EXPECT_EQ(shown_storage(storage), "");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_FAILING);
+    storage.set_reason("it is full");
+    EXPECT_EQ(shown_storage(storage), "Commands are refused: it is full");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_STALLED);
+    EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk, commands are refused: it is full");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
+    EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk: it is full");
+}
+
 TEST(Readout, WritesSpeedsAsMultiplesOfRealTime) {
     evod::v1::Speed speed;
     speed.set_real_time_factor(1);

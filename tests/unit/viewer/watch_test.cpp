@@ -223,6 +223,31 @@ TEST_F(WatchTest, TellsOfOthersChangesAndFollowsThem) {
     until(watch, [&] { return watch.last_generation() && watch.last_generation()->fitness_best() == 222; });
 }
 
+TEST_F(WatchTest, KnowsHowItStandsWithTheDisk) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    until(watch, [&] { return session.unread_bytes() > 0; });
+    const auto question = session.read_request();
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(question.request_id());
+    auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
+    world = info("default", evod::v1::RUN_STATE_RUNNING);
+    world.mutable_storage()->set_state(evod::v1::STORAGE_STATE_FAILING);
+    world.mutable_storage()->set_reason("it is full");
+    session.send(message);
+    until(watch, [&] { return watch.storage().reason() == "it is full"; });
+    auto& told = *message.mutable_event()->mutable_storage_changed()->mutable_storage();
+    told.set_state(evod::v1::STORAGE_STATE_STALLED);
+    session.send(message);
+    until(watch, [&] { return link::worlds_wait(watch.storage()); });
+    EXPECT_TRUE(notices.empty());
+    told.set_state(evod::v1::STORAGE_STATE_KEEPS_UP);
+    session.send(message);
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("Run files can be written again"));
+    EXPECT_FALSE(link::worlds_wait(watch.storage()));
+}
+
 TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
     Watch watch{wanted()};
     {
