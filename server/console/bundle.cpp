@@ -121,7 +121,7 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
            *rerun;
 }
 
-Result<void> fill(const Exported& run, const fs::path& folder) {
+Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
     const std::string file_name = run.file.identity().name + ".evod";
     if (auto copied = run.file.copy_to((folder / file_name).string()); !copied)
         return copied;
@@ -133,21 +133,27 @@ Result<void> fill(const Exported& run, const fs::path& folder) {
     };
     if (auto done = write_text("experiment.json", experiment_text(run.file.identity())); !done)
         return done;
-    constexpr auto csv = Table::Format::Csv;
-    using Write = Result<void> (*)(const Exported&, std::ostream&);
-    std::vector<std::pair<const char*, Write>> tables = {
-        {"generations.csv", [](const Exported& from, std::ostream& out) { return write_generations(from, out, csv); }},
-        {"organisms.csv", [](const Exported& from, std::ostream& out) { return write_organisms(from, out, csv); }},
-        {"lineage.csv", [](const Exported& from, std::ostream& out) { return write_lineage(from, out, csv, {}); }},
-        {"events.csv", [](const Exported& from, std::ostream& out) { return write_events(from, out, csv); }}};
-    if (run.file.identity().first_population)
-        tables.emplace_back("population.csv", [](const Exported& from, std::ostream& out) {
-            return write_population(out, csv, *from.file.identity().first_population);
-        });
-    for (const auto& table : tables)
-        if (auto done = write_file(folder / table.first, [&](std::ostream& out) { return table.second(run, out); });
+    constexpr auto csv = tables::Table::Format::Csv;
+    using tables::RunTable;
+    constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
+                                                          {"organisms.csv", RunTable::Organisms},
+                                                          {"lineage.csv", RunTable::Lineage},
+                                                          {"events.csv", RunTable::Events}};
+    for (const auto& [name, table] : names) {
+        const tables::WantedTable wanted{.table = table, .format = csv};
+        if (auto done =
+                write_file(folder / name, [&](std::ostream& out) { return tables::write_table(run, wanted, out); });
             !done)
             return done;
+    }
+    if (const auto& first = run.file.identity().first_population) {
+        const auto write = [&](std::ostream& out) -> Result<void> {
+            tables::write_population(*first, csv, out);
+            return {};
+        };
+        if (auto done = write_file(folder / "population.csv", write); !done)
+            return done;
+    }
     const auto repeat = repeat_text(run.file, file_name);
     if (!repeat)
         return repeat.error();
@@ -158,7 +164,7 @@ Result<void> fill(const Exported& run, const fs::path& folder) {
 
 } // namespace
 
-Result<void> write_bundle(const Exported& run, const std::string& folder) {
+Result<void> write_bundle(const tables::RunSource& run, const std::string& folder) {
     std::error_code error;
     if (!fs::create_directory(folder, error))
         return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot make " + folder + ": " + error.message())

@@ -1,8 +1,8 @@
 #include "server/console/export.h"
 
 #include "server/console/bundle.h"
-#include "server/console/export_tables.h"
 #include "server/runtime/worker_pool.h"
+#include "server/tables/run_tables.h"
 
 #include <cerrno>
 #include <charconv>
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 
 namespace evod::console {
 namespace {
@@ -29,8 +30,8 @@ Refusal wrong_option(const std::string& option, const std::string& allowed, cons
 }
 
 /// "30:0:12".
-std::optional<OrganismName> organism_named(const std::string& text) {
-    OrganismName name;
+std::optional<tables::OrganismName> organism_named(const std::string& text) {
+    tables::OrganismName name;
     const char* at = text.data();
     const char* const end = at + text.size();
     const auto read = [&](auto& number, char before) {
@@ -44,40 +45,51 @@ std::optional<OrganismName> organism_named(const std::string& text) {
     return good ? std::optional{name} : std::nullopt;
 }
 
-Result<void> write_rows(const Exported& run, const ExportOptions& options, std::ostream& out) {
-    const auto format = options.format == "jsonl" ? Table::Format::JsonLines : Table::Format::Csv;
-    if (options.what == "generations")
-        return write_generations(run, out, format);
-    if (options.what == "organisms") {
-        if (const auto count = generations_out_of_reach(run.file))
-            std::cerr << "evod export: " << count
-                      << " generations are left out: they are not held any more, and "
-                         "follow another version of the model than this evod, which cannot simulate them again\n";
-        return write_organisms(run, out, format);
-    }
-    if (options.what == "events")
-        return write_events(run, out, format);
-    if (options.what == "population")
-        return write_population(run, out, format, options.generation.value_or(run.file.last_generation()));
-    return write_lineage(run, out, format, organism_named(options.of));
-}
-
-/// What is wrong with the options together, as far as they alone tell.
-Result<void> check(const ExportOptions& options) {
-    if (options.what.empty() && options.bundle.empty())
+/// What the options together ask for, as far as they alone tell; nothing for a bundle.
+Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& options) {
+    using tables::RunTable;
+    static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
+                                                        {"organisms", RunTable::Organisms},
+                                                        {"lineage", RunTable::Lineage},
+                                                        {"population", RunTable::Population},
+                                                        {"events", RunTable::Events}};
+    const auto table = tables.find(options.what);
+    if (table == tables.end() && options.bundle.empty())
         return wrong_option("--what", "one of its words, or --bundle FOLDER instead", "nothing");
     if (!options.of.empty() && options.what != "lineage")
         return wrong_option("--of", "only with --what lineage", options.of);
-    if (!options.of.empty() && !organism_named(options.of))
+    const auto of = organism_named(options.of);
+    if (!options.of.empty() && !of)
         return wrong_option("--of", "GENERATION:ISLAND:ORGANISM", options.of);
     if (options.generation && options.what != "population")
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
-    return {};
+    if (table == tables.end())
+        return std::nullopt;
+    return tables::WantedTable{.table = table->second,
+                               .format = options.format == "jsonl" ? tables::Table::Format::JsonLines
+                                                                   : tables::Table::Format::Csv,
+                               .generation = options.generation,
+                               .of = of};
+}
+
+void tell_what_is_left_out(RunFile& file) {
+    if (const auto count = tables::generations_out_of_reach(file))
+        std::cerr << "evod export: " << count
+                  << " generations are left out: they are not held any more, and "
+                     "follow another version of the model than this evod, which cannot simulate them again\n";
+}
+
+/// The options are known by their names on the command line.
+Refusal with_options(Refusal refused) {
+    for (base::Violation& violation : refused.violations)
+        violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
+    return refused;
 }
 
 Result<void> export_to(const ExportOptions& options) {
-    if (auto good = check(options); !good)
-        return good;
+    const auto wanted = wanted_table(options);
+    if (!wanted)
+        return wanted.error();
     std::error_code error;
     if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error))
         return wrong_option("--output", "another file than the run file itself", options.output);
@@ -87,8 +99,11 @@ Result<void> export_to(const ExportOptions& options) {
     if (auto held = (*file)->hold_still(); !held)
         return held;
     const auto executor = runtime::make_executor(options.threads);
-    if (!options.bundle.empty())
-        return write_bundle({**file, *executor}, options.bundle);
+    const tables::RunSource run{**file, *executor};
+    if (!*wanted)
+        return write_bundle(run, options.bundle);
+    if ((*wanted)->table == tables::RunTable::Organisms)
+        tell_what_is_left_out(**file);
     std::ofstream output;
     if (!options.output.empty()) {
         output.open(options.output, std::ios::binary);
@@ -97,8 +112,8 @@ Result<void> export_to(const ExportOptions& options) {
     }
     std::ios::sync_with_stdio(false);
     std::ostream& out = options.output.empty() ? std::cout : output;
-    if (Result<void> written = write_rows({**file, *executor}, options, out); !written)
-        return written;
+    if (Result<void> written = tables::write_table(run, **wanted, out); !written)
+        return with_options(written.error());
     if (!out.flush())
         return cannot_write(options.output.empty()
                                 ? "standard output cannot be written, the disk may be full"

@@ -11,7 +11,7 @@ namespace evod::console {
 struct ExportOptions {
     std::string run;                         // path of a run file
     std::string bundle;                      // folder to make instead; empty: none
-    std::string what;                        // as export_tables.h names them
+    std::string what;                        // as run_tables.h names them
     std::string of;                          // "GENERATION:ISLAND:ORGANISM", of the lineage; empty: everyone
     std::optional<std::uint64_t> generation; // of the population; otherwise the last that has begun
     std::string format = "csv";              // or "jsonl"

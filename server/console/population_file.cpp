@@ -1,5 +1,7 @@
 #include "server/console/population_file.h"
 
+#include "server/tables/columns.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -45,15 +47,9 @@ bool next_line(std::istream& in, std::string& line) {
 
 } // namespace
 
-std::vector<std::string> population_columns() {
-    std::vector<std::string> columns{"island", "organism"};
-    columns.insert(columns.end(), evolution::gene_names.begin(), evolution::gene_names.end());
-    return columns;
-}
-
 Result<simulation::FirstPopulation> read_population(std::istream& in) {
     std::string heading;
-    for (const std::string& column : population_columns())
+    for (const std::string& column : tables::population_columns())
         heading += (heading.empty() ? "" : ",") + column;
     std::string line;
     if (!next_line(in, line) || line != heading)

@@ -15,9 +15,6 @@
 
 namespace evod::console {
 
-/// The heading of such a file.
-std::vector<std::string> population_columns();
-
 /// Whether a world can begin so is left to faults_of(); the refusal's message begins with the line: "line 3: …".
 base::Result<simulation::FirstPopulation> read_population(std::istream& in);
 

@@ -29,16 +29,4 @@ std::string table_row(const simulation::GenerationStatistics& s, bool with_islan
                      static_cast<unsigned long long>(s.poison_eaten), s.diversity);
 }
 
-std::vector<std::string> statistics_columns() {
-    std::vector<std::string> columns;
-    simulation::for_each_number(simulation::GenerationStatistics{},
-                                [&](const std::string& name, auto) { columns.push_back(name); });
-    return columns;
-}
-
-void write_row(Table& table, const simulation::GenerationStatistics& statistics) {
-    simulation::for_each_number(statistics, [&](const std::string&, auto value) { table.number(value); });
-    table.end_row();
-}
-
 } // namespace evod::console

@@ -7,6 +7,7 @@
 #include "server/console/report.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
+#include "server/tables/columns.h"
 
 #include <chrono>
 #include <csignal>
@@ -113,10 +114,10 @@ int run(const RunOptions& options) {
         return RunError;
     }
     std::ofstream csv;
-    std::optional<Table> table;
+    std::optional<tables::Table> table;
     if (!options.csv.empty()) {
         csv.open(options.csv);
-        table.emplace(csv, Table::Format::Csv, statistics_columns());
+        table.emplace(csv, tables::Table::Format::Csv, tables::statistics_columns());
         if (!csv.flush()) {
             std::cerr << "evod run: --csv: cannot write " << options.csv << '\n';
             return RunError;
@@ -153,7 +154,7 @@ int run(const RunOptions& options) {
         for (const simulation::GenerationStatistics& statistics : world.history().back()) {
             std::puts(table_row(statistics, several_islands).c_str());
             if (table)
-                write_row(*table, statistics);
+                tables::write_row(*table, statistics);
         }
         std::fflush(stdout);
         if (table && !csv.flush()) {

@@ -49,13 +49,21 @@ Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
     if (statistics->empty())
         return whole;
     while (!world.generation_over())
-        rerun_->advance_tick(executor_);
+        if (auto done = advance_tick(); !done)
+            return done.error();
     whole.ended = end_of(world);
     if (const auto mismatch = compare(*statistics, whole.ended->statistics))
         return damaged(generation,
                        "simulated again has other statistics than those that are stored: " + mismatch->part +
                            ": stored " + mismatch->stored + ", simulated again " + mismatch->simulated);
     return whole;
+}
+
+Result<void> GenerationReader::advance_tick() {
+    if (stop_.stop_requested())
+        return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was given up", .violations = {}};
+    rerun_->advance_tick(executor_);
+    return {};
 }
 
 Result<void> GenerationReader::stand_before(std::uint64_t generation) {
@@ -75,12 +83,14 @@ Result<void> GenerationReader::stand_before(std::uint64_t generation) {
         rerun_.emplace(*std::move(rerun));
     }
     while (rerun_->world().moment().generation < generation)
-        if (!rerun_->world().generation_over())
-            rerun_->advance_tick(executor_);
-        else if (rerun_->world().outcome() == evolution::Outcome::Running)
+        if (!rerun_->world().generation_over()) {
+            if (auto done = advance_tick(); !done)
+                return done;
+        } else if (rerun_->world().outcome() == evolution::Outcome::Running) {
             rerun_->turn_over(executor_);
-        else
+        } else {
             return damaged(generation, "begins after the run was over");
+        }
     return {};
 }
 

@@ -8,6 +8,8 @@
 #include "server/storage/run_file.h"
 
 #include <optional>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 namespace evod::storage {
@@ -20,7 +22,9 @@ struct WholeGeneration {
 class GenerationReader {
   public:
     /// file  held still; outlives the reader, as does the executor.
-    GenerationReader(RunFile& file, base::Executor& executor) : file_{file}, executor_{executor} {}
+    /// stop  when asked for, what is simulated again is given up: refused with UNAVAILABLE.
+    GenerationReader(RunFile& file, base::Executor& executor, std::stop_token stop = {})
+        : file_{file}, executor_{executor}, stop_{std::move(stop)} {}
 
     /// A generation that has begun; those that are not held are best read in order. Refused where the file is damaged
     /// there, and where what is not held follows another model.
@@ -29,10 +33,12 @@ class GenerationReader {
   private:
     base::Result<WholeGeneration> simulate(std::uint64_t generation);
     base::Result<void> stand_before(std::uint64_t generation);
+    base::Result<void> advance_tick();
     base::Refusal damaged(std::uint64_t generation, const std::string& what) const;
 
     RunFile& file_;
     base::Executor& executor_;
+    std::stop_token stop_;
     std::optional<std::vector<ParameterChange>> changes_; // the run's, once they were needed
     std::optional<Rerun> rerun_;                          // in the generation that was simulated last
 };

@@ -109,7 +109,8 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
 /// Reads backwards, from one generation that is held to the next.
 class BackwardReader {
   public:
-    BackwardReader(RunFile& file, base::Executor& executor) : file_{file}, reader_{file, executor} {}
+    BackwardReader(RunFile& file, base::Executor& executor, const std::stop_token& stop)
+        : file_{file}, reader_{file, executor, stop} {}
 
     Result<Births> read(std::uint64_t generation) {
         auto found = read_.extract(generation);
@@ -133,8 +134,8 @@ class BackwardReader {
 
 } // namespace
 
-Result<void> each_generation(RunFile& file, base::Executor& executor, OfFamilies told) {
-    GenerationReader reader{file, executor};
+Result<void> each_generation(RunFile& file, base::Executor& executor, const std::stop_token& stop, OfFamilies told) {
+    GenerationReader reader{file, executor, stop};
     const std::uint64_t last = file.last_generation();
     std::optional<Births> births;
     ParentPlaces parents;
@@ -166,8 +167,8 @@ Result<void> each_generation(RunFile& file, base::Executor& executor, OfFamilies
 }
 
 Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, base::Executor& executor,
-                                       OfFamilies told) {
-    BackwardReader reader{file, executor};
+                                       const std::stop_token& stop, OfFamilies told) {
+    BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;
     if (generation < file.last_generation()) {

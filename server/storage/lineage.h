@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 namespace evod::storage {
@@ -38,9 +39,10 @@ using OfFamilies = base::FunctionRef<bool(std::uint64_t generation, const std::v
 // Refused where GenerationReader is, and where migrants are to be known of a run that follows another model.
 
 /// Every generation that has begun, in order.
-base::Result<void> each_generation(RunFile& file, base::Executor& executor, OfFamilies told);
+base::Result<void> each_generation(RunFile& file, base::Executor& executor, const std::stop_token& stop,
+                                   OfFamilies told);
 /// From this generation back to the file's first.
 base::Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, base::Executor& executor,
-                                             OfFamilies told);
+                                             const std::stop_token& stop, OfFamilies told);
 
 } // namespace evod::storage

@@ -41,15 +41,17 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/protocol", {"server/simulation", "server/evolution", "server/base", "proto/wire", "proto/evod"}},
     {"server/storage",
      {"server/protocol", "server/simulation", "server/evolution", "server/base", "proto/wire", "proto/evod"}},
+    {"server/tables", {"server/storage", "server/simulation", "server/evolution", "server/base", "proto/evod"}},
     {"server/runtime",
-     {"server/storage", "server/protocol", "server/simulation", "server/evolution", "server/physics", "server/base",
-      "proto/wire", "proto/evod", "tests/support"}}, // the tsan preset's worker pool is that of tests/support
+     {"server/tables", "server/storage", "server/protocol", "server/simulation", "server/evolution", "server/physics",
+      "server/base", "proto/wire", "proto/evod",
+      "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/console",
-     {"server/runtime", "server/storage", "server/protocol", "server/simulation", "server/evolution", "server/physics",
-      "server/base", "proto/evod"}},
+     {"server/runtime", "server/tables", "server/storage", "server/protocol", "server/simulation", "server/evolution",
+      "server/physics", "server/base", "proto/evod"}},
     {"server/network",
-     {"server/runtime", "server/storage", "server/protocol", "server/simulation", "server/evolution", "server/base",
-      "proto/wire", "proto/evod"}},
+     {"server/runtime", "server/tables", "server/storage", "server/protocol", "server/simulation", "server/evolution",
+      "server/base", "proto/wire", "proto/evod"}},
     {"server", // main.cpp knows everyone
      {"server/network", "server/console", "server/runtime", "server/storage", "server/protocol", "server/simulation",
       "server/evolution", "server/physics", "server/base", "proto/wire", "proto/evod"}},

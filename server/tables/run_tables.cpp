@@ -1,17 +1,16 @@
-#include "server/console/export_tables.h"
+#include "server/tables/run_tables.h"
 
 #include "evod/v1/commands.pb.h"
-#include "server/console/population_file.h"
-#include "server/console/report.h"
 #include "server/storage/generation_reader.h"
 #include "server/storage/lineage.h"
+#include "server/tables/columns.h"
 
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
 #include <utility>
 
-namespace evod::console {
+namespace evod::tables {
 namespace {
 
 using base::Refusal;
@@ -79,11 +78,11 @@ Refusal no_such(base::Violation violation) {
 
 std::optional<base::Violation> wrong_place(const OrganismName& name, const std::vector<storage::Family>& families) {
     if (name.island >= families.size())
-        return base::Violation{"--of", "an island from 0 to " + std::to_string(families.size() - 1),
+        return base::Violation{"of.island", "an island from 0 to " + std::to_string(families.size() - 1),
                                std::to_string(name.island)};
     const std::uint32_t count = families[name.island].organism_count;
     if (name.organism >= count)
-        return base::Violation{"--of", "an organism from 0 to " + std::to_string(count - 1),
+        return base::Violation{"of.organism", "an organism from 0 to " + std::to_string(count - 1),
                                std::to_string(name.organism)};
     return std::nullopt;
 }
@@ -142,22 +141,7 @@ std::string kind_of(const v1::Request& request) {
     return kind == nullptr ? std::string{"unknown"} : kind->name();
 }
 
-} // namespace
-
-std::uint64_t generations_out_of_reach(RunFile& file) {
-    std::uint64_t count = 0;
-    const std::uint64_t last = file.last_generation();
-    if (file.other_model())
-        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
-            const auto opening = file.opening_of(generation);
-            if (!opening || !*opening)
-                break; // damaged: whoever reads on is told
-            count += file.held_at_or_before(generation) != generation;
-        }
-    return count;
-}
-
-Result<void> write_generations(const Exported& run, std::ostream& out, Table::Format format) {
+Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
     Table table{out, format, statistics_columns()};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
         const auto statistics = run.file.statistics_of(generation);
@@ -169,12 +153,12 @@ Result<void> write_generations(const Exported& run, std::ostream& out, Table::Fo
     });
 }
 
-Result<void> write_organisms(const Exported& run, std::ostream& out, Table::Format format) {
+Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::Format format) {
     std::vector<std::string> columns{"generation", "island", "organism", "parent_first", "parent_second", "origin"};
     columns.insert(columns.end(), evolution::gene_names.begin(), evolution::gene_names.end());
     columns.insert(columns.end(), {"fitness", "lived_s", "cause"});
     Table table{out, format, std::move(columns)};
-    storage::GenerationReader reader{run.file, run.executor};
+    storage::GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
         if (run.file.other_model() && run.file.held_at_or_before(generation) != generation)
             return {};
@@ -196,7 +180,7 @@ Result<void> write_organisms(const Exported& run, std::ostream& out, Table::Form
     });
 }
 
-Result<void> write_lineage(const Exported& run, std::ostream& out, Table::Format format,
+Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Format format,
                            const std::optional<OrganismName>& of) {
     Table table{out,
                 format,
@@ -204,18 +188,19 @@ Result<void> write_lineage(const Exported& run, std::ostream& out, Table::Format
                  "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness",
                  "child_count", "kept_count"}};
     if (!of)
-        return storage::each_generation(run.file, run.executor, [&](std::uint64_t generation, const auto& families) {
-            write_families(table, generation, families, nullptr);
-            return out.good();
-        });
+        return storage::each_generation(run.file, run.executor, run.stop,
+                                        [&](std::uint64_t generation, const auto& families) {
+                                            write_families(table, generation, families, nullptr);
+                                            return out.good();
+                                        });
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
     if (of->generation < first || of->generation > last)
-        return no_such({"--of", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
+        return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
                         std::to_string(of->generation)});
     std::optional<base::Violation> wrong;
     Wanted wanted;
     const auto done = storage::each_generation_back_from(
-        run.file, of->generation, run.executor, [&](std::uint64_t generation, const auto& families) {
+        run.file, of->generation, run.executor, run.stop, [&](std::uint64_t generation, const auto& families) {
             if (generation == of->generation) {
                 wrong = wrong_place(*of, families);
                 if (wrong)
@@ -236,38 +221,24 @@ Result<void> write_lineage(const Exported& run, std::ostream& out, Table::Format
     return done;
 }
 
-Result<void> write_population(const Exported& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
+Result<void> write_population(const RunSource& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
     if (generation < first || generation > last)
         return Refusal{.code = base::RefusalCode::NotFound,
                        .message = run.file.path() + " does not hold the beginning of that generation",
-                       .violations = {{"--generation", std::to_string(first) + " to " + std::to_string(last),
+                       .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
                                        std::to_string(generation)}}};
-    const auto whole = storage::GenerationReader{run.file, run.executor}.read(generation);
+    const auto whole = storage::GenerationReader{run.file, run.executor, run.stop}.read(generation);
     if (!whole)
         return whole.error();
     std::vector<evolution::GeneMatrix> population;
     for (const evolution::NextGeneration& born : whole->begun.born)
         population.push_back(born.genes);
-    return write_population(out, format, population);
-}
-
-Result<void> write_population(std::ostream& out, Table::Format format,
-                              const std::vector<evolution::GeneMatrix>& population) {
-    Table table{out, format, population_columns()};
-    for (std::size_t island = 0; island < population.size(); ++island) {
-        const evolution::GeneMatrix& genes = population[island];
-        for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
-            table.number(island).number(organism);
-            for (const float gene : evolution::column(genes, organism))
-                table.number(gene);
-            table.end_row();
-        }
-    }
+    write_population(population, format, out);
     return {};
 }
 
-Result<void> write_events(const Exported& run, std::ostream& out, Table::Format format) {
+Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format) {
     constexpr std::uint32_t entries_at_once = 1000;
     google::protobuf::util::JsonPrintOptions json_options;
     json_options.preserve_proto_field_names = true;
@@ -300,4 +271,48 @@ Result<void> write_events(const Exported& run, std::ostream& out, Table::Format 
     return {};
 }
 
-} // namespace evod::console
+} // namespace
+
+std::uint64_t generations_out_of_reach(RunFile& file) {
+    std::uint64_t count = 0;
+    const std::uint64_t last = file.last_generation();
+    if (file.other_model())
+        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
+            const auto opening = file.opening_of(generation);
+            if (!opening || !*opening)
+                break; // damaged: whoever reads on is told
+            count += file.held_at_or_before(generation) != generation;
+        }
+    return count;
+}
+
+void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out) {
+    Table table{out, format, population_columns()};
+    for (std::size_t island = 0; island < population.size(); ++island) {
+        const evolution::GeneMatrix& genes = population[island];
+        for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
+            table.number(island).number(organism);
+            for (const float gene : evolution::column(genes, organism))
+                table.number(gene);
+            table.end_row();
+        }
+    }
+}
+
+Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out) {
+    switch (wanted.table) {
+    case RunTable::Generations:
+        return write_generations(run, out, wanted.format);
+    case RunTable::Organisms:
+        return write_organisms(run, out, wanted.format);
+    case RunTable::Lineage:
+        return write_lineage(run, out, wanted.format, wanted.of);
+    case RunTable::Population:
+        return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.last_generation()));
+    case RunTable::Events:
+        break;
+    }
+    return write_events(run, out, wanted.format);
+}
+
+} // namespace evod::tables

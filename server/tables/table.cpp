@@ -1,4 +1,4 @@
-#include "server/console/table.h"
+#include "server/tables/table.h"
 
 #include "server/base/assert.h"
 
@@ -7,7 +7,7 @@
 
 #include <utility>
 
-namespace evod::console {
+namespace evod::tables {
 namespace {
 
 std::string json_text(std::string_view text) {
@@ -74,4 +74,4 @@ void Table::end_row() {
     column_ = 0;
 }
 
-} // namespace evod::console
+} // namespace evod::tables

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace evod::console {
+namespace evod::tables {
 
 class Table {
   public:
@@ -49,4 +49,4 @@ class Table {
     std::size_t column_ = 0;
 };
 
-} // namespace evod::console
+} // namespace evod::tables

@@ -1,0 +1,58 @@
+// Run tables: what a run file holds, as rows for other programs.
+//
+//   generations  statistics, one row per generation and island, as `evod run --csv` writes them
+//   organisms    one row per organism: parents, genes, fitness, death
+//   lineage      one row per organism: parents and where they lived, and how many came of it
+//   population   one row per organism of one generation: genes, for another world to begin with
+//   events       the journal: one row per command that was applied
+//
+// Rows are written as they are read, a generation at a time; generations that are not held any more are simulated
+// again.
+#pragma once
+
+#include "server/base/executor.h"
+#include "server/storage/run_file.h"
+#include "server/tables/table.h"
+
+#include <optional>
+#include <ostream>
+#include <stop_token>
+
+namespace evod::tables {
+
+enum class RunTable { Generations, Organisms, Lineage, Population, Events };
+
+/// An organism by its birth.
+struct OrganismName {
+    std::uint64_t generation = 0;
+    std::uint32_t island = 0, organism = 0;
+};
+
+struct WantedTable {
+    RunTable table = RunTable::Generations;
+    Table::Format format = Table::Format::Csv;
+    std::optional<std::uint64_t> generation =
+        {};                              // of the population: whose beginning; nothing: the last that has begun
+    std::optional<OrganismName> of = {}; // of the lineage: it and its ancestors, newest first; nothing: everyone
+};
+
+/// A run file that is held still, and what simulates again what it does not hold, until `stop` is asked for.
+struct RunSource {
+    storage::RunFile& file;
+    base::Executor& executor;
+    std::stop_token stop = {};
+};
+
+/// Refused where the file is damaged, or follows another model and does not hold what is needed, or has no such
+/// generation or organism (fields "generation", "of.generation", "of.island", "of.organism"); rows before that are
+/// written. Organisms that are out of reach are left out. Whether rows could be written is known by `out`.
+base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out);
+
+/// How many generations' organisms nobody can tell of any more: they are not held, and follow another model than this
+/// evod.
+std::uint64_t generations_out_of_reach(storage::RunFile& file);
+
+/// A population that is in no run file, as such a table has it.
+void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out);
+
+} // namespace evod::tables
