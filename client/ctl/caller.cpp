@@ -38,8 +38,8 @@ Caller::Caller(const Common& common)
     welcome_ = *std::move(welcome);
 }
 
-v1::Response Caller::call(v1::Request request) {
-    auto response = connection_.request(std::move(request), timeout_);
+v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {
+    auto response = connection_.request(std::move(request), timeout.value_or(timeout_));
     if (!response) {
         const bool usage = response.error().kind == link::Error::Kind::Usage;
         throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection, response.error().what};

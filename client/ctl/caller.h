@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace CLI {
@@ -37,8 +38,8 @@ class Caller {
     /// Connects, or throws Stop.
     explicit Caller(const Common& common);
 
-    /// The server's answer; throws Stop if it refuses or none comes.
-    v1::Response call(v1::Request request);
+    /// The server's answer; throws Stop if it refuses or none comes, within that time or the one of every call.
+    v1::Response call(v1::Request request, std::optional<std::chrono::milliseconds> timeout = {});
 
     /// The server's registry of parameters.
     Registry registry();
@@ -99,6 +100,7 @@ inline std::string at_least_one(const std::string& word) {
 void add_look_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_parameter_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_run_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_export_command(CLI::App& app, const Common& common, Selected& selected);
 void add_watch_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_complete_command(CLI::App& app, Selected& selected);
 

@@ -113,7 +113,7 @@ void complete(CLI::App& app, const std::vector<std::string>& words) {
     }
     const std::string last = before.empty() ? "" : before.back();
     try {
-        if (last == "--server" || last == "--experiment") {
+        if (last == "--server" || last == "--experiment" || last == "--output") {
             return; // hosts and files are not ours to know
         }
         if (last == "--world") {

@@ -35,14 +35,6 @@ std::string name_of(const v1::Request& request) {
     return v1::Request::descriptor()->FindFieldByNumber(request.request_case())->name();
 }
 
-/// The core names fields of a command; clients know them by their path in the request.
-base::Refusal with_paths(base::Refusal refused, const std::string& request_name) {
-    for (base::Violation& violation : refused.violations)
-        if (!violation.field.starts_with(request_name + "."))
-            violation.field = request_name + "." + violation.field;
-    return refused;
-}
-
 /// The same bytes for the same request.
 std::string bytes_of(const v1::Request& request) {
     std::string bytes;
@@ -64,7 +56,7 @@ v1::Response response_to(std::uint64_t request_id) {
 v1::Response response_to(const v1::Request& request, const simulation::Laboratory& laboratory,
                          const base::Result<simulation::Applied>& applied) {
     if (!applied)
-        return protocol::refusing(request.request_id(), with_paths(applied.error(), name_of(request)));
+        return protocol::refusing(request.request_id(), protocol::with_paths(applied.error(), name_of(request)));
     v1::Response response = response_to(request.request_id());
     response.set_applied_tick(applied->tick);
     if (applied->parameters)
@@ -97,6 +89,19 @@ runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, run
     return {runtime::ClosePast{protocol::lookup_name(request.close_past().world())}, std::move(reply)};
 }
 
+/// request  without faults.
+tables::WantedTable wanted(const v1::ExportRun& request) {
+    tables::WantedTable to;
+    to.table = static_cast<tables::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
+    to.format =
+        request.format() == v1::TEXT_FORMAT_JSON_LINES ? tables::Table::Format::JsonLines : tables::Table::Format::Csv;
+    if (request.has_generation())
+        to.generation = request.generation();
+    if (request.has_of())
+        to.of = {request.of().generation(), request.of().island(), request.of().organism()};
+    return to;
+}
+
 /// Puts a refusal in the place of an answer.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
@@ -110,6 +115,7 @@ Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runti
     , outbox_{outbox}
     , demand_{demand}
     , streams_{streams}
+    , exports_{outbox}
     , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max}} {}
 
 void Dispatcher::handle(Session& session, v1::Request request) {
@@ -136,6 +142,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         return subscription(session, request);
     case protocol::RequestKind::Past:
         return past(session, request);
+    case protocol::RequestKind::Export:
+        return export_text(session, request);
     case protocol::RequestKind::Unknown:
         break;
     }
@@ -233,7 +241,7 @@ void Dispatcher::query(Session& session, v1::Request request) {
         if (result)
             *(response.*field)() = *std::move(result);
         else
-            refuse(response, with_paths(result.error(), name));
+            refuse(response, protocol::with_paths(result.error(), name));
     };
     switch (request.request_case()) {
     case v1::Request::kListWorlds:
@@ -263,7 +271,7 @@ void Dispatcher::query(Session& session, v1::Request request) {
                 if (auto found = protocol::get_history(laboratory, request.get_history()))
                     *rows = *std::move(found);
                 else
-                    refuse(response, with_paths(found.error(), name));
+                    refuse(response, protocol::with_paths(found.error(), name));
             },
             [rows](Session&, v1::Response& response) {
                 if (response.status().code() == v1::CODE_OK)
@@ -308,7 +316,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 const auto& subscribe = request.subscribe_snapshots();
                 const auto watched = protocol::find_watched(laboratory, subscribe);
                 if (!watched)
-                    return refuse(response, with_paths(watched.error(), name));
+                    return refuse(response, protocol::with_paths(watched.error(), name));
                 wanted->world = watched->world;
                 if (subscribe.has_island())
                     wanted->island = subscribe.island();
@@ -333,7 +341,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 return;
             const auto entry = laboratory.find(protocol::lookup_name(request.subscribe_events().world()));
             if (!entry)
-                return refuse(response, with_paths(entry.error(), name));
+                return refuse(response, protocol::with_paths(entry.error(), name));
             wanted->world = (*entry)->name;
         },
         [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
@@ -354,7 +362,7 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
                                                    const base::Result<std::string>& world) {
         v1::Response response = response_to(id);
         if (!world)
-            refuse(response, with_paths(world.error(), name));
+            refuse(response, protocol::with_paths(world.error(), name));
         else if (const auto entry = laboratory.find(*world); entry && shows)
             *response.mutable_world() = protocol::to_proto(**entry);
         outbox_.answer([weak, response = std::move(response)]() mutable {
@@ -366,7 +374,30 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
         session.answer(encode_response(protocol::refusing(id, busy())));
 }
 
+void Dispatcher::export_text(Session& session, const v1::Request& request) {
+    const std::uint64_t id = request.request_id();
+    if (auto faults = protocol::faults_of(request); !faults.empty())
+        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+    if (request.has_continue_export())
+        return exports_.go_on(session, id, request.continue_export());
+    auto found = [this, id, request, weak = session.weak_from_this()](const base::Result<storage::Past>& run) {
+        outbox_.answer([this, id, request, run, weak] {
+            const auto asking = weak.lock();
+            if (!asking)
+                return;
+            if (run)
+                exports_.begin(*asking, id, *run, wanted(request.export_run()));
+            else
+                asking->answer(
+                    encode_response(protocol::refusing(id, protocol::with_paths(run.error(), "export_run"))));
+        });
+    };
+    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(request.export_run().world()), std::move(found)}))
+        session.answer(encode_response(protocol::refusing(id, busy())));
+}
+
 void Dispatcher::forget(const Session& session) {
+    exports_.forget(session);
     mailbox_.push(runtime::PastMail{runtime::OwnerGone{session.number()}, {}});
 }
 

@@ -6,6 +6,7 @@
 //              laboratory there, and comes back through the outbox.
 #pragma once
 
+#include "server/network/exports.h"
 #include "server/network/retries.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
@@ -35,6 +36,7 @@ class Dispatcher {
     void query(Session& session, v1::Request request);
     void subscription(Session& session, const v1::Request& request);
     void past(Session& session, const v1::Request& request);
+    void export_text(Session& session, const v1::Request& request);
 
     /// Asks the simulation; `answer` runs there and fills in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
@@ -47,6 +49,7 @@ class Dispatcher {
     runtime::Outbox& outbox_;
     runtime::Demand& demand_;
     Streams& streams_;
+    Exports exports_;
     Retries retries_;
     bool going_away_ = false;
 };

@@ -5,6 +5,7 @@
 #include "proto/wire/framing.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
+#include "server/runtime/export_thread.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/time_travel.h"
 #include "server/simulation/world.h"
@@ -23,6 +24,7 @@ constexpr std::uint32_t sessions_max = 256;          // more: told so, and close
 constexpr double snapshot_rate_hz_max = 120;         // more: capped
 constexpr std::uint32_t retries_kept = 1000;         // answers per client_key; an older request is refused
 constexpr std::uint32_t client_keys_max = 256;       // the longest unused is forgotten
+constexpr std::uint32_t exports_max = 8;             // of all sessions; more: refused
 constexpr std::chrono::seconds hello_timeout{5};     // then the session is closed
 
 // Of a session's send queue.
@@ -55,6 +57,9 @@ inline v1::Limits limits_message() {
     limits.set_client_keys_max(client_keys_max);
     limits.set_hello_timeout_s(static_cast<std::uint32_t>(hello_timeout.count()));
     limits.set_pasts_max(runtime::TimeTravel::pasts_max);
+    limits.set_exports_max(exports_max);
+    limits.set_export_patience_s(static_cast<std::uint32_t>(
+        std::chrono::duration_cast<std::chrono::seconds>(runtime::ExportThread::patience).count()));
     return limits;
 }
 

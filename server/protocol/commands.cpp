@@ -141,6 +141,21 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
     return command;
 }
 
+void add_faults(const v1::ExportRun& request, Violations& violations) {
+    const auto is_word = [](const auto* words, int number) {
+        return number != 0 && words->FindValueByNumber(number) != nullptr;
+    };
+    if (!is_word(v1::RunTable_descriptor(), request.table()))
+        violations.push_back({"export_run.table", "one of RunTable's, from 1", std::to_string(request.table())});
+    if (!is_word(v1::TextFormat_descriptor(), request.format()))
+        violations.push_back({"export_run.format", "one of TextFormat's, from 1", std::to_string(request.format())});
+    if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION)
+        violations.push_back({"export_run.generation", "only of the population", std::to_string(request.generation())});
+    if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE)
+        violations.push_back(
+            {"export_run.of", "only of the lineage", "one of generation " + std::to_string(request.of().generation())});
+}
+
 } // namespace
 
 RequestKind kind_of(const v1::Request& request) {
@@ -171,6 +186,9 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kSeek:
     case RequestCase::kClosePast:
         return RequestKind::Past;
+    case RequestCase::kExportRun:
+    case RequestCase::kContinueExport:
+        return RequestKind::Export;
     case RequestCase::REQUEST_NOT_SET:
         break;
     }
@@ -231,6 +249,8 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
         violations.push_back({"seek.to", "a moment of the run", "nothing"});
     } else if (request.has_close_past() && request.close_past().world().empty()) {
         violations.push_back({"close_past.world", "a world that was opened with open_past", "nothing"});
+    } else if (request.has_export_run()) {
+        add_faults(request.export_run(), violations);
     }
     return violations;
 }

@@ -57,4 +57,11 @@ std::string number_text(double value) {
     return {digits, end.ptr};
 }
 
+base::Refusal with_paths(base::Refusal refused, const std::string& request_name) {
+    for (base::Violation& violation : refused.violations)
+        if (!violation.field.starts_with(request_name + "."))
+            violation.field = request_name + "." + violation.field;
+    return refused;
+}
+
 } // namespace evod::protocol

@@ -21,4 +21,7 @@ std::string quotable(std::string_view text, std::size_t bytes_max = 64);
 /// Shortest text that reads back as the same number: "0.1", "nan".
 std::string number_text(double value);
 
+/// The core names fields of a command; clients know them by their path in the request.
+base::Refusal with_paths(base::Refusal refused, const std::string& request_name);
+
 } // namespace evod::protocol

@@ -72,7 +72,13 @@ struct PastMail {
     PastReply reply; // none for OwnerGone
 };
 
-using Mail = std::variant<CommandMail, QueryMail, PastMail>;
+/// Where a world's run is told, once all of it until now is on the disk, or cannot get there.
+struct FindRun {
+    std::string world;
+    std::function<void(const base::Result<storage::Past>&)> found; // called on the simulation thread
+};
+
+using Mail = std::variant<CommandMail, QueryMail, PastMail, FindRun>;
 
 class Mailbox {
   public:

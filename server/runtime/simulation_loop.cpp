@@ -125,6 +125,8 @@ void SimulationLoop::mind_mail() {
             apply(*command);
         else if (auto* past = std::get_if<PastMail>(&mail))
             past_.apply(std::move(*past));
+        else if (auto* run = std::get_if<FindRun>(&mail))
+            past_.find_run(*run);
         else
             std::get<QueryMail>(mail).ask(laboratory_);
     }

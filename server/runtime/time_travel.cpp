@@ -78,6 +78,16 @@ void TimeTravel::apply(PastMail mail) {
     close_all_of(std::get<OwnerGone>(mail.request).owner);
 }
 
+void TimeTravel::find_run(const FindRun& mail) {
+    const auto entry = std::as_const(laboratory_).find(mail.world);
+    if (!entry)
+        return mail.found(entry.error());
+    look_at((*entry)->name,
+            [found = mail.found](const Result<simulation::Recording>& there, const storage::Past& past) {
+                found(there ? Result<storage::Past>{past} : there.error());
+            });
+}
+
 Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
     const auto entry = std::as_const(laboratory_).find(world);
     if (!entry)

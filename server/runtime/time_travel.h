@@ -42,6 +42,7 @@ class TimeTravel {
     void show(Replay replay);
 
     void apply(PastMail mail);
+    void find_run(const FindRun& mail);
 
     /// To be called after every tick of a world that shows the past.
     void follow(simulation::Entry& entry);

@@ -54,9 +54,10 @@ class Past {
     /// Takes in what has been asked of the world's parameters since.
     base::Result<void> extend(ComingChanges& changes) const;
 
-  private:
+    /// Its file, wherever it is now, to be read.
     base::Result<std::unique_ptr<RunFile>> open() const;
 
+  private:
     std::vector<std::string> paths_;
     simulation::RunId run_id_;
 };

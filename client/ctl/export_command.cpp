@@ -1,0 +1,135 @@
+// export: what the run file of a world holds, as text for other programs.
+#include "client/ctl/caller.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace evod::ctl {
+
+namespace {
+
+/// Generations that are not held any more are simulated again: a part may take that long.
+constexpr std::chrono::minutes part_timeout{60};
+
+const std::map<std::string, v1::RunTable> tables{{"generations", v1::RUN_TABLE_GENERATIONS},
+                                                 {"organisms", v1::RUN_TABLE_ORGANISMS},
+                                                 {"lineage", v1::RUN_TABLE_LINEAGE},
+                                                 {"population", v1::RUN_TABLE_POPULATION},
+                                                 {"events", v1::RUN_TABLE_EVENTS}};
+const std::map<std::string, v1::TextFormat> formats{{"csv", v1::TEXT_FORMAT_CSV},
+                                                    {"jsonl", v1::TEXT_FORMAT_JSON_LINES}};
+
+struct ExportOptions {
+    std::string what, of, format = "csv", output;
+    std::optional<std::uint64_t> generation;
+};
+
+/// "30:0:12".
+std::optional<v1::OrganismName> organism_named(const std::string& text) {
+    std::uint64_t generation = 0;
+    std::uint32_t island = 0, organism = 0;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    const auto read = [&](auto& number) {
+        const auto done = std::from_chars(at, end, number);
+        at = done.ptr;
+        return done.ec == std::errc{};
+    };
+    const auto colon = [&] { return at != end && *at++ == ':'; };
+    if (!(read(generation) && colon() && read(island) && colon() && read(organism) && at == end)) {
+        return std::nullopt;
+    }
+    v1::OrganismName name;
+    name.set_generation(generation);
+    name.set_island(island);
+    name.set_organism(organism);
+    return name;
+}
+
+v1::Request request_of(const Common& common, const ExportOptions& options) {
+    v1::Request request;
+    auto& command = *request.mutable_export_run();
+    command.set_world(common.world);
+    command.set_table(tables.at(options.what));
+    command.set_format(formats.at(options.format));
+    if (options.generation) {
+        if (command.table() != v1::RUN_TABLE_POPULATION) {
+            throw Stop{ExitCode::Usage, "--generation: only with --what population"};
+        }
+        command.set_generation(*options.generation);
+    }
+    if (!options.of.empty()) {
+        if (command.table() != v1::RUN_TABLE_LINEAGE) {
+            throw Stop{ExitCode::Usage, "--of: only with --what lineage"};
+        }
+        const auto organism = organism_named(options.of);
+        if (!organism) {
+            throw Stop{ExitCode::Usage, "--of: must be GENERATION:ISLAND:ORGANISM, not " + options.of};
+        }
+        *command.mutable_of() = *organism;
+    }
+    return request;
+}
+
+void export_run(const Common& common, const ExportOptions& options) {
+    v1::Request request = request_of(common, options);
+    Caller caller{common};
+    v1::ExportPart part = caller.call(std::move(request), part_timeout).export_part();
+    // Not before there is something to write: what is refused leaves a file of that name as it is.
+    std::ofstream file;
+    if (!options.output.empty()) {
+        file.open(options.output, std::ios::binary);
+        if (!file) {
+            throw Stop{ExitCode::Usage, "--output: cannot write " + options.output + ": " + std::strerror(errno)};
+        }
+    }
+    std::ostream& out = options.output.empty() ? std::cout : file;
+    if (part.generations_left_out() > 0) {
+        std::cerr << "evoctl: " << part.generations_left_out()
+                  << " generations are left out: they are not held any more, and follow another version of the model "
+                     "than the server, which cannot simulate them again\n";
+    }
+    while (out.write(part.text().data(), static_cast<std::streamsize>(part.text().size())) && !part.last()) {
+        v1::Request next;
+        next.mutable_continue_export()->set_export_id(part.export_id());
+        part = caller.call(std::move(next), part_timeout).export_part();
+    }
+    if (!out.flush()) {
+        throw Stop{ExitCode::Refused, options.output.empty()
+                                          ? "standard output cannot be written"
+                                          : "--output: cannot write " + options.output + ", the disk may be full"};
+    }
+}
+
+} // namespace
+
+void add_export_command(CLI::App& app, const Common& common, Selected& selected) {
+    auto* command = app.add_subcommand("export", "Write what the run file of a world holds, up to now")->group("Look");
+    auto options = std::make_shared<ExportOptions>();
+    command
+        ->add_option("--what", options->what,
+                     "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                     "whom; population: the genes of one generation, for `create --population`; events: the commands")
+        ->required()
+        ->check(CLI::IsMember(&tables));
+    command->add_option("--of", options->of, "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone");
+    command->add_option("--generation", options->generation, "Of the population; otherwise the last that has begun")
+        ->check(whole_number);
+    command->add_option("--format", options->format, "csv, or jsonl: an object of JSON a line")
+        ->check(CLI::IsMember(&formats))
+        ->capture_default_str();
+    command->add_option("--output", options->output, "File; without it, standard output");
+    command->footer("Examples:\n  evoctl export --what organisms --output organisms.csv\n"
+                    "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv");
+    command->callback([&, options] { selected = [&, options] { export_run(common, *options); }; });
+}
+
+} // namespace evod::ctl

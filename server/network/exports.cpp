@@ -1,0 +1,94 @@
+#include "server/network/exports.h"
+
+#include "server/network/limits.h"
+#include "server/protocol/refusals.h"
+
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+using base::RefusalCode;
+
+base::Refusal refusal(RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+SharedBytes refused(std::uint64_t request_id, const base::Refusal& why) {
+    return encode_response(protocol::refusing(request_id, why));
+}
+
+} // namespace
+
+void Exports::give_up(std::map<std::uint64_t, Export>::iterator of) {
+    of->second.thread->request_stop();
+    given_up_.push_back(std::move(of->second.thread));
+    exports_.erase(of);
+}
+
+void Exports::begin(Session& session, std::uint64_t request_id, const storage::Past& run,
+                    const tables::WantedTable& wanted) {
+    if (const auto before = exports_.find(session.number()); before != exports_.end())
+        give_up(before);
+    std::erase_if(given_up_, [](const auto& thread) { return thread->finished(); });
+    if (exports_.size() + given_up_.size() >= exports_max)
+        return session.answer(
+            refused(request_id, refusal(RefusalCode::ResourceExhausted,
+                                        std::to_string(exports_max) + " exports are under way already: try again")));
+    Export begun{++last_id_, std::make_unique<runtime::ExportThread>(run, wanted)};
+    ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
+}
+
+void Exports::go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request) {
+    const auto found = exports_.find(session.number());
+    if (found == exports_.end() || found->second.id != request.export_id())
+        return session.answer(
+            refused(request_id, {.code = RefusalCode::NotFound,
+                                 .message = "this session has no such export under way",
+                                 .violations = {{"continue_export.export_id", "the id of the export under way",
+                                                 std::to_string(request.export_id())}}}));
+    if (found->second.asked)
+        return session.answer(
+            refused(request_id, refusal(RefusalCode::FailedPrecondition, "the part before has not been answered yet")));
+    ask(session, request_id, found->second);
+}
+
+void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
+    from.asked = true;
+    from.thread->next([this, request_id, id = from.id, number = session.number(),
+                       weak = session.weak_from_this()](base::Result<runtime::ExportThread::Part> part) {
+        outbox_.answer([this, request_id, id, number, weak, part = std::move(part)]() mutable {
+            came(number, id, !part || part->last);
+            const auto asking = weak.lock();
+            if (!asking)
+                return;
+            if (!part)
+                return asking->answer(refused(request_id, protocol::with_paths(part.error(), "export_run")));
+            v1::Response response;
+            response.set_request_id(request_id);
+            response.mutable_status()->set_code(v1::CODE_OK);
+            v1::ExportPart& answer = *response.mutable_export_part();
+            answer.set_export_id(id);
+            answer.set_text(std::move(part->text));
+            answer.set_last(part->last);
+            answer.set_generations_left_out(part->generations_left_out);
+            asking->answer(encode_response(std::move(response)));
+        });
+    });
+}
+
+void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
+    const auto found = exports_.find(session);
+    if (found == exports_.end() || found->second.id != id)
+        return; // another has been begun since
+    found->second.asked = false;
+    if (last)
+        give_up(found);
+}
+
+void Exports::forget(const Session& session) {
+    if (const auto found = exports_.find(session.number()); found != exports_.end())
+        give_up(found);
+}
+
+} // namespace evod::network

@@ -1,0 +1,46 @@
+// Exports: tables of runs on their way to clients, at most one of a session at a time.
+//
+// Owner     the dispatcher; on the network thread. Parts are made by threads of their own (runtime/export_thread.h).
+// Full      at exports_max, the next is refused.
+#pragma once
+
+#include "server/network/session.h"
+#include "server/runtime/export_thread.h"
+#include "server/runtime/outbox.h"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace evod::network {
+
+class Exports {
+  public:
+    /// outbox  outlives this.
+    explicit Exports(runtime::Outbox& outbox) : outbox_{outbox} {}
+
+    /// Answers the request with the first part. The session's export before this one is given up.
+    void begin(Session& session, std::uint64_t request_id, const storage::Past& run, const tables::WantedTable& wanted);
+    /// Answers with the next part.
+    void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
+    /// The session has ended.
+    void forget(const Session& session);
+
+  private:
+    struct Export {
+        std::uint64_t id;
+        std::unique_ptr<runtime::ExportThread> thread;
+        bool asked = false; // for a part that has not come
+    };
+
+    void ask(Session& session, std::uint64_t request_id, Export& from);
+    void came(std::uint64_t session, std::uint64_t id, bool last);
+    void give_up(std::map<std::uint64_t, Export>::iterator of);
+
+    runtime::Outbox& outbox_;
+    std::uint64_t last_id_ = 0;
+    std::map<std::uint64_t, Export> exports_;                      // by number of the session
+    std::vector<std::unique_ptr<runtime::ExportThread>> given_up_; // that may still be at a tick
+};
+
+} // namespace evod::network

@@ -1,0 +1,162 @@
+"""Tables of a run over real sockets: ExportRun, ContinueExport and evoctl export. EVOD and EVOCTL name the programs,
+MESSAGES the folder of the message classes."""
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import past_test as past
+from past_test import CREATE, EVOD, EVOCTL, c, plain, w
+
+WHATS = {"generations": c.RUN_TABLE_GENERATIONS, "organisms": c.RUN_TABLE_ORGANISMS, "lineage": c.RUN_TABLE_LINEAGE,
+         "population": c.RUN_TABLE_POPULATION, "events": c.RUN_TABLE_EVENTS}
+INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION, RESOURCE_EXHAUSTED = 3, 5, 9, 8
+
+
+class Export(past.Case):
+    def serve(self, *options):
+        server = self.server("--data", self.folder, "--speed", "max", *options)
+        client = self.client(server)
+        return server, client
+
+    def run_world(self, client, generations, **parameters):
+        client.call(create_world=c.CreateWorld(name="w", seed=5,
+                                               parameters=plain.assignments(**{**CREATE, **parameters})))
+        client.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+        client.call(run=c.Run(world="w", generations=generations))
+        plain.until(lambda: client.world("w").state == w.RUN_STATE_WAITING, "generations")
+
+    def table(self, client, **export):
+        """The whole table, in how many parts."""
+        part = client.call(export_run=c.ExportRun(format=c.TEXT_FORMAT_CSV, **{"world": "w", **export})).export_part
+        text, parts = part.text, 1
+        while not part.last:
+            part = client.call(continue_export=c.ContinueExport(export_id=part.export_id)).export_part
+            parts += 1
+            text += part.text
+        return text.decode(), parts
+
+    def evod_export(self, *words):
+        done = subprocess.run([EVOD, "export", f"{self.folder}/w.evod", *words], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def evoctl(self, server, *words, status=0):
+        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", "export", *words],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done.stderr if status else done.stdout
+
+    def refused(self, client, code, field, **export):
+        answer = client.call(code, export_run=c.ExportRun(**{"world": "w", "format": c.TEXT_FORMAT_CSV, **export}))
+        self.assertEqual([violation.field for violation in answer.status.violations], ["export_run." + field])
+
+    def test_every_table_is_the_one_that_evod_export_writes(self):
+        server, client = self.serve()
+        self.run_world(client, 5)
+        for what, table in WHATS.items():
+            # At once, and of a file that lags behind otherwise.
+            text, _ = self.table(client, table=table)
+            self.assertEqual(text, self.evod_export("--what", what))
+            self.assertEqual(self.evoctl(server, "--what", what, "--format", "jsonl"),
+                             self.evod_export("--what", what, "--format", "jsonl"))
+        of = c.OrganismName(generation=4, island=1, organism=3)
+        self.assertEqual(self.table(client, table=c.RUN_TABLE_LINEAGE, of=of)[0],
+                         self.evod_export("--what", "lineage", "--of", "4:1:3"))
+        self.assertEqual(self.evoctl(server, "--what", "lineage", "--of", "4:1:3"),
+                         self.evod_export("--what", "lineage", "--of", "4:1:3"))
+        self.assertEqual(self.evoctl(server, "--what", "population", "--generation", "2"),
+                         self.evod_export("--what", "population", "--generation", "2"))
+
+    def test_what_was_not_kept_is_simulated_again_and_comes_in_parts(self):
+        _, client = self.serve("--keep-every", "50")
+        self.run_world(client, 120, fitness="gene_sum", population_size=100)
+        text, parts = self.table(client, table=c.RUN_TABLE_ORGANISMS)
+        self.assertGreater(parts, 3)
+        self.assertEqual(text, self.evod_export("--what", "organisms"))
+        self.assertEqual(text.count("\n"), 1 + 120 * 2 * 100)
+
+    def test_a_plate_goes_from_one_world_to_another(self):
+        server, client = self.serve()
+        self.run_world(client, 3)
+        plate = f"{self.folder}/plate.csv"
+        self.evoctl(server, "--what", "population", "--output", plate)
+        words = [word for name, value in CREATE.items() for word in ("--set", f"{name}={value}")]
+        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "create", "copy", "--population", plate,
+                               *words], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        copied, _ = self.table(client, world="copy", table=c.RUN_TABLE_POPULATION)
+        self.assertEqual(copied, pathlib.Path(plate).read_text())
+
+    def test_a_world_that_runs_is_exported_up_to_now_and_goes_on(self):
+        _, client = self.serve()
+        self.run_world(client, 30)
+        client.call(run=c.Run(world="w"))
+        text, _ = self.table(client, table=c.RUN_TABLE_GENERATIONS)
+        self.assertGreaterEqual(text.count("\n"), 1 + 2 * 30)
+        tick = client.world("w").tick
+        plain.until(lambda: client.world("w").tick > tick, "ticks")
+        client.call(pause=c.Pause(world="w"))
+        self.assertTrue(self.table(client, table=c.RUN_TABLE_GENERATIONS)[0].startswith(text))
+
+    def test_the_past_is_exported_too(self):
+        server, client = self.serve()
+        self.run_world(client, 4)
+        live, _ = self.table(client, table=c.RUN_TABLE_ORGANISMS)
+        look = client.call(open_past=c.OpenPast(world="w")).world.name
+        self.assertEqual(self.table(client, world=look, table=c.RUN_TABLE_ORGANISMS)[0], live)
+        server.end()
+        replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
+        self.assertEqual(self.table(replayed, table=c.RUN_TABLE_ORGANISMS)[0], live)
+
+    def test_what_is_wrong_is_named(self):
+        server, client = self.serve()
+        self.run_world(client, 2)
+        events = {"table": c.RUN_TABLE_EVENTS}
+        self.refused(client, INVALID_ARGUMENT, "table")
+        self.refused(client, INVALID_ARGUMENT, "table", table=99)
+        self.refused(client, INVALID_ARGUMENT, "format", format=0, **events)
+        self.refused(client, INVALID_ARGUMENT, "generation", generation=1, **events)
+        self.refused(client, INVALID_ARGUMENT, "of", of=c.OrganismName(generation=1), **events)
+        self.refused(client, NOT_FOUND, "world", **{**events, "world": "nobody"})
+        self.refused(client, NOT_FOUND, "generation", table=c.RUN_TABLE_POPULATION, generation=9)
+        for field, of in (("generation", (9, 0, 0)), ("island", (1, 2, 0)), ("organism", (1, 0, 12))):
+            name = c.OrganismName(generation=of[0], island=of[1], organism=of[2])
+            self.refused(client, NOT_FOUND, "of." + field, table=c.RUN_TABLE_LINEAGE, of=name)
+        self.assertIn("got 9, allowed", self.evoctl(server, "--what", "population", "--generation", "9", status=1))
+        self.assertIn("only with --what lineage", self.evoctl(server, "--what", "events", "--of", "1:0:0", status=2))
+        self.assertIn("No such file", self.evoctl(server, "--what", "events", "--output", "/nowhere/x", status=2))
+        client.call(list_worlds=c.ListWorlds())
+
+    def test_a_session_exports_one_at_a_time_and_all_together_as_many_as_there_may_be(self):
+        server, client = self.serve()
+        self.run_world(client, 60, fitness="gene_sum", population_size=100)
+        organisms = c.ExportRun(world="w", table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)
+        first = client.call(export_run=organisms).export_part
+        self.assertFalse(first.last)
+        for wrong in (0, first.export_id + 1):
+            client.call(NOT_FOUND, continue_export=c.ContinueExport(export_id=wrong))
+        second = client.call(export_run=organisms).export_part
+        self.assertEqual(second.text, first.text)
+        client.call(NOT_FOUND, continue_export=c.ContinueExport(export_id=first.export_id))
+        client.call(continue_export=c.ContinueExport(export_id=second.export_id))
+        exports_max = client.welcome.limits.exports_max
+        others = [self.client(server) for _ in range(exports_max)]
+
+
+        def begins(asking):
+            return asking.response(asking.ask(export_run=organisms)).status.code == 0
+        for other in others[:-1]:
+            plain.until(lambda asking=other: begins(asking), "a place: one just given up may still have it")
+        others[-1].call(RESOURCE_EXHAUSTED, export_run=organisms)
+        others[0].socket.close()  # whoever leaves makes room
+        plain.until(lambda: begins(others[-1]), "room")
+        server.end()
+
+    def test_without_files_there_is_nothing_to_export(self):
+        client = self.client(self.server("--keep-nothing"))
+        client.call(FAILED_PRECONDITION, export_run=c.ExportRun(table=c.RUN_TABLE_EVENTS, format=c.TEXT_FORMAT_CSV))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -1,0 +1,99 @@
+#include "server/runtime/export_thread.h"
+
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <future>
+#include <sstream>
+
+namespace evod::runtime {
+namespace {
+
+using base::RefusalCode;
+using storage::RunFile;
+using tables::RunTable;
+using testing::HasSubstr;
+
+class ExportThreadTest : public testing::Test {
+  protected:
+    /// As many generations, and a tick of the next.
+    void record(int generations, std::uint64_t keep_every = 1) {
+        RunFile::Options options;
+        options.keep_every = keep_every;
+        storage::StorageThread thread{options};
+        storage::RecordedRun run{data, thread};
+        while (run.world().moment().generation <= static_cast<std::uint64_t>(generations))
+            run.advance(1);
+        run.advance(1);
+        while (!thread.idle())
+            std::this_thread::yield();
+        past.emplace(*storage::Past::of_file(data.file_of("w")));
+    }
+    static base::Result<ExportThread::Part> next(ExportThread& thread) {
+        std::promise<base::Result<ExportThread::Part>> part;
+        thread.next([&](base::Result<ExportThread::Part> came) { part.set_value(std::move(came)); });
+        return part.get_future().get();
+    }
+    std::string whole(const tables::WantedTable& wanted) {
+        const auto file = past->open();
+        std::ostringstream out;
+        EXPECT_TRUE(tables::write_table({**file, executor}, wanted, out));
+        return out.str();
+    }
+
+    storage::TemporaryFolder folder;
+    storage::DataFolder data{*storage::DataFolder::open(folder.path())};
+    base::InlineExecutor executor;
+    std::optional<storage::Past> past;
+};
+
+TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
+    record(300, 100);
+    const tables::WantedTable wanted{.table = RunTable::Organisms, .format = tables::Table::Format::JsonLines};
+    ExportThread thread{*past, wanted};
+    std::string text;
+    int parts = 0;
+    for (bool last = false; !last; ++parts) {
+        const auto part = next(thread);
+        ASSERT_TRUE(part) << to_text(part.error());
+        EXPECT_TRUE(part->last || part->text.size() >= ExportThread::part_bytes);
+        text += part->text;
+        last = part->last;
+    }
+    EXPECT_GT(parts, 2);
+    EXPECT_EQ(text, whole(wanted));
+    EXPECT_EQ(next(thread).error().code, RefusalCode::FailedPrecondition);
+}
+
+TEST_F(ExportThreadTest, WhatIsWrongIsToldInsteadOfAPart) {
+    record(2);
+    ExportThread thread{*past, {.table = RunTable::Population, .generation = 7}};
+    const auto part = next(thread);
+    ASSERT_FALSE(part);
+    EXPECT_EQ(part.error().code, RefusalCode::NotFound);
+    EXPECT_EQ(part.error().violations.at(0).field, "generation");
+}
+
+TEST_F(ExportThreadTest, AnExportThatNobodyGoesOnWithIsGivenUpAndNeverCutShort) {
+    record(300);
+    ExportThread thread{*past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
+    while (!thread.finished())
+        std::this_thread::yield();
+    const auto part = next(thread);
+    ASSERT_FALSE(part);
+    EXPECT_THAT(part.error().message, HasSubstr("given up"));
+}
+
+TEST_F(ExportThreadTest, StoppingEndsASimulationUnderWay) {
+    record(300, 1'000'000); // all but the first and the last to be simulated again
+    ExportThread thread{*past, {.table = RunTable::Population, .generation = 299}};
+    thread.request_stop();
+    const auto part = next(thread);
+    ASSERT_FALSE(part);
+    while (!thread.finished())
+        std::this_thread::yield();
+}
+
+} // namespace
+} // namespace evod::runtime
