@@ -121,7 +121,7 @@ TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
     const auto file = RunFile::open_read_only(data.file_of("w"));
     ASSERT_TRUE((*file)->hold_still());
     std::vector<std::vector<Family>> generations;
-    const auto forwards = each_generation(**file, executor, [&](std::uint64_t generation, const auto& families) {
+    const auto forwards = each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
         generations.push_back(families);
         return generation == generations.size();
     });
@@ -129,7 +129,7 @@ TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
     ASSERT_EQ(generations.size(), begun.size());
     std::uint64_t expected = 90, strangers = 0;
     const auto back = each_generation_back_from(
-        **file, expected, executor, [&](std::uint64_t generation, const std::vector<Family>& families) {
+        **file, expected, executor, {}, [&](std::uint64_t generation, const std::vector<Family>& families) {
             EXPECT_EQ(generation, expected--);
             for (std::uint32_t island = 0; island < families.size(); ++island) {
                 const Family &there = families[island], &same = generations[generation - 1][island];
