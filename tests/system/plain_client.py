@@ -473,7 +473,8 @@ class Requests(WithServer):
             if "world" not in kind.DESCRIPTOR.fields_by_name:
                 continue
             extra = {"set_speed": {"speed": w.Speed(max=True)}, "subscribe_snapshots": {"rate_hz": 1},
-                     "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)}}
+                     "fork_world": {"name": "new"}, "seek": {"to": c.RunMoment(tick=1)},
+                     "export_run": {"table": c.RUN_TABLE_EVENTS, "format": c.TEXT_FORMAT_CSV}}
             for world in ("nowhere", "no\nwhere", "ü" * 1000):
                 request = {field.name: kind(world=world, **extra.get(field.name, {}))}
                 status = self.client.call(NOT_FOUND, **request).status
