@@ -1,4 +1,5 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
+#include "server/access/certificate.h"
 #include "server/console/check.h"
 #include "server/console/experiment_file.h"
 #include "server/console/export.h"
@@ -6,6 +7,7 @@
 #include "server/console/parameter_list.h"
 #include "server/console/population_file.h"
 #include "server/console/run.h"
+#include "server/console/token.h"
 #include "server/console/verify.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
@@ -35,6 +37,8 @@ struct ServeOptions {
     bool start = false;
     std::string data_folder;
     bool keep_nothing = false;
+    bool token_needed = false;
+    access::TlsFiles tls;
     std::string durability = "full";
     std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
     std::uint64_t keep_every = storage::RunFile::Options{}.keep_every;
@@ -46,20 +50,25 @@ int fail(const std::string& why) {
     return 1;
 }
 
-/// Where runs are kept if nobody says where: the XDG Base Directory Specification's place for what a user's programs
-/// remember. Nothing if the environment names no such place.
-std::optional<std::string> state_folder() {
+/// Where runs and tokens are kept: in the folder that was asked for; if none was, in the XDG Base Directory
+/// Specification's place for what a user's programs remember. Empty if the environment names no such place.
+std::string folder_of_runs(const std::string& asked) {
+    if (!asked.empty())
+        return asked;
     // A path that is not absolute is to be ignored.
     if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state == '/')
         return std::string{state} + "/evod";
     if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
         return std::string{home} + "/.local/state/evod";
-    return std::nullopt;
+    return {};
 }
+
+const std::string no_folder = "neither XDG_STATE_HOME nor HOME says where runs are kept: name a folder with --data";
 
 /// Serves until it is told to end.
 int serve(network::ServerOptions options) {
     const std::string folder = options.data_folder, first_world = options.first_world.name;
+    const bool encrypted = !options.tls.certificate.empty();
     const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
     const auto server = network::Server::open(std::move(options));
     if (!server)
@@ -67,8 +76,8 @@ int serve(network::ServerOptions options) {
     if (!folder.empty())
         spdlog::info("runs are kept in {}", folder);
     const auto endpoint = (*server)->endpoint();
-    if (!endpoint.address().is_loopback())
-        spdlog::warn("anyone who can reach {} can command this server: there is no access control yet",
+    if (!endpoint.address().is_loopback() && !encrypted)
+        spdlog::warn("without TLS, whoever is on the way to {} can read tokens and take them: see --tls-cert",
                      endpoint.address().to_string());
     const auto seed = (*server)->first_seed();
     spdlog::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
@@ -76,6 +85,17 @@ int serve(network::ServerOptions options) {
     (*server)->run();
     spdlog::info("stopped");
     return 0;
+}
+
+/// Of who may come in, and how: for every way to serve.
+void add_access_options(CLI::App& app, ServeOptions& options) {
+    app.add_flag("--require-token", options.token_needed,
+                 "Let nobody in without a token, be it from this machine; from others it is always needed");
+    app.add_option("--tls-cert", options.tls.certificate,
+                   "PEM file with the certificate: TLS only; see evod certificate");
+    app.add_option("--tls-key", options.tls.key, "PEM file with its key");
+    app.add_option("--tls-client-ca", options.tls.client_ca,
+                   "PEM file: clients must show a certificate that one of these vouches for");
 }
 
 /// "max" or a factor of real time; nullopt: neither.
@@ -114,19 +134,19 @@ int serve(const ServeOptions& options) {
         return fail("--population: " + to_text(population.error()));
     create.first_population = *std::move(population);
 
-    std::string data_folder = options.data_folder;
-    if (data_folder.empty() && !options.keep_nothing) {
-        const auto folder = state_folder();
-        if (!folder)
-            return fail("neither XDG_STATE_HOME nor HOME says where runs could be kept: name a folder with --data, or "
-                        "give --keep-nothing");
-        data_folder = *folder;
-    }
+    std::string data_folder = folder_of_runs(options.data_folder);
+    if (options.keep_nothing)
+        data_folder.clear();
+    else if (data_folder.empty())
+        return fail(no_folder + ", or give --keep-nothing");
     network::ServerOptions server_options{
         .bind_address = options.bind_address,
         .port = options.port,
         .threads = options.threads,
         .data_folder = data_folder,
+        .token_folder = folder_of_runs(options.data_folder),
+        .token_needed = options.token_needed,
+        .tls = options.tls,
         .run_files = {.durability =
                           options.durability == "relaxed" ? storage::Durability::Relaxed : storage::Durability::Full,
                       .vfs = nullptr,
@@ -149,6 +169,9 @@ int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
                   .port = options.port,
                   .threads = options.threads,
                   .data_folder = {},
+                  .token_folder = folder_of_runs(options.data_folder),
+                  .token_needed = options.token_needed,
+                  .tls = options.tls,
                   .run_files = {},
                   .replay = std::move(run),
                   .first_world = {},
@@ -182,6 +205,7 @@ int main(int argument_count, char** arguments) {
     CLI::Option* data = app.add_option("--data", options.data_folder,
                                        "Folder where runs are kept, a file each; worlds found there go on. Otherwise "
                                        "$XDG_STATE_HOME/evod, or ~/.local/state/evod");
+    add_access_options(app, options);
     app.add_flag("--keep-nothing", options.keep_nothing, "Keep no files: runs end with the server")->excludes(data);
     app.add_option(
            "--durability", options.durability,
@@ -248,6 +272,8 @@ int main(int argument_count, char** arguments) {
     replay_run.add_option("--threads", options.threads, "Threads that simulate")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
+    replay_run.add_option("--data", options.data_folder, "Folder whose tokens let others in");
+    add_access_options(replay_run, options);
     replay_run.footer("Watch it with evoview, go elsewhere in it with evoctl seek, run and pause it as any world.");
 
     console::VerifyOptions verify_options;
@@ -289,6 +315,39 @@ int main(int argument_count, char** arguments) {
         ->excludes(what)
         ->excludes(output);
 
+    std::string token_folder, token_name, token_role;
+    CLI::App& token = *app.add_subcommand("token", "Who may come in from other machines, and as what");
+    token.require_subcommand(1);
+    const auto add_token_folder = [&](CLI::App& command) {
+        command.add_option("--data", token_folder,
+                           "Folder of the server's runs; otherwise where it keeps them by itself");
+    };
+    CLI::App& token_add = *token.add_subcommand("add", "Make a token; it is told once, on standard output");
+    token_add.add_option("name", token_name, "Whose, 1 to 64 of a-z A-Z 0-9 _ - .")->required();
+    token_add
+        .add_option("--role", token_role,
+                    "viewer: looks; controller: and runs worlds and sets parameters; admin: and makes and deletes "
+                    "worlds, and shuts the server down")
+        ->required()
+        ->check(CLI::IsMember({"viewer", "controller", "admin"}));
+    add_token_folder(token_add);
+    CLI::App& token_list = *token.add_subcommand("list", "Names and roles of all tokens");
+    add_token_folder(token_list);
+    CLI::App& token_revoke = *token.add_subcommand("revoke", "Make a token useless; whoever is in with it is put out");
+    token_revoke.add_option("name", token_name, "Whose")->required();
+    add_token_folder(token_revoke);
+
+    std::vector<std::string> certificate_hosts;
+    std::string certificate_folder = ".";
+    CLI::App& certificate = *app.add_subcommand("certificate", "Make a key and a certificate of its own for TLS");
+    certificate
+        .add_option("host", certificate_hosts, "Names and IP addresses under which clients will reach the server")
+        ->required();
+    certificate.add_option("--folder", certificate_folder, "Where evod.key and evod.crt are made")
+        ->capture_default_str();
+    certificate.footer("Then: evod --tls-cert evod.crt --tls-key evod.key, and evoctl --ca evod.crt. Good for " +
+                       std::to_string(access::certificate_days) + " days.");
+
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
 
@@ -303,12 +362,26 @@ int main(int argument_count, char** arguments) {
     if (check.parsed())
         return console::check(checked_file);
     if (fork.parsed()) {
+        fork_options.data_folder = folder_of_runs(fork_options.data_folder);
         if (fork_options.data_folder.empty())
-            fork_options.data_folder = state_folder().value_or("");
-        if (fork_options.data_folder.empty())
-            return fail("neither XDG_STATE_HOME nor HOME says where runs are kept: name a folder with --data");
+            return fail(no_folder);
         fork_options.run_id = network::draw_run_id();
         return console::fork(fork_options);
+    }
+    if (token.parsed()) {
+        token_folder = folder_of_runs(token_folder.empty() ? options.data_folder : token_folder);
+        if (token_folder.empty())
+            return fail(no_folder);
+        if (token_list.parsed())
+            return console::list_tokens(token_folder);
+        if (token_revoke.parsed())
+            return console::revoke_token(token_folder, token_name);
+        return console::add_token(token_folder, token_name, *access::role_named(token_role));
+    }
+    if (certificate.parsed()) {
+        if (const auto made = access::make_certificate(certificate_hosts, certificate_folder); !made)
+            return fail("certificate: " + to_text(made.error()));
+        return 0;
     }
     if (verify.parsed())
         return console::verify(verify_options);

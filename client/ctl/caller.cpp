@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <iostream>
+#include <termios.h>
 #include <unistd.h>
 
 namespace evod::ctl {
@@ -20,26 +22,53 @@ link::Endpoint endpoint_of(const std::string& text) {
     return *std::move(endpoint);
 }
 
+/// Typed by a person, and not shown; empty where nobody is there to ask.
+std::string prompt_for_token(const std::string& server) {
+    termios as_it_was{};
+    if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &as_it_was) != 0) {
+        return {};
+    }
+    termios silent = as_it_was;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    std::cerr << "token for " << server << ": " << std::flush;
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
+    std::string token;
+    std::cin >> token;
+    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &as_it_was);
+    std::cerr << '\n';
+    return token;
+}
+
 std::atomic<bool> interrupt_seen = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write it");
 
 } // namespace
 
-Caller::Caller(const Common& common)
-    : timeout_{common.timeout()}
-    , connection_{{.server = endpoint_of(common.server),
-                   .client_name = "evoctl",
-                   .client_version = EVOD_VERSION,
-                   .connect_timeout = common.timeout()}} {
-    auto welcome = connection_.wait_connected(timeout_ + std::chrono::seconds{1});
+Caller::Caller(const Common& common) : timeout_{common.timeout()} {
+    link::Options options{.server = endpoint_of(common.server),
+                          .client_name = "evoctl",
+                          .client_version = EVOD_VERSION,
+                          .connect_timeout = common.timeout()};
+    if (const auto known = link::apply(common.credentials, options); !known) {
+        throw Stop{ExitCode::Usage, known.error().what};
+    }
+    connection_ = std::make_unique<link::Connection>(options);
+    auto welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});
+    if (!welcome && welcome.error().kind == link::Error::Kind::TokenNeeded && options.token.empty() &&
+        common.may_prompt) {
+        options.token = prompt_for_token(common.server);
+        connection_ = std::make_unique<link::Connection>(options);
+        welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});
+    }
     if (!welcome) {
-        throw Stop{ExitCode::NoConnection, welcome.error().what};
+        const bool stranger = welcome.error().kind == link::Error::Kind::TokenNeeded;
+        throw Stop{stranger ? ExitCode::TokenNeeded : ExitCode::NoConnection, welcome.error().what};
     }
     welcome_ = *std::move(welcome);
 }
 
 v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {
-    auto response = connection_.request(std::move(request), timeout.value_or(timeout_));
+    auto response = connection_->request(std::move(request), timeout.value_or(timeout_));
     if (!response) {
         const bool usage = response.error().kind == link::Error::Kind::Usage;
         throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection, response.error().what};

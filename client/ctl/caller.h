@@ -4,11 +4,13 @@
 #include "client/ctl/registry.h"
 #include "client/ctl/stop.h"
 #include "client/link/connection.h"
+#include "client/link/credentials.h"
 
 #include <google/protobuf/message.h>
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -21,9 +23,11 @@ namespace evod::ctl {
 /// What every subcommand can be given.
 struct Common {
     std::string server = "localhost";
+    link::Credentials credentials;
     std::string world; // empty: the server's only one, or `default`
     double timeout_s = 10;
     bool json = false;
+    bool may_prompt = true; // for a token, whoever sits at the terminal
 
     std::chrono::milliseconds timeout() const {
         return std::chrono::milliseconds{static_cast<std::int64_t>(timeout_s * 1000)};
@@ -48,13 +52,13 @@ class Caller {
     /// How it stands with the server's disk, as it is now.
     v1::Storage storage();
 
-    link::Connection& connection() { return connection_; }
+    link::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
     std::chrono::milliseconds timeout() const { return timeout_; }
 
   private:
     std::chrono::milliseconds timeout_;
-    link::Connection connection_;
+    std::unique_ptr<link::Connection> connection_;
     v1::Welcome welcome_;
 };
 

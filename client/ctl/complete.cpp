@@ -48,6 +48,7 @@ class Candidates {
 Common common_of(const std::vector<std::string>& words) {
     Common common;
     common.timeout_s = 1;
+    common.may_prompt = false;
     if (const char* server = std::getenv("EVOD_SERVER")) {
         common.server = server;
     }

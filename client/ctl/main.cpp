@@ -22,7 +22,8 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
     }
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (word == "--server" || word == "--world" || word == "--timeout") {
+        if (word == "--server" || word == "--world" || word == "--timeout" || word == "--token-file" ||
+            word == "--ca" || word == "--cert" || word == "--key") {
             ++i; // its value
         } else if (!word.starts_with('-')) {
             if (std::ranges::find(names, word) == names.end()) {
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
     CLI::App app{"evoctl: one command a call, to a server of evod", "evoctl"};
     app.set_version_flag("--version", "evoctl " EVOD_VERSION);
     app.add_option("--server", common.server, "HOST:PORT of the server")->envname("EVOD_SERVER")->capture_default_str();
+    add_options(app, common.credentials);
     app.add_option("--world", common.world, "World; without it the only one, or 'default'")->envname("EVOD_WORLD");
     app.add_option("--timeout", common.timeout_s, "Seconds to wait for an answer")
         ->capture_default_str()
@@ -55,7 +57,8 @@ int main(int argc, char** argv) {
                "  evoctl set selection=tournament       while it runs\n"
                "  evoctl --server lab:7744 watch        live, from another machine\n"
                "\n"
-               "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer");
+               "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer,\n"
+               "4 the server wants a token that it knows");
     add_run_commands(app, common, selected);
     add_parameter_commands(app, common, selected);
     add_look_commands(app, common, selected);

@@ -167,6 +167,14 @@ void seek(const Common& common, const SeekOptions& options) {
     print_world(common, caller.call(std::move(request)));
 }
 
+void shut_down(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_shut_down();
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response, [&] { return std::string{"the server shuts down\n"}; });
+}
+
 // ---- running ---------------------------------------------------------------------------------------------------
 
 /// Says on stderr how it goes: one line that is written over for people, a line per generation for files.
@@ -412,6 +420,9 @@ void add_run_commands(CLI::App& app, const Common& common, Selected& selected) {
         selected = [&, generations, run_wait] { run(common, *generations, *run_wait); };
     });
 
+    app.add_subcommand("shutdown", "End the server, as SIGTERM does")->group("Worlds")->callback([&] {
+        selected = [&] { shut_down(common); };
+    });
     app.add_subcommand("pause", "Stop a world where it is")->group(group)->callback([&] {
         selected = [&] { pause(common); };
     });

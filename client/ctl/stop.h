@@ -10,6 +10,7 @@ enum class ExitCode {
     Refused = 1,      // by the server; or what was waited for did not come about
     Usage = 2,        // this call makes no sense
     NoConnection = 3, // no server, or no answer
+    TokenNeeded = 4,  // the server is there, and wants a token that it knows
 };
 
 struct Stop {

@@ -226,6 +226,7 @@ class Connection::Io {
         share([&] {
             status_.state = again ? State::Lost : State::Failed;
             status_.reason = ending.reason;
+            status_.token_needed = ending.token_needed;
             answers_.clear();
         });
         std::vector<Handler> given_up;
@@ -490,7 +491,8 @@ Result<evod::v1::Welcome> Connection::wait_connected(std::chrono::milliseconds t
         return Error{.kind = Error::Kind::Timeout,
                      .what = "not connected within " + std::to_string(timeout.count()) + " ms"};
     default:
-        return Error{.kind = Error::Kind::NoConnection, .what = status.reason};
+        return Error{.kind = status.token_needed ? Error::Kind::TokenNeeded : Error::Kind::NoConnection,
+                     .what = status.reason};
     }
 }
 

@@ -41,6 +41,7 @@ struct Error {
     enum class Kind {
         Usage,        // what was asked cannot be sent: a malformed address, a request over the server's limit
         NoConnection, // no server there, or it does not speak with us
+        TokenNeeded,  // it does, with whoever has a token it knows
         Timeout,      // no answer in time; a command may have been done all the same
         Closed,       // this Connection was destroyed
     };
@@ -85,6 +86,13 @@ std::string to_text(const evod::v1::Status& status);
 
 struct Options {
     Endpoint server{};
+    std::string token = ""; // empty: none
+    struct Tls {
+        std::string ca = "";          // PEM file of who vouches for the server; empty: those that the system trusts
+        std::string certificate = ""; // PEM file of our own, for servers that ask for one
+        std::string key = "";         // PEM file
+    };
+    std::optional<Tls> tls = {};             // nullopt: in the clear
     std::string client_name = "evod client"; // at most 64 bytes
     std::string client_version = "";
     bool reconnect = true;
@@ -107,6 +115,7 @@ const char* to_text(State state);
 struct ConnectionStatus {
     State state = State::Connecting;
     std::string reason;                       // Lost, Failed and Connecting after a loss: why, one sentence; else empty
+    bool token_needed = false;                // Failed: the server wants a token, or another one
     std::optional<evod::v1::Welcome> welcome; // of the last server we were connected with
     std::uint64_t connected_count = 0;        // times that Connected was reached
     std::uint64_t damaged_picture_count = 0;  // pictures thrown away because they could not be decoded

@@ -1,6 +1,8 @@
 #include "client/link/session.h"
 
 #include <boost/asio/connect.hpp>
+#include <boost/asio/ssl/error.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/write.hpp>
 
 #include <netinet/tcp.h>
@@ -36,7 +38,8 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
         error == asio::error::no_data) {
         return "the host " + server.host + " is not known";
     }
-    if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe) {
+    if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe ||
+        error == asio::ssl::error::stream_truncated) {
         return "the server at " + to_text(server) + " closed the connection";
     }
     return "the connection with " + to_text(server) + " failed: " + error.message();
@@ -83,9 +86,68 @@ void Session::connect(const asio::ip::tcp::resolver::results_type& addresses) {
                                 return;
                             }
                             notice_silence(self->socket_);
-                            self->say_hello();
-                            self->read();
+                            if (self->options_.tls) {
+                                self->shake_hands();
+                            } else {
+                                self->begin();
+                            }
                         });
+}
+
+void Session::shake_hands() {
+    namespace ssl = asio::ssl;
+    const Options::Tls& files = *options_.tls;
+    tls_context_.emplace(ssl::context::tls_client);
+    SSL_CTX_set_min_proto_version(tls_context_->native_handle(), TLS1_2_VERSION);
+    tls_context_->set_verify_mode(ssl::verify_peer);
+    error_code error;
+    const auto fails = [&](const std::string& file) {
+        if (error) {
+            end({.reason = file + " cannot be used for TLS: " + error.message(), .final = true});
+        }
+        return error.failed();
+    };
+    if (files.ca.empty()) {
+        tls_context_->set_default_verify_paths(error);
+    } else {
+        tls_context_->load_verify_file(files.ca, error);
+    }
+    if (fails(files.ca)) {
+        return;
+    }
+    if (!files.certificate.empty()) {
+        tls_context_->use_certificate_chain_file(files.certificate, error);
+        if (fails(files.certificate)) {
+            return;
+        }
+        tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, ssl::context::pem, error);
+        if (fails(files.key.empty() ? files.certificate : files.key)) {
+            return;
+        }
+    }
+    tls_.emplace(socket_, *tls_context_);
+    tls_->set_verify_callback(ssl::host_name_verification{options_.server.host});
+    SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
+    tls_->async_handshake(ssl::stream_base::client, [self = shared_from_this()](const error_code& failed) {
+        if (self->ended_) {
+            return;
+        }
+        if (failed) {
+            const long verdict = SSL_get_verify_result(self->tls_->native_handle());
+            const std::string why = verdict != X509_V_OK ? std::string{"its certificate is not believed: "} +
+                                                               X509_verify_cert_error_string(verdict)
+                                                         : failed.message();
+            self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
+                       .final = verdict != X509_V_OK});
+            return;
+        }
+        self->begin();
+    });
+}
+
+void Session::begin() {
+    say_hello();
+    read();
 }
 
 void Session::say_hello() {
@@ -94,29 +156,34 @@ void Session::say_hello() {
     hello.set_protocol_version(wire::protocol_version);
     hello.set_client_name(options_.client_name);
     hello.set_client_version(options_.client_version);
+    hello.set_token(options_.token);
     to_send_.push_back(wire::encode_frame(wire::Channel::Control, message));
     write();
     expect_within(options_.connect_timeout, "no welcome from");
 }
 
 void Session::read() {
-    socket_.async_read_some(
-        asio::buffer(received_), [self = shared_from_this()](const error_code& error, std::size_t length) {
-            if (self->ended_) {
-                return;
-            }
-            if (error) {
-                self->end({.reason = self->going_away_
-                                         ? "the server at " + to_text(self->options_.server) + " was shut down"
-                                         : reason_of(error, self->options_.server)});
-                return;
-            }
-            self->reader_.feed(std::span{self->received_}.first(length));
-            self->take_frames();
-            if (!self->ended_) {
-                self->read();
-            }
-        });
+    auto done = [self = shared_from_this()](const error_code& error, std::size_t length) {
+        if (self->ended_) {
+            return;
+        }
+        if (error) {
+            self->end({.reason = self->going_away_
+                                     ? "the server at " + to_text(self->options_.server) + " was shut down"
+                                     : reason_of(error, self->options_.server)});
+            return;
+        }
+        self->reader_.feed(std::span{self->received_}.first(length));
+        self->take_frames();
+        if (!self->ended_) {
+            self->read();
+        }
+    };
+    if (tls_) {
+        tls_->async_read_some(asio::buffer(received_), std::move(done));
+    } else {
+        socket_.async_read_some(asio::buffer(received_), std::move(done));
+    }
 }
 
 void Session::take_frames() {
@@ -163,7 +230,8 @@ void Session::take_first(const evod::v1::ServerMessage& message) {
         const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
         end({.reason =
                  "the server at " + to_text(options_.server) + " refused us: " + to_text(message.response().status()),
-             .final = !later});
+             .final = !later,
+             .token_needed = code == evod::v1::CODE_UNAUTHENTICATED});
     } else if (!message.has_welcome()) {
         end({.reason = to_text(options_.server) + " is not an evod server: it did not begin with a welcome",
              .final = true});
@@ -187,20 +255,21 @@ void Session::send(std::string frame) {
 }
 
 void Session::write() {
-    asio::async_write(socket_, asio::buffer(to_send_.front()),
-                      [self = shared_from_this()](const error_code& error, std::size_t) {
-                          if (self->ended_) {
-                              return;
-                          }
-                          if (error) {
-                              // What the server said before it closed may still be on its way: read() ends the session.
-                              return;
-                          }
-                          self->to_send_.pop_front();
-                          if (!self->to_send_.empty()) {
-                              self->write();
-                          }
-                      });
+    auto done = [self = shared_from_this()](const error_code& error, std::size_t) {
+        // After an error: what the server said before it closed may still be on its way, and read() ends the session.
+        if (self->ended_ || error) {
+            return;
+        }
+        self->to_send_.pop_front();
+        if (!self->to_send_.empty()) {
+            self->write();
+        }
+    };
+    if (tls_) {
+        asio::async_write(*tls_, asio::buffer(to_send_.front()), std::move(done));
+    } else {
+        asio::async_write(socket_, asio::buffer(to_send_.front()), std::move(done));
+    }
 }
 
 void Session::expect_within(std::chrono::milliseconds timeout, std::string what) {

@@ -10,12 +10,15 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <array>
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +28,8 @@ class Session : public std::enable_shared_from_this<Session> {
   public:
     struct Ending {
         std::string reason;
-        bool final = false; // trying again is of no use
+        bool final = false;        // trying again is of no use
+        bool token_needed = false; // without another token
     };
     struct Handlers {
         std::function<void(evod::v1::Welcome)> welcomed; // once, before any of the next two
@@ -45,6 +49,9 @@ class Session : public std::enable_shared_from_this<Session> {
   private:
     void look_up();
     void connect(const boost::asio::ip::tcp::resolver::results_type& addresses);
+    /// Only if there is to be TLS.
+    void shake_hands();
+    void begin();
     void say_hello();
     void read();
     void take_frames();
@@ -58,6 +65,8 @@ class Session : public std::enable_shared_from_this<Session> {
     Handlers handlers_;
     boost::asio::ip::tcp::resolver resolver_;
     boost::asio::ip::tcp::socket socket_;
+    std::optional<boost::asio::ssl::context> tls_context_;
+    std::optional<boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>> tls_; // nullopt: in the clear
     boost::asio::steady_timer deadline_;
     wire::FrameReader reader_{wire::client_limits};
     std::vector<std::byte> received_;

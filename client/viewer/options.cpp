@@ -1,5 +1,7 @@
 #include "client/viewer/options.h"
 
+#include "client/link/credentials.h"
+
 #include <CLI/CLI.hpp>
 
 #include <charconv>
@@ -49,6 +51,8 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--server", server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
         ->envname("EVOD_SERVER")
         ->capture_default_str();
+    link::Credentials credentials;
+    add_options(app, credentials);
     app.add_option("--world", options.world, "the world to look at; else the only one, or \"default\"")
         ->envname("EVOD_WORLD");
     app.add_option("--island", options.island, "its island, from 0")->capture_default_str();
@@ -62,9 +66,12 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         ->check(CLI::Range(0.0, 1e6));
     app.final_callback([&] {
         if (const auto endpoint = link::parse_endpoint(server)) {
-            options.server = *endpoint;
+            options.connection.server = *endpoint;
         } else {
             throw CLI::ValidationError{"--server", endpoint.error().what};
+        }
+        if (const auto known = link::apply(credentials, options.connection); !known) {
+            throw CLI::ValidationError{known.error().what};
         }
         if (const std::string error = parse_size(size, options.width_pixels, options.height_pixels); !error.empty()) {
             throw CLI::ValidationError{"--size", error};

@@ -11,8 +11,8 @@
 namespace evod::viewer {
 
 struct Options {
-    link::Endpoint server;
-    std::string world; // empty: the server's choice
+    link::Options connection; // to where, as whom
+    std::string world;        // empty: the server's choice
     std::uint32_t island = 0;
     unsigned width_pixels = 1280, height_pixels = 720;
 

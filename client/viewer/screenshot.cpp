@@ -60,7 +60,8 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};
     Stage stage;
-    Watch watch{{.server = options.server, .world = options.world, .island = options.island, .rate_hz = rate_hz}};
+    Watch watch{
+        {.connection = options.connection, .world = options.world, .island = options.island, .rate_hz = rate_hz}};
     bool told = false;
     const auto here = [&] {
         watch.update(Clock::now());

@@ -6,10 +6,17 @@
 #include <utility>
 
 namespace evod::viewer {
+namespace {
 
-Watch::Watch(Wanted wanted)
-    : wanted_{std::move(wanted)}
-    , connection_{{.server = wanted_.server, .client_name = "evoview", .client_version = EVOD_VERSION}} {
+link::Options as_evoview(link::Options options) {
+    options.client_name = "evoview";
+    options.client_version = EVOD_VERSION;
+    return options;
+}
+
+} // namespace
+
+Watch::Watch(Wanted wanted) : wanted_{std::move(wanted)}, connection_{as_evoview(wanted_.connection)} {
     events_ = connection_.subscribe(evod::v1::SubscribeEvents{}); // of all worlds: one that is missing may be made
     subscribe();
 }

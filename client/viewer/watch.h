@@ -24,8 +24,8 @@ namespace evod::viewer {
 class Watch {
   public:
     struct Wanted {
-        link::Endpoint server;
-        std::string world; // empty: the server's choice
+        link::Options connection; // to where, as whom
+        std::string world;        // empty: the server's choice
         std::uint32_t island = 0;
         double rate_hz = 30; // of pictures
     };
@@ -55,7 +55,7 @@ class Watch {
     const evod::v1::GenerationStatistics* last_generation() const;
     const std::string& world() const { return wanted_.world; } // empty: the server's choice
     std::uint32_t island() const { return wanted_.island; }
-    const link::Endpoint& server() const { return wanted_.server; }
+    const link::Endpoint& server() const { return wanted_.connection.server; }
     /// Whether the server has answered everything, the questions of the beginning among it.
     bool all_answered() const { return connected_count_ > 0 && unanswered_.empty(); }
     link::ConnectionStatus connection_status() const { return connection_.status(); }

@@ -21,7 +21,7 @@ sf::ContextSettings context_settings() {
 Window::Window(const Options& options)
     : window_{sf::VideoMode{options.width_pixels, options.height_pixels}, "evoview", sf::Style::Default,
               context_settings()}
-    , watch_{{.server = options.server, .world = options.world, .island = options.island}} {
+    , watch_{{.connection = options.connection, .world = options.world, .island = options.island}} {
     window_.setVerticalSyncEnabled(true);
 }
 

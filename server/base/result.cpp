@@ -12,6 +12,8 @@ const char* name_of(RefusalCode code) {
         return "NOT_FOUND";
     case RefusalCode::AlreadyExists:
         return "ALREADY_EXISTS";
+    case RefusalCode::PermissionDenied:
+        return "PERMISSION_DENIED";
     case RefusalCode::ResourceExhausted:
         return "RESOURCE_EXHAUSTED";
     case RefusalCode::FailedPrecondition:
@@ -22,6 +24,8 @@ const char* name_of(RefusalCode code) {
         return "UNAVAILABLE";
     case RefusalCode::DataLoss:
         return "DATA_LOSS";
+    case RefusalCode::Unauthenticated:
+        return "UNAUTHENTICATED";
     }
     return "UNKNOWN";
 }

@@ -1,5 +1,6 @@
 #include "server/network/dispatcher.h"
 
+#include "server/access/role.h"
 #include "server/network/description.h"
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
@@ -9,6 +10,8 @@
 #include "server/protocol/queries.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
+
+#include <spdlog/spdlog.h>
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/coded_stream.h>
@@ -102,6 +105,28 @@ tables::WantedTable wanted(const v1::ExportRun& request) {
     return to;
 }
 
+/// Whether the world that a request names is one that its session has opened to look at the past.
+bool is_of_own_past(const Session& session, const v1::Request& request) {
+    switch (request.request_case()) {
+    case v1::Request::kRun:
+        return session.pasts.contains(request.run().world());
+    case v1::Request::kRunUntilTick:
+        return session.pasts.contains(request.run_until_tick().world());
+    case v1::Request::kPause:
+        return session.pasts.contains(request.pause().world());
+    case v1::Request::kResume:
+        return session.pasts.contains(request.resume().world());
+    case v1::Request::kSetSpeed:
+        return session.pasts.contains(request.set_speed().world());
+    case v1::Request::kSeek:
+        return session.pasts.contains(request.seek().world());
+    case v1::Request::kClosePast:
+        return session.pasts.contains(request.close_past().world());
+    default:
+        return false;
+    }
+}
+
 /// Puts a refusal in the place of an answer.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
@@ -110,11 +135,13 @@ void refuse(v1::Response& response, const base::Refusal& refused) {
 
 } // namespace
 
-Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams)
+Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
+                       std::function<void()> shut_down)
     : mailbox_{mailbox}
     , outbox_{outbox}
     , demand_{demand}
     , streams_{streams}
+    , shut_down_{std::move(shut_down)}
     , exports_{outbox}
     , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max}} {}
 
@@ -127,6 +154,11 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     const auto kind = protocol::kind_of(request);
     if (kind == protocol::RequestKind::Unknown)
         return refuse_it(refusal(base::RefusalCode::Unimplemented, "this server does not know the request"));
+    if (const auto needed = access::role_needed(request.request_case(), is_of_own_past(session, request));
+        session.visitor().role < needed)
+        return refuse_it(refusal(base::RefusalCode::PermissionDenied,
+                                 name_of(request) + " needs the role " + access::name_of(needed) +
+                                     "; this session has the role " + access::name_of(session.visitor().role)));
     if (request.request_id() == 0)
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
     if (!session.admit_request())
@@ -144,6 +176,10 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         return past(session, request);
     case protocol::RequestKind::Export:
         return export_text(session, request);
+    case protocol::RequestKind::Server:
+        spdlog::info("session {}: {} shuts the server down", session.number(), session.by());
+        session.answer(encode_response(response_to(request.request_id())));
+        return shut_down_();
     case protocol::RequestKind::Unknown:
         break;
     }
@@ -357,17 +393,23 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty())
         return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
-    auto reply = [this, id, name = name_of(request), shows = !request.has_close_past(),
+    auto reply = [this, id, name = name_of(request), opens = request.has_open_past(), closes = request.has_close_past(),
                   weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
                                                    const base::Result<std::string>& world) {
         v1::Response response = response_to(id);
         if (!world)
             refuse(response, protocol::with_paths(world.error(), name));
-        else if (const auto entry = laboratory.find(*world); entry && shows)
+        else if (const auto entry = laboratory.find(*world); entry && !closes)
             *response.mutable_world() = protocol::to_proto(**entry);
-        outbox_.answer([weak, response = std::move(response)]() mutable {
-            if (const auto asking = weak.lock())
-                asking->answer(encode_response(std::move(response)));
+        outbox_.answer([weak, opens, closes, world, response = std::move(response)]() mutable {
+            const auto asking = weak.lock();
+            if (!asking)
+                return;
+            if (world && opens)
+                asking->pasts.insert(*world);
+            if (world && closes)
+                asking->pasts.erase(*world);
+            asking->answer(encode_response(std::move(response)));
         });
     };
     if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply))))

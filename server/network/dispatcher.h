@@ -18,7 +18,9 @@ namespace evod::network {
 class Dispatcher {
   public:
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
-    Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams);
+    /// shut_down  ends the server.
+    Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
+               std::function<void()> shut_down);
 
     void handle(Session& session, v1::Request request);
 
@@ -49,6 +51,7 @@ class Dispatcher {
     runtime::Outbox& outbox_;
     runtime::Demand& demand_;
     Streams& streams_;
+    std::function<void()> shut_down_;
     Exports exports_;
     Retries retries_;
     bool going_away_ = false;

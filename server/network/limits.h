@@ -35,8 +35,9 @@ constexpr int unsent_bytes_max = 128 << 10; // in the kernel, so that a slow vie
 // Of all retries together: the answers of the longest unused keys go first.
 constexpr std::size_t retry_bytes_max = 64 << 20;
 
-constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
-constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
+constexpr std::chrono::milliseconds tokens_look_every{500}; // for a token file that has changed
+constexpr std::chrono::seconds farewell_timeout{1};         // for the last bytes of a session that ends
+constexpr std::chrono::milliseconds accept_pause{100};      // when the system has no file descriptors left
 
 /// The table as clients read it.
 inline v1::Limits limits_message() {

@@ -31,6 +31,18 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     } else if (auto opened = server->open_archive(); !opened) {
         return opened.error();
     }
+    auto tls = access::server_context(server->options_.tls);
+    if (!tls)
+        return tls.error();
+    server->tls_ = *std::move(tls);
+    server->host_.tls = server->tls_.get();
+    boost::system::error_code no_address; // is told by the listener
+    const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
+    auto gate = access::Gate::open(server->options_.token_folder,
+                                   server->options_.token_needed || (!no_address && !address.is_loopback()));
+    if (!gate)
+        return gate.error();
+    server->gate_ = *std::move(gate);
     auto listener = Listener::open(server->context_, server->options_.bind_address, server->options_.port);
     if (!listener)
         return listener.error();
@@ -47,9 +59,12 @@ Server::Server(ServerOptions options)
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
-    , dispatcher_{mailbox_, outbox_, demand_, streams_} {
+    , dispatcher_{mailbox_, outbox_, demand_, streams_, [this] { stop(); }} {
     host_.instance_id = to_text(draw_run_id());
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
+    host_.admit = [this](const std::string& token, const std::string& address) {
+        return gate_->admit(token, address, access::Gate::Clock::now());
+    };
     host_.ended = [this](Session& session) {
         --connections_;
         const bool watched = !session.snapshots.empty() || !session.events.empty();
@@ -199,6 +214,7 @@ void Server::run() {
         spdlog::info("{}: going away", signal == SIGINT ? "SIGINT" : "SIGTERM");
         go_away();
     });
+    watch_tokens();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
                    asio::detached);
     context_.run();
@@ -206,6 +222,26 @@ void Server::run() {
 
 void Server::stop() {
     asio::post(context_, [this] { go_away(); });
+}
+
+void Server::watch_tokens() {
+    tokens_timer_.expires_after(tokens_look_every);
+    tokens_timer_.async_wait([this](boost::system::error_code error) {
+        if (error)
+            return;
+        if (gate_->refresh()) {
+            if (gate_->trouble())
+                spdlog::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
+            // Those whose end comes now go from the table: it must not be walked meanwhile.
+            const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
+            for (const auto& [number, session] : sessions)
+                if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
+                    session->fail({.code = base::RefusalCode::Unauthenticated,
+                                   .message = "the token has been revoked",
+                                   .violations = {}});
+        }
+        watch_tokens();
+    });
 }
 
 void Server::accepted(tcp::socket socket) {
@@ -238,6 +274,7 @@ void Server::go_away() {
     if (std::exchange(going_away_, true))
         return;
     signals_.cancel();
+    tokens_timer_.cancel();
     listener_->close();
     dispatcher_.refuse_all();
     // What was admitted is still answered.

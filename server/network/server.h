@@ -3,6 +3,7 @@
 // Threads      run() is the network thread; the sessions, streams and retries belong to it.
 #pragma once
 
+#include "server/access/tls.h"
 #include "server/network/dispatcher.h"
 #include "server/network/listener.h"
 #include "server/runtime/simulation_thread.h"
@@ -10,6 +11,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include <memory>
 #include <optional>
@@ -23,6 +25,9 @@ struct ServerOptions {
     std::uint16_t port = wire::default_port; // 0: any that is free
     std::size_t threads = 1;                 // of the worker pool
     std::string data_folder;                 // where runs are kept; empty: nowhere
+    std::string token_folder;                // where the token file is, or will be; empty: nowhere
+    bool token_needed = false;               // on the loopback interface too; on others it always is
+    access::TlsFiles tls;
     storage::RunFile::Options run_files;
     struct Replay {
         std::string path;
@@ -63,6 +68,7 @@ class Server {
     bool creates_first_world() const;
     void begin_first_world();
     void command_of_own(v1::Request request);
+    void watch_tokens();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
     void go_away();
@@ -71,6 +77,10 @@ class Server {
     boost::asio::io_context context_{1};
     boost::asio::signal_set signals_{context_};
     std::optional<Listener> listener_;
+
+    std::unique_ptr<asio::ssl::context> tls_; // nullptr: in the clear
+    std::optional<access::Gate> gate_;
+    asio::steady_timer tokens_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<storage::Archive> archive_;         // nullptr: nothing is kept

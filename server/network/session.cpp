@@ -9,11 +9,11 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <spdlog/spdlog.h>
 
 #include <netinet/tcp.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -29,12 +29,36 @@ base::Refusal refusal(base::RefusalCode code, std::string message) {
     return {.code = code, .message = std::move(message), .violations = {}};
 }
 
-std::string address_of(const tcp::socket& socket) {
-    boost::system::error_code error;
-    const auto endpoint = socket.remote_endpoint(error);
-    if (error)
-        return "nobody";
+tcp::endpoint peer_of(const tcp::socket& socket) {
+    boost::system::error_code ignored; // one who has gone already is at no address
+    return socket.remote_endpoint(ignored);
+}
+
+std::string to_text(const tcp::endpoint& endpoint) {
     return endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+}
+
+/// As far as an address tells people apart: of IPv6, whoever has one has a whole /64.
+std::string neighbourhood(const asio::ip::address& address) {
+    if (!address.is_v6())
+        return address.to_string();
+    auto bytes = address.to_v6().to_bytes();
+    if (address.to_v6().is_v4_mapped())
+        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
+    std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
+    return asio::ip::address_v6{bytes}.to_string();
+}
+
+v1::Role to_proto(access::Role role) {
+    switch (role) {
+    case access::Role::Viewer:
+        return v1::ROLE_VIEWER;
+    case access::Role::Controller:
+        return v1::ROLE_CONTROLLER;
+    case access::Role::Admin:
+        return v1::ROLE_ADMIN;
+    }
+    return v1::ROLE_UNSPECIFIED;
 }
 
 } // namespace
@@ -56,26 +80,26 @@ SharedBytes encode_event(v1::Event event) {
 }
 
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
-    : socket_{std::move(socket)}
+    : line_{std::move(socket), host.tls}
     , host_{host}
     , number_{number}
-    , address_{address_of(socket_)}
-    , hello_timer_{socket_.get_executor()}
-    , farewell_timer_{socket_.get_executor()}
-    , writer_signal_{socket_.get_executor(), asio::steady_timer::time_point::max()} {
+    , peer_{peer_of(line_.socket())}
+    , hello_timer_{line_.socket().get_executor()}
+    , farewell_timer_{line_.socket().get_executor()}
+    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
-    socket_.set_option(tcp::no_delay{true}, ignored);
-    socket_.set_option(asio::socket_base::keep_alive{true}, ignored);
+    line_.socket().set_option(tcp::no_delay{true}, ignored);
+    line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
     const int unsent = unsent_bytes_max;
-    ::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+    ::setsockopt(line_.socket().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
 }
 
 void Session::start(const std::optional<base::Refusal>& refused) {
     coroutines_ = 2;
     asio::co_spawn(
-        socket_.get_executor(), [self = shared_from_this()] { return self->read(); }, asio::detached);
+        line_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, asio::detached);
     asio::co_spawn(
-        socket_.get_executor(), [self = shared_from_this()] { return self->write(); }, asio::detached);
+        line_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, asio::detached);
     if (refused) {
         fail(*refused);
         return;
@@ -89,15 +113,24 @@ void Session::start(const std::optional<base::Refusal>& refused) {
 }
 
 std::string Session::by() const {
-    return client_ + " " + address_;
+    return (visitor_.name.empty() ? "" : visitor_.name + ": ") + client_ + " " + to_text(peer_);
 }
 
 // ---- reading ---------------------------------------------------------------------------------------------------
 
 asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
+    if (const auto error = co_await line_.begin(); error == Line::not_tls())
+        fail(refusal(base::RefusalCode::FailedPrecondition,
+                     "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls"));
+    else if (error) {
+        spdlog::info("session {}: {} is closed: TLS: {}", number_, to_text(peer_), error.message());
+        close();
+    }
+    begun_ = true;
+    wake_writer();
     while (!finishing_ && !ended_) {
-        const auto [error, count] = co_await socket_.async_read_some(asio::buffer(bytes), no_throw);
+        const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
         if (error == asio::error::eof && in_flight_ + queue_.size() > 0 && !finishing_ && !ended_) {
             // It has said all it wants, and may still read: it gets its answers.
             input_over_ = true;
@@ -130,7 +163,7 @@ asio::awaitable<void> Session::read() {
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
     for (;;) {
-        const auto [error, count] = co_await socket_.async_read_some(asio::buffer(bytes), no_throw);
+        const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
         if (error)
             break;
     }
@@ -179,11 +212,15 @@ void Session::on_hello(const v1::Hello& hello) {
                      .message = "this server speaks another version of the protocol",
                      .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
                                      std::to_string(hello.protocol_version())}}});
+    auto visitor = host_.admit(hello.token(), neighbourhood(peer_.address()));
+    if (!visitor)
+        return fail(visitor.error());
+    visitor_ = *std::move(visitor);
     greeted_ = true;
     hello_timer_.cancel();
     reader_.set_limits(wire::server_limits);
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
-    spdlog::info("session {}: {} connected, version {}", number_, by(),
+    spdlog::info("session {}: {} connected as {}, version {}", number_, by(), access::name_of(visitor_.role),
                  hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
 
     v1::ServerMessage message;
@@ -196,13 +233,15 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_durability(host_.durability);
     if (host_.storage)
         *welcome.mutable_storage() = *host_.storage;
+    welcome.set_role(to_proto(visitor_.role));
+    welcome.set_user(visitor_.name);
     enqueue(encode_control(message), Kind::Unasked);
 }
 
 void Session::fail(const base::Refusal& refused) {
     if (finishing_ || ended_)
         return;
-    spdlog::info("session {}: {} is closed: {}", number_, greeted_ ? by() : address_, refused.message);
+    spdlog::info("session {}: {} is closed: {}", number_, greeted_ ? by() : to_text(peer_), refused.message);
     send_unasked(protocol::refusing(0, refused));
     finish();
 }
@@ -283,12 +322,14 @@ asio::awaitable<void> Session::write() {
     std::vector<asio::const_buffer> buffers;
     while (!ended_) {
         buffers.clear();
-        if (!queue_.empty()) {
+        if (!begun_) {
+            co_await wait_for_work();
+        } else if (!queue_.empty()) {
             // Answers and events first: they are small, and somebody waits for them.
             const std::size_t batch = std::min(queue_.size(), batch_frames_max);
             for (std::size_t i = 0; i < batch; ++i)
                 buffers.push_back(asio::buffer(*queue_[i].frame));
-            const auto [error, count] = co_await asio::async_write(socket_, buffers, no_throw);
+            const auto [error, count] = co_await line_.write(buffers);
             if (error || ended_)
                 break;
             for (std::size_t i = 0; i < batch; ++i) {
@@ -318,7 +359,7 @@ asio::awaitable<void> Session::write() {
                 wire::encode_header({.channel = wire::Channel::Stream,
                                      .body_bytes = static_cast<std::uint32_t>(fields->size() + tail.size())});
             buffers = {asio::buffer(header), asio::buffer(*fields), asio::buffer(tail)};
-            const auto [error, count] = co_await asio::async_write(socket_, buffers, no_throw);
+            const auto [error, count] = co_await line_.write(buffers);
             if (error)
                 break;
         } else if (finishing_) {
@@ -328,8 +369,7 @@ asio::awaitable<void> Session::write() {
         }
     }
     if (finishing_ && !ended_) {
-        boost::system::error_code ignored; // it may be gone already
-        socket_.shutdown(tcp::socket::shutdown_send, ignored);
+        line_.finish();
     } else {
         close();
     }
@@ -354,8 +394,7 @@ void Session::finish() {
 void Session::close() {
     if (std::exchange(ended_, true))
         return;
-    boost::system::error_code ignored; // closed is closed
-    socket_.close(ignored);
+    line_.close();
     hello_timer_.cancel();
     farewell_timer_.cancel();
     wake_writer();

@@ -9,12 +9,12 @@
 
 #include "evod/v1/session.pb.h"
 #include "proto/wire/framing.h"
+#include "server/access/gate.h"
 #include "server/base/result.h"
+#include "server/network/line.h"
 #include "server/network/retries.h"
 #include "server/runtime/clock.h"
 
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include <deque>
@@ -22,12 +22,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace evod::network {
-
-namespace asio = boost::asio;
-using asio::ip::tcp;
 
 class Session;
 using SessionPtr = std::shared_ptr<Session>;
@@ -37,6 +35,9 @@ struct SessionHost {
     std::string instance_id; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
     std::optional<v1::Storage> storage; // as it stands now; nothing: runs are not kept
+    asio::ssl::context* tls = nullptr; // nullptr: in the clear
+    /// Who comes with a token, from an address.
+    std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit;
     std::function<void(Session&, v1::Request)> handle;
     std::function<void(Session&)> ended; // called once
 };
@@ -64,8 +65,9 @@ class Session : public std::enable_shared_from_this<Session> {
 
     std::uint64_t number() const { return number_; }
     bool greeted() const { return greeted_; }
-    /// Client name and address: "evoview 127.0.0.1:51234".
+    /// Client name and address, and whose token it has: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
+    const access::Visitor& visitor() const { return visitor_; }
 
     /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
     bool admit_request();
@@ -78,6 +80,8 @@ class Session : public std::enable_shared_from_this<Session> {
     /// Takes a picture for a subscription in the place of one that has not been sent.
     void picture(std::uint32_t subscription_id, std::uint32_t island, SharedBytes fields);
 
+    /// Says what was wrong, and ends the session.
+    void fail(const base::Refusal& refusal);
     /// Writes what is waiting, then closes; no more requests are read.
     void finish();
     /// Closes now.
@@ -86,6 +90,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::uint32_t next_subscription_id() { return ++subscription_id_; }
     std::map<std::uint32_t, SnapshotSubscription> snapshots; // by subscription id
     std::map<std::uint32_t, EventSubscription> events;
+    std::set<std::string> pasts; // worlds that it has opened to look at the past
 
   private:
     enum class Kind { Answer, Unasked, Event };
@@ -100,19 +105,20 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::awaitable<void> wait_for_work();
     void on_frame(const wire::Frame& frame);
     void on_hello(const v1::Hello& hello);
-    /// Says what was wrong, and ends the session.
-    void fail(const base::Refusal& refusal);
     void enqueue(SharedBytes frame, Kind kind);
     void written(const Queued& queued);
     void wake_writer();
     void end();
 
-    tcp::socket socket_;
+    Line line_;
     SessionHost& host_;
     const std::uint64_t number_;
-    std::string address_, client_;
+    const tcp::endpoint peer_;
+    std::string client_;
+    access::Visitor visitor_;
     wire::FrameReader reader_{wire::hello_limits};
     asio::steady_timer hello_timer_, farewell_timer_, writer_signal_;
+    bool begun_ = false; // the line can be written to
     bool greeted_ = false, finishing_ = false, ended_ = false;
     bool input_over_ = false; // the client will send nothing more
     int coroutines_ = 0;      // that still run

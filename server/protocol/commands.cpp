@@ -189,6 +189,8 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kExportRun:
     case RequestCase::kContinueExport:
         return RequestKind::Export;
+    case RequestCase::kShutDown:
+        return RequestKind::Server;
     case RequestCase::REQUEST_NOT_SET:
         break;
     }

@@ -19,7 +19,7 @@ struct Draws {
     simulation::RunId run_id;
 };
 
-enum class RequestKind { Command, Query, Subscription, Past, Export, Unknown };
+enum class RequestKind { Command, Query, Subscription, Past, Export, Server, Unknown };
 RequestKind kind_of(const v1::Request& request);
 
 /// The command, or everything that is wrong with the request. What depends on the world's state is left to

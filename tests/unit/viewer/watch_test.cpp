@@ -12,7 +12,11 @@ namespace {
 using testing::ElementsAre;
 
 struct WatchTest : testing::Test {
-    Watch::Wanted wanted() const { return {.server = server.endpoint(), .world = "default", .island = 1}; }
+    Watch::Wanted wanted() const {
+        Watch::Wanted island{.connection = {}, .world = "default", .island = 1};
+        island.connection.server = server.endpoint();
+        return island;
+    }
 
     /// Updates until the condition holds; fails if it does not within some seconds.
     template <class Condition>

@@ -1,0 +1,40 @@
+#include "client/link/credentials.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+namespace evod::link {
+
+Result<void> apply(const Credentials& credentials, Options& options) {
+    if (credentials.tls || !credentials.files.ca.empty() || !credentials.files.certificate.empty()) {
+        options.tls = credentials.files;
+    }
+    const std::string& path = credentials.token_file;
+    if (path.empty()) {
+        const char* token = std::getenv("EVOD_TOKEN");
+        options.token = token == nullptr ? "" : token;
+        return {};
+    }
+    const auto refused = [&](const std::string& why) {
+        return Error{.kind = Error::Kind::Usage, .what = "--token-file: " + path + ": " + why};
+    };
+    struct stat about {};
+    std::ifstream file{path};
+    if (!file || ::stat(path.c_str(), &about) != 0) {
+        return refused(std::strerror(errno));
+    }
+    if ((about.st_mode & 077) != 0) {
+        return refused("others can read it: chmod 600 it");
+    }
+    file >> options.token;
+    if (options.token.empty()) {
+        return refused("there is no token in it");
+    }
+    return {};
+}
+
+} // namespace evod::link

@@ -1,0 +1,102 @@
+#include "server/access/gate.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::access {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+Refusal refusal(RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
+} // namespace
+
+Gate::Stamp Gate::stamp() const {
+    struct stat about {};
+    if (folder_.empty() || ::lstat(token_file_of(folder_).c_str(), &about) != 0)
+        return {};
+    return {true,         about.st_ino,         about.st_size,        about.st_mode,
+            about.st_uid, about.st_ctim.tv_sec, about.st_ctim.tv_nsec};
+}
+
+Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
+    Gate gate{folder, token_needed};
+    gate.refresh();
+    if (gate.trouble_)
+        return *gate.trouble_;
+    if (token_needed && gate.tokens_.empty())
+        return refusal(RefusalCode::FailedPrecondition,
+                       folder.empty()
+                           ? "others could command this server, and without a folder there are no tokens to tell who "
+                             "may: listen on 127.0.0.1, or name a folder with --data"
+                           : "others could command this server, and there are no tokens yet to tell who may: make one "
+                             "with `evod token add NAME --role admin --data " +
+                                 folder + "`, or listen on 127.0.0.1 without --require-token");
+    return gate;
+}
+
+bool Gate::refresh() {
+    // Taken before the reading, so that what comes in between is seen the next time.
+    const Stamp now = stamp();
+    if (now == stamp_)
+        return false;
+    stamp_ = now;
+    auto tokens = folder_.empty() ? Result<Tokens>{Tokens{}} : read_tokens(folder_);
+    trouble_ = tokens ? std::nullopt : std::optional{tokens.error()};
+    if (tokens)
+        tokens_ = *std::move(tokens);
+    return true;
+}
+
+bool Gate::knows(const Visitor& visitor) const {
+    if (visitor.name.empty())
+        return !token_needed_;
+    const Token* token = find(tokens_, visitor.token);
+    return token != nullptr && token->name == visitor.name && token->role == visitor.role;
+}
+
+void Gate::fail(const std::string& address, Clock::time_point now) {
+    ++failed_login_count_;
+    std::erase_if(failures_, [&](const auto& item) { return now - item.second.last > forgotten_after; });
+    if (failures_.size() >= addresses_max && !failures_.contains(address))
+        failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& item) { return item.second.last; }));
+    Failures& failures = failures_[address];
+    const auto delay = std::min<Clock::duration>(delay_max, delay_min * (1 << std::min(failures.count, 10)));
+    ++failures.count;
+    failures.last = now;
+    failures.not_before = now + delay;
+}
+
+Result<Visitor> Gate::admit(const std::string& token, const std::string& address, Clock::time_point now) {
+    const auto before = failures_.find(address);
+    if (before != failures_.end() && now < before->second.not_before && (!token.empty() || token_needed_)) {
+        const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
+        return refusal(RefusalCode::ResourceExhausted,
+                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s");
+    }
+    if (token.empty() && !token_needed_)
+        return Visitor{};
+    if (trouble_)
+        return refusal(RefusalCode::Unavailable, "the server cannot tell at present who may come in: see its log");
+    const Digest digest = digest_of(token);
+    const Token* known = token.empty() ? nullptr : find(tokens_, digest);
+    if (known == nullptr) {
+        // Who has none is asked for one, and need not wait with it.
+        if (!token.empty())
+            fail(address, now);
+        return refusal(RefusalCode::Unauthenticated,
+                       token.empty() ? "this server wants a token" : "this server does not know the token");
+    }
+    failures_.erase(address);
+    return Visitor{known->name, known->role, digest};
+}
+
+} // namespace evod::access

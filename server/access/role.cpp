@@ -1,0 +1,65 @@
+#include "server/access/role.h"
+
+namespace evod::access {
+
+const char* name_of(Role role) {
+    switch (role) {
+    case Role::Viewer:
+        return "viewer";
+    case Role::Controller:
+        return "controller";
+    case Role::Admin:
+        return "admin";
+    }
+    return "nobody";
+}
+
+std::optional<Role> role_named(std::string_view name) {
+    for (const Role role : {Role::Viewer, Role::Controller, Role::Admin})
+        if (name == name_of(role))
+            return role;
+    return std::nullopt;
+}
+
+// A request without a line here is an error of the build: nothing is allowed by accident.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"
+Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
+    using Case = v1::Request::RequestCase;
+    switch (request) {
+    case Case::kListWorlds:
+    case Case::kGetParameters:
+    case Case::kGetStatistics:
+    case Case::kGetHistory:
+    case Case::kGetOrganism:
+    case Case::kDescribe:
+    case Case::kSubscribeSnapshots:
+    case Case::kSubscribeEvents:
+    case Case::kUnsubscribe:
+    case Case::kOpenPast:
+    case Case::kExportRun:
+    case Case::kContinueExport:
+        return Role::Viewer;
+    case Case::kRun:
+    case Case::kRunUntilTick:
+    case Case::kPause:
+    case Case::kResume:
+    case Case::kSetSpeed:
+    case Case::kSeek:
+    case Case::kClosePast:
+        return of_own_past ? Role::Viewer : Role::Controller;
+    case Case::kResetWorld:
+    case Case::kSetParameters:
+        return Role::Controller;
+    case Case::kCreateWorld:
+    case Case::kDeleteWorld:
+    case Case::kForkWorld:
+    case Case::kShutDown:
+    case Case::REQUEST_NOT_SET:
+        return Role::Admin;
+    }
+    return Role::Admin;
+}
+#pragma GCC diagnostic pop
+
+} // namespace evod::access

@@ -1,0 +1,61 @@
+#include "server/access/tls.h"
+
+#include <openssl/ssl.h>
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace evod::access {
+
+namespace ssl = boost::asio::ssl;
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+Refusal refusal(std::string message) {
+    return {.code = RefusalCode::FailedPrecondition, .message = std::move(message), .violations = {}};
+}
+
+} // namespace
+
+Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
+    if (files.certificate.empty() != files.key.empty())
+        return refusal(files.key.empty() ? "--tls-cert needs --tls-key too" : "--tls-key needs --tls-cert too");
+    if (files.certificate.empty())
+        return files.client_ca.empty() ? Result<std::unique_ptr<ssl::context>>{nullptr}
+                                       : refusal("--tls-client-ca needs --tls-cert and --tls-key too");
+    struct stat about {};
+    if (::stat(files.key.c_str(), &about) != 0)
+        return refusal("--tls-key: " + files.key + " cannot be read: " + std::strerror(errno));
+    if ((about.st_mode & 007) != 0)
+        return refusal("--tls-key: everybody can read " + files.key + ": chmod 600 it");
+    auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
+    SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
+    SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
+    boost::system::error_code error;
+    const auto wrong = [&](const char* option, const std::string& file) {
+        return refusal(std::string{option} + ": " + file + " cannot be used: " + error.message());
+    };
+    context->use_certificate_chain_file(files.certificate, error);
+    if (error)
+        return wrong("--tls-cert", files.certificate);
+    context->use_private_key_file(files.key, ssl::context::pem, error);
+    if (error)
+        return wrong("--tls-key", files.key);
+    if (SSL_CTX_check_private_key(context->native_handle()) != 1)
+        return refusal("--tls-key: " + files.key + " is not the key of " + files.certificate);
+    if (!files.client_ca.empty()) {
+        context->load_verify_file(files.client_ca, error);
+        if (error)
+            return wrong("--tls-client-ca", files.client_ca);
+        context->set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert);
+    }
+    return context;
+}
+
+} // namespace evod::access

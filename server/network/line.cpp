@@ -1,0 +1,64 @@
+#include "server/network/line.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+
+#include <utility>
+
+namespace evod::network {
+namespace {
+
+constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
+constexpr unsigned char tls_handshake = 22; // the type of TLS's first record, RFC 8446 §5.1
+
+} // namespace
+
+Line::Line(tcp::socket socket, asio::ssl::context* tls) : socket_{std::move(socket)} {
+    if (tls != nullptr)
+        tls_.emplace(socket_, *tls);
+}
+
+boost::system::error_code Line::not_tls() {
+    return make_error_code(boost::system::errc::protocol_error);
+}
+
+asio::awaitable<boost::system::error_code> Line::begin() {
+    if (!tls_)
+        co_return boost::system::error_code{};
+    unsigned char first = tls_handshake;
+    const auto [peek_error, count] =
+        co_await socket_.async_receive(asio::buffer(&first, 1), tcp::socket::message_peek, no_throw);
+    if (peek_error)
+        co_return peek_error;
+    if (first != tls_handshake) {
+        tls_.reset();
+        co_return not_tls();
+    }
+    const auto [error] = co_await tls_->async_handshake(asio::ssl::stream_base::server, no_throw);
+    co_return error;
+}
+
+asio::awaitable<Line::Transferred> Line::read_some(asio::mutable_buffer buffer) {
+    if (tls_)
+        co_return co_await tls_->async_read_some(buffer, no_throw);
+    co_return co_await socket_.async_read_some(buffer, no_throw);
+}
+
+asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buffer>& buffers) {
+    if (tls_)
+        co_return co_await asio::async_write(*tls_, buffers, no_throw);
+    co_return co_await asio::async_write(socket_, buffers, no_throw);
+}
+
+void Line::finish() {
+    boost::system::error_code ignored; // it may be gone already
+    socket_.shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+void Line::close() {
+    boost::system::error_code ignored; // closed is closed
+    socket_.close(ignored);
+}
+
+} // namespace evod::network

@@ -1,0 +1,380 @@
+"""Who gets in, and what they may do: tokens, roles and TLS over real sockets. EVOD and EVOCTL name the programs, MESSAGES
+the folder of the message classes."""
+import os
+import pathlib
+import pty
+import re
+import socket
+import ssl
+import stat
+import subprocess
+import sys
+import unittest
+
+import past_test as past
+from past_test import EVOD, EVOCTL, c, plain
+
+from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
+
+VIEWER, CONTROLLER, ADMIN = session_pb2.ROLE_VIEWER, session_pb2.ROLE_CONTROLLER, session_pb2.ROLE_ADMIN
+PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 16
+
+# The least role of every request: a new one has to be given its line here too.
+LEAST = {
+    "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
+    "reset_world": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
+    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "seek": CONTROLLER,
+    "close_past": CONTROLLER,
+    "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
+    "get_organism": VIEWER, "describe": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
+    "unsubscribe": VIEWER, "open_past": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
+}
+NAMES = {VIEWER: "viewer", CONTROLLER: "controller", ADMIN: "admin"}
+
+
+def token_command(*words, data, status=0):
+    done = subprocess.run([EVOD, "token", *words, "--data", data], capture_output=True, text=True)
+    assert done.returncode == status, done
+    return done.stdout if status == 0 else done.stderr
+
+
+class Client(past.Client):
+    """token: sent in the hello. come_from: an address of this machine. tls: a context, instead of in the clear."""
+
+    def __init__(self, server, token="", come_from="127.0.0.1", tls=None, host="localhost"):
+        super().__init__(server, hello=False)
+        self.socket.close()
+        self.socket = socket.create_connection(("127.0.0.1", server.port), source_address=(come_from, 0))
+        self.socket.settimeout(plain.patience_s)
+        if tls:
+            self.socket = tls.wrap_socket(self.socket, server_hostname=host)
+        self.hello(token=token)
+        self.first = self.control()
+        self.welcome = self.first.welcome if self.first.HasField("welcome") else None
+        self.refusal = self.first.response.status if self.first.HasField("response") else None
+
+
+class Access(past.Case):
+    def setUp(self):
+        super().setUp()
+        self.secrets = {}
+
+    def token(self, name, role):
+        secret = token_command("add", name, "--role", NAMES[role], data=self.folder).strip()
+        self.assertRegex(secret, r"^evod_[0-9a-f]{64}$")
+        self.secrets[name] = secret
+        return secret
+
+    def serve(self, *options):
+        return self.server("--data", self.folder, *options)
+
+    def come(self, server, *arguments, **options):
+        client = Client(server, *arguments, **options)
+        self.addCleanup(client.socket.close)
+        return client
+
+    def evoctl(self, *words, server, status=0, environment=None, **options):
+        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", *words], capture_output=True, text=True,
+                              env={**os.environ, **(environment or {})}, **options)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+
+class Roles(Access):
+    def test_every_request_has_its_least_role(self):
+        requests = [field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields]
+        self.assertEqual(sorted(requests), sorted(LEAST))
+        for role, name in NAMES.items():
+            self.token(name, role)
+        server = self.serve("--require-token")
+        for role, name in NAMES.items():
+            client = self.come(server, self.secrets[name])
+            self.assertEqual((client.welcome.role, client.welcome.user), (role, NAMES[role]))
+            # The last one ends the server; an empty request does nothing, or is refused for what it lacks.
+            for request in sorted(requests, key="shut_down".__eq__):
+                if request == "shut_down" and role == ADMIN:
+                    continue
+                message = type(getattr(c.Request(), request))()
+                status = client.response(client.ask(**{request: message})).status
+                denied = LEAST[request] > role
+                self.assertEqual(status.code == PERMISSION_DENIED, denied, f"{request} as {NAMES[role]}: {status}")
+                if denied:
+                    self.assertIn(f"needs the role {NAMES[LEAST[request]]}", status.message)
+        admin = self.come(server, self.secrets["admin"])
+        admin.call(shut_down=c.ShutDown())
+        self.assertEqual(server.process.wait(plain.patience_s), 0)
+
+    def test_a_viewer_changes_nothing(self):
+        secret = self.token("anna", VIEWER)
+        viewer = self.come(self.serve("--require-token", "--seed", "4"), secret)
+        before = viewer.world()
+        for request in [name for name, role in LEAST.items() if role > VIEWER]:
+            self.assertEqual(viewer.response(viewer.ask(**{request: type(getattr(c.Request(), request))()})).status.code,
+                             PERMISSION_DENIED)
+        after = viewer.world()
+        self.assertEqual(after.SerializeToString(), before.SerializeToString())
+
+    def test_a_viewer_plays_the_past_it_has_opened_and_no_other(self):
+        karl, anna, otto = self.token("karl", CONTROLLER), self.token("anna", VIEWER), self.token("otto", VIEWER)
+        server = self.serve("--require-token", "--speed", "max")
+        controller, viewer, other = (self.come(server, secret) for secret in (karl, anna, otto))
+        controller.call(run_until_tick=c.RunUntilTick(tick=3000))
+        plain.until(lambda: viewer.world().tick == 3000, "ticks")
+        past_world = viewer.call(open_past=c.OpenPast()).world.name
+        for request in ({"run_until_tick": c.RunUntilTick(world=past_world, tick=20)},
+                        {"seek": c.Seek(world=past_world, to=c.RunMoment(tick=40))},
+                        {"set_speed": c.SetSpeed(world=past_world, speed=plain.w.Speed(max=True))},
+                        {"pause": c.Pause(world=past_world)}, {"run": c.Run(world=past_world)},
+                        {"resume": c.Resume(world=past_world)}, {"close_past": c.ClosePast(world=past_world)}):
+            other.call(PERMISSION_DENIED, **request)
+            viewer.call(**request)
+        viewer.call(PERMISSION_DENIED, run=c.Run(world="default"))
+
+    def test_everybody_is_told_who_did_it(self):
+        karl, anna = self.token("karl", CONTROLLER), self.token("anna", VIEWER)
+        server = self.serve("--require-token")
+        controller, viewer = self.come(server, karl), self.come(server, anna)
+        viewer.call(subscribe_events=c.SubscribeEvents())
+        controller.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
+        event = viewer.next_event("parameters_changed")
+        self.assertTrue(event.parameters_changed.by.startswith("karl: plain 127.0.0.1:"), event)
+
+
+class Tokens(Access):
+    def test_on_the_loopback_interface_no_token_is_needed_and_one_is_minded(self):
+        server = self.serve()
+        self.assertEqual(self.come(server).welcome.role, ADMIN)
+        self.assertEqual(self.come(server).welcome.user, "")
+        secret = self.token("anna", VIEWER)
+        plain.until(lambda: Client(server, secret, come_from="127.0.0.3").welcome, "the server has seen the file")
+        client = self.come(server, secret)
+        self.assertEqual((client.welcome.role, client.welcome.user), (VIEWER, "anna"))
+        self.assertEqual(self.come(server, "evod_nonsense").refusal.code, UNAUTHENTICATED)
+
+    def test_elsewhere_it_is_refused_without_tokens_and_says_what_to_do(self):
+        done = subprocess.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True,
+                              text=True, timeout=plain.patience_s)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"evod token add NAME --role admin --data {self.folder}", done.stderr)
+
+    def test_whoever_has_none_or_a_wrong_one_stays_outside(self):
+        self.token("anna", VIEWER)
+        server = self.serve("--require-token")
+        self.assertEqual(self.come(server).refusal.code, UNAUTHENTICATED)
+        for wrong in ("evod_" + "0" * 64, self.secrets["anna"][:-1], self.secrets["anna"].upper(), "x" * 3000):
+            client = self.come(server, wrong)
+            self.assertIn(client.refusal.code, (UNAUTHENTICATED, RESOURCE_EXHAUSTED))
+            client.assert_closed()
+
+    def test_failed_logins_make_their_address_wait_and_no_other(self):
+        secret = self.token("anna", VIEWER)
+        server = self.serve("--require-token")
+        self.assertEqual(self.come(server, "wrong", come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
+        waits = self.come(server, secret, come_from="127.0.0.2").refusal
+        self.assertEqual(waits.code, RESOURCE_EXHAUSTED)
+        self.assertRegex(waits.message, r"try again in \d+ s")
+        self.assertIsNotNone(self.come(server, secret).welcome)
+
+        def let_in():
+            with Client(server, secret, come_from="127.0.0.2") as client:
+                return client.welcome
+        plain.until(let_in, "the wait is over")
+
+    def test_a_revoked_token_ends_its_sessions(self):
+        anna, karl = self.token("anna", VIEWER), self.token("karl", CONTROLLER)
+        server = self.serve("--require-token")
+        stays, goes = self.come(server, karl), self.come(server, anna)
+        token_command("revoke", "anna", data=self.folder)
+        message = goes.control()
+        self.assertEqual((message.response.request_id, message.response.status.code), (0, UNAUTHENTICATED))
+        goes.assert_closed()
+        stays.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.come(server, anna, come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
+
+    def test_the_file_is_for_its_owner_and_knows_no_secret(self):
+        secret = self.token("anna", VIEWER)
+        path = pathlib.Path(self.folder) / "tokens"
+        self.assertEqual(stat.S_IMODE(path.stat().st_mode), 0o600)
+        self.assertNotIn(secret[5:], path.read_text())
+        listed = token_command("list", data=self.folder)
+        self.assertRegex(listed, r"anna +viewer +\d{4}-\d\d-\d\d")
+        self.assertNotIn(secret[5:], listed)
+        self.assertIn("already", token_command("add", "anna", "--role", "admin", data=self.folder, status=1))
+        self.assertIn("no token", token_command("revoke", "otto", data=self.folder, status=1))
+        self.assertIn("must be 1 to 64", token_command("add", "a b", "--role", "admin", data=self.folder, status=1))
+
+    def test_a_file_that_others_can_read_or_that_is_damaged_is_not_believed(self):
+        secret = self.token("anna", VIEWER)
+        path = pathlib.Path(self.folder) / "tokens"
+        server = self.serve("--require-token")
+        client = self.come(server, secret)
+        path.chmod(0o644)
+        plain.until(lambda: Client(server, secret).refusal, "it is noticed")
+        self.assertEqual(self.come(server, secret).refusal.code, UNAVAILABLE)
+        self.assertIn("chmod 600", server.output())
+        client.call(list_worlds=c.ListWorlds())  # whoever is in stays in
+        server.end()
+        for change, words in ((lambda: None, "chmod 600"),
+                              (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])), "tokens is damaged: line 2")):
+            change()
+            done = subprocess.run([EVOD, "--port", "0", "--data", self.folder], capture_output=True, text=True,
+                                  timeout=plain.patience_s)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(words, done.stderr)
+
+    def test_no_secret_is_written_anywhere(self):
+        secret = self.token("anna", ADMIN)
+        server = self.serve("--require-token")
+        client = self.come(server, secret)
+        client.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
+        self.come(server, secret[:-1] + "x")
+        server.end()
+        for digits in (secret[5:], secret[5:37]):
+            self.assertNotIn(digits, server.output())
+            for path in pathlib.Path(self.folder).iterdir():
+                self.assertNotIn(digits.encode(), path.read_bytes(), path)
+
+    def test_evoctl_takes_it_from_the_environment_a_file_or_a_person(self):
+        secret = self.token("anna", VIEWER)
+        server = self.serve("--require-token")
+        self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_TOKEN": secret}))
+        path = pathlib.Path(self.folder) / "my-token"
+        path.write_text(secret + "\n")
+        path.chmod(0o644)
+        self.assertIn("chmod 600", self.evoctl("--token-file", str(path), "worlds", server=server, status=2))
+        path.chmod(0o600)
+        self.assertIn("default", self.evoctl("--token-file", str(path), "worlds", server=server))
+        self.assertIn("wants a token", self.evoctl("worlds", server=server, status=4, stdin=subprocess.DEVNULL))
+        self.assertIn("needs the role controller",
+                      self.evoctl("pause", server=server, environment={"EVOD_TOKEN": secret}, status=1))
+        terminal, side = pty.openpty()
+        with subprocess.Popen([EVOCTL, "--server", f"localhost:{server.port}", "worlds"], stdin=side, stderr=side,
+                              stdout=subprocess.PIPE, text=True) as asking:
+            os.close(side)
+            shown = b""
+            while b"token for" not in shown:
+                shown += os.read(terminal, 1000)
+            os.write(terminal, secret.encode() + b"\n")
+            self.assertEqual(asking.stdout.read(), "default\n")
+            self.assertEqual(asking.wait(plain.patience_s), 0)
+            self.assertNotIn(secret[5:].encode(), shown)
+        os.close(terminal)
+
+    def test_names_of_worlds_do_not_leave_the_folder(self):
+        server = self.serve()
+        client = self.come(server)
+        for name in ("../x", "/tmp/x", "a/b", "..", ".", "", "a\0b", "x.evod", "ä", "a" * 65, "a\n"):
+            for request in ({"create_world": c.CreateWorld(name=name)}, {"fork_world": c.ForkWorld(name=name)}):
+                self.assertEqual(client.response(client.ask(**request)).status.code, 3, repr(name))
+        client.call(list_worlds=c.ListWorlds())
+        self.assertFalse((pathlib.Path(self.folder).parent / "x.evod").exists())
+        self.assertFalse(pathlib.Path("/tmp/x.evod").exists())
+        server.end()
+        self.assertEqual([path.name for path in pathlib.Path(self.folder).glob("*.evod")], ["default.evod"])
+
+
+class Tls(Access):
+    def setUp(self):
+        super().setUp()
+        self.pair("certificates")
+
+    def pair(self, folder, *hosts):
+        path = pathlib.Path(self.folder) / folder
+        path.mkdir()
+        subprocess.run([EVOD, "certificate", *(hosts or ("localhost", "127.0.0.1")), "--folder", path], check=True)
+        self.assertEqual(stat.S_IMODE((path / "evod.key").stat().st_mode), 0o600)
+        return path
+
+    def files(self, folder="certificates"):
+        path = pathlib.Path(self.folder) / folder
+        return ["--tls-cert", str(path / "evod.crt"), "--tls-key", str(path / "evod.key")]
+
+    def context(self, folder="certificates"):
+        context = ssl.create_default_context(cafile=pathlib.Path(self.folder) / folder / "evod.crt")
+        return context
+
+    def test_a_client_that_believes_the_certificate_talks_as_ever(self):
+        secret = self.token("anna", ADMIN)
+        server = self.serve("--require-token", *self.files())
+        client = self.come(server, secret, tls=self.context())
+        self.assertIn(client.socket.version(), ("TLSv1.2", "TLSv1.3"))
+        client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
+        client.call(run_until_tick=c.RunUntilTick(tick=30))
+        client.next_picture(lambda picture: picture.tick == 30)
+        self.assertIsNotNone(self.come(server, secret, tls=self.context(), host="127.0.0.1").welcome)
+        server.end()
+
+    def test_older_tls_other_authorities_and_other_hosts_are_not_believed(self):
+        server = self.serve(*self.files())
+        self.pair("strangers")
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            self.come(server, tls=self.context("strangers"))
+        with self.assertRaises(ssl.SSLCertVerificationError):
+            self.come(server, tls=self.context(), host="elsewhere.example")
+        old = self.context()
+        old.set_ciphers("ALL:@SECLEVEL=0")
+        old.minimum_version = ssl.TLSVersion.TLSv1
+        old.maximum_version = ssl.TLSVersion.TLSv1_1
+        with self.assertRaises(ssl.SSLError):
+            self.come(server, tls=old)
+        self.assertIsNotNone(self.come(server, tls=self.context()).welcome)
+
+    def test_who_speaks_in_the_clear_is_told(self):
+        server = self.serve(*self.files())
+        self.assertIn("speaks TLS only", self.come(server).refusal.message)
+        self.assertIn("speaks TLS only", self.evoctl("worlds", server=server, status=3))
+        for hello in (b"\x16", b"\x16\x03\x01\x00\x05nonsense", b"\x00" * 100):
+            with socket.create_connection(("127.0.0.1", server.port)) as rude:
+                rude.sendall(hello)
+        self.assertIsNotNone(self.come(server, tls=self.context()).welcome)
+
+    def test_evoctl_verifies(self):
+        server = self.serve(*self.files())
+        self.pair("strangers")
+        certificates, strangers = (f"{self.folder}/{name}/evod.crt" for name in ("certificates", "strangers"))
+        self.assertIn("default", self.evoctl("--ca", certificates, "worlds", server=server))
+        self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_CA": certificates}))
+        self.assertIn("not believed", self.evoctl("--ca", strangers, "worlds", server=server, status=3))
+        self.assertIn("not believed", self.evoctl("--tls", "worlds", server=server, status=3))
+        self.assertIn("/nowhere", self.evoctl("--ca", "/nowhere", "worlds", server=server, status=3))
+        server.end()
+        elsewhere = self.pair("elsewhere", "elsewhere.example")
+        self.assertIn("not believed", self.evoctl("--ca", str(elsewhere / "evod.crt"), "worlds", status=3,
+                                                  server=self.serve(*self.files("elsewhere"))))
+
+    def test_clients_may_have_to_show_a_certificate(self):
+        clients = self.pair("clients", "client")
+        server = self.serve(*self.files(), "--tls-client-ca", str(clients / "evod.crt"))
+        context = self.context()
+        with self.assertRaises((ssl.SSLError, ConnectionError, AssertionError)):
+            self.come(server, tls=context)
+        context.load_cert_chain(clients / "evod.crt", clients / "evod.key")
+        self.assertIsNotNone(self.come(server, tls=context).welcome)
+        self.assertIn("default", self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "--cert",
+                                             str(clients / "evod.crt"), "--key", str(clients / "evod.key"), "worlds",
+                                             server=server))
+
+    def test_what_is_wrong_with_the_files_is_named(self):
+        path = pathlib.Path(self.folder) / "certificates"
+        (path / "none.pem").write_text("nothing")
+        (path / "none.pem").chmod(0o600)
+        other = self.pair("strangers")
+        for options, words in ((["--tls-cert", path / "evod.crt"], "--tls-cert needs --tls-key"),
+                               (["--tls-cert", path / "none.pem", "--tls-key", path / "evod.key"], "--tls-cert: .*none.pem"),
+                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "gone"], "--tls-key: .*gone.*No such"),
+                               (["--tls-cert", path / "evod.crt", "--tls-key", path / "none.pem"], "--tls-key: .*none.pem"),
+                               (["--tls-cert", path / "evod.crt", "--tls-key", other / "evod.key"], "--tls-key: .*")):
+            done = subprocess.run([EVOD, "--port", "0", "--data", self.folder, *map(str, options)], capture_output=True,
+                                  text=True, timeout=plain.patience_s)
+            self.assertEqual(done.returncode, 1)
+            self.assertTrue(re.search(words, done.stderr), done.stderr)
+        (path / "evod.key").chmod(0o644)
+        done = subprocess.run([EVOD, "--port", "0", "--data", self.folder, *self.files()], capture_output=True, text=True)
+        self.assertIn("chmod 600", done.stderr)
+        again = subprocess.run([EVOD, "certificate", "localhost", "--folder", path], capture_output=True, text=True)
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("is there already", again.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

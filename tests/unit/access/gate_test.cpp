@@ -1,0 +1,108 @@
+#include "server/access/gate.h"
+
+#include "server/access/certificate.h"
+
+#include <gmock/gmock.h>
+
+#include <openssl/pem.h>
+
+#include <cstdio>
+#include <filesystem>
+
+namespace evod::access {
+namespace {
+
+using base::RefusalCode;
+using std::chrono::milliseconds;
+
+class GateTest : public testing::Test {
+  protected:
+    GateTest() {
+        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
+        EXPECT_NE(mkdtemp(name.data()), nullptr);
+        folder = name;
+    }
+    ~GateTest() override { std::filesystem::remove_all(folder); }
+
+    std::string folder;
+    Gate::Clock::time_point now;
+};
+
+TEST_F(GateTest, ATokenThatIsNeededHasToBeThere) {
+    EXPECT_EQ(Gate::open(folder, true).error().code, RefusalCode::FailedPrecondition);
+    EXPECT_EQ(Gate::open("", true).error().code, RefusalCode::FailedPrecondition);
+    auto gate = Gate::open("", false);
+    ASSERT_TRUE(gate);
+    EXPECT_EQ(gate->admit("", "a", now)->role, Role::Admin);
+    EXPECT_EQ(gate->admit("evod_x", "a", now).error().code, RefusalCode::Unauthenticated);
+}
+
+TEST_F(GateTest, EachFailureDoublesTheWaitOfItsAddressAlone) {
+    const std::string secret = *add_token(folder, "anna", Role::Viewer);
+    auto gate = *Gate::open(folder, true);
+    milliseconds delay = Gate::delay_min;
+    for (int failures = 1; failures <= 12; ++failures, delay = std::min(delay * 2, Gate::delay_max)) {
+        EXPECT_EQ(gate.admit("wrong", "a", now).error().code, RefusalCode::Unauthenticated);
+        now += delay - milliseconds{1};
+        EXPECT_EQ(gate.admit(secret, "a", now).error().code, RefusalCode::ResourceExhausted);
+        EXPECT_TRUE(gate.admit(secret, "b", now));
+        now += milliseconds{1};
+    }
+    EXPECT_EQ(gate.failed_login_count(), 12u);
+    EXPECT_EQ(gate.admit(secret, "a", now)->name, "anna");
+    // A good login, or a long time, and it begins anew.
+    EXPECT_EQ(gate.admit("wrong", "a", now).error().code, RefusalCode::Unauthenticated);
+    EXPECT_TRUE(gate.admit(secret, "a", now + Gate::delay_min));
+}
+
+TEST_F(GateTest, WhoHasNoTokenIsAskedForOneAndNeedNotWait) {
+    const std::string secret = *add_token(folder, "anna", Role::Viewer);
+    auto gate = *Gate::open(folder, true);
+    EXPECT_EQ(gate.admit("", "a", now).error().code, RefusalCode::Unauthenticated);
+    EXPECT_TRUE(gate.admit(secret, "a", now));
+}
+
+TEST_F(GateTest, AddressesAreForgottenTheOldestFirst) {
+    auto gate = *Gate::open(folder, false);
+    for (std::size_t i = 0; i < Gate::addresses_max + 1; ++i, now += std::chrono::microseconds{10})
+        EXPECT_FALSE(gate.admit("wrong", std::to_string(i), now));
+    EXPECT_EQ(gate.admit("wrong", "0", now).error().code, RefusalCode::Unauthenticated); // not remembered
+    EXPECT_EQ(gate.admit("wrong", "2", now).error().code, RefusalCode::ResourceExhausted);
+}
+
+TEST_F(GateTest, AChangedFileIsReadAgain) {
+    const std::string anna = *add_token(folder, "anna", Role::Viewer), karl = *add_token(folder, "karl", Role::Admin);
+    auto gate = *Gate::open(folder, true);
+    const Visitor visitor = *gate.admit(anna, "a", now);
+    EXPECT_FALSE(gate.refresh());
+    ASSERT_TRUE(revoke_token(folder, "anna"));
+    EXPECT_TRUE(gate.refresh());
+    EXPECT_FALSE(gate.knows(visitor));
+    EXPECT_TRUE(gate.knows(*gate.admit(karl, "a", now)));
+    // The name alone is not the token.
+    ASSERT_TRUE(add_token(folder, "anna", Role::Viewer));
+    EXPECT_TRUE(gate.refresh());
+    EXPECT_FALSE(gate.knows(visitor));
+    std::filesystem::permissions(token_file_of(folder), std::filesystem::perms::others_read,
+                                 std::filesystem::perm_options::add);
+    EXPECT_TRUE(gate.refresh());
+    ASSERT_TRUE(gate.trouble());
+    EXPECT_EQ(gate.admit(karl, "a", now).error().code, RefusalCode::Unavailable);
+}
+
+TEST_F(GateTest, ACertificateCanAlwaysBeReadAgain) {
+    for (int i = 0; i < 300; ++i) {
+        ASSERT_TRUE(make_certificate({"lab.example", "10.0.0.7", "::1"}, folder));
+        std::FILE* file = std::fopen((folder + "/evod.crt").c_str(), "r");
+        X509* certificate = PEM_read_X509(file, nullptr, nullptr, nullptr);
+        ASSERT_NE(certificate, nullptr);
+        X509_free(certificate);
+        std::fclose(file);
+        std::filesystem::remove(folder + "/evod.crt");
+        std::filesystem::remove(folder + "/evod.key");
+    }
+    EXPECT_EQ(make_certificate({"not a host"}, folder).error().code, RefusalCode::InvalidArgument);
+}
+
+} // namespace
+} // namespace evod::access
