@@ -141,34 +141,8 @@ Damage wrong(const char* field, const std::string& got, const char* allowed) {
     return Damage{std::string{"a snapshot's "} + field + " is " + got + ", not " + allowed};
 }
 
-/// What is wrong with the fields around the body, if anything.
-std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {
-    if (frame.codec() != evod::v1::CODEC_COLUMNS) {
-        return wrong("codec", std::to_string(frame.codec()), "one that is known here");
-    }
-    if (frame.position_bytes() != 2 && frame.position_bytes() != 4) {
-        return wrong("position_bytes", std::to_string(frame.position_bytes()), "2 or 4");
-    }
-    if (frame.island() >= frame.island_count()) {
-        return wrong("island", std::to_string(frame.island()),
-                     ("one of " + std::to_string(frame.island_count())).c_str());
-    }
-    struct Size {
-        const char* field;
-        double value;
-        bool zero_allowed;
-    };
-    for (const Size& size :
-         {Size{"width_px", frame.width_px(), false}, Size{"height_px", frame.height_px(), false},
-          Size{"item_radius_px", frame.item_radius_px(), true}, Size{"simulated_s", frame.simulated_s(), true},
-          Size{"ticks_per_s", frame.ticks_per_s(), true}}) {
-        if (!std::isfinite(size.value) || size.value < 0 || (size.value == 0 && !size.zero_allowed)) {
-            return wrong(size.field, std::to_string(size.value), "a finite positive number");
-        }
-    }
-    if (!std::isfinite(frame.live().health_mean())) {
-        return wrong("live.health_mean", std::to_string(frame.live().health_mean()), "a finite number");
-    }
+/// What is wrong with the length of the body, if anything.
+std::optional<Damage> damage_of_length(const evod::v1::SnapshotFrame& frame) {
     const std::uint64_t position = frame.position_bytes();
     const std::uint64_t expected = frame.organism_count() * organism_bytes(position) +
                                    (std::uint64_t{frame.food_count()} + frame.poison_count()) * item_bytes(position) +
@@ -217,8 +191,41 @@ void encode(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
     }
 }
 
+std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {
+    if (frame.position_bytes() != 2 && frame.position_bytes() != 4) {
+        return wrong("position_bytes", std::to_string(frame.position_bytes()), "2 or 4");
+    }
+    if (frame.island() >= frame.island_count()) {
+        return wrong("island", std::to_string(frame.island()),
+                     ("one of " + std::to_string(frame.island_count())).c_str());
+    }
+    struct Size {
+        const char* field;
+        double value;
+        bool zero_allowed;
+    };
+    for (const Size& size :
+         {Size{"width_px", frame.width_px(), false}, Size{"height_px", frame.height_px(), false},
+          Size{"item_radius_px", frame.item_radius_px(), true}, Size{"simulated_s", frame.simulated_s(), true},
+          Size{"ticks_per_s", frame.ticks_per_s(), true}}) {
+        if (!std::isfinite(size.value) || size.value < 0 || (size.value == 0 && !size.zero_allowed)) {
+            return wrong(size.field, std::to_string(size.value), "a finite positive number");
+        }
+    }
+    if (!std::isfinite(frame.live().health_mean())) {
+        return wrong("live.health_mean", std::to_string(frame.live().health_mean()), "a finite number");
+    }
+    return std::nullopt;
+}
+
 Result<Picture> decode(evod::v1::SnapshotFrame frame) {
+    if (frame.codec() != evod::v1::CODEC_COLUMNS) {
+        return wrong("codec", std::to_string(frame.codec()), "one that is known here");
+    }
     if (auto damage = damage_of_fields(frame)) {
+        return *std::move(damage);
+    }
+    if (auto damage = damage_of_length(frame)) {
         return *std::move(damage);
     }
     Picture picture;

@@ -1,4 +1,5 @@
-// Snapshot codec: an island's columns → the body of a SnapshotFrame → a picture. The layout is told in stream.proto.
+// Snapshot codec: an island's columns → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
+// stream.proto.
 //
 // The server encodes a picture once for all its viewers; clients decode. The encoder is handed arrays that are right;
 // the decoder trusts nothing.
@@ -11,6 +12,7 @@
 #include "proto/wire/result.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,7 +69,11 @@ struct Picture {
     BoxPicture crates, obstacles;
 };
 
-/// Damage says which field is wrong, and how. Memory is taken only after the counts agree with the body's length.
+/// What is wrong with the fields around the body, if anything; whichever the codec is.
+std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame);
+
+/// A picture of CODEC_COLUMNS. Damage says which field is wrong, and how. Memory is taken only after the counts agree
+/// with the body's length.
 Result<Picture> decode(evod::v1::SnapshotFrame frame);
 
 } // namespace evod::wire

@@ -1,0 +1,36 @@
+// Compression of the bodies of pictures by zstd, and the checksum over them.
+//
+// Threads      a Compressor is used by one thread at a time; the functions by any.
+#pragma once
+
+#include "proto/wire/result.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace evod::wire {
+
+/// One zstd frame after another, each by itself, with working memory that stays warm.
+class Compressor {
+  public:
+    Compressor();
+    ~Compressor();
+    Compressor(const Compressor&) = delete;
+    Compressor& operator=(const Compressor&) = delete;
+
+    std::string compress(std::string_view bytes);
+
+  private:
+    struct Context;
+    std::unique_ptr<Context> context_;
+};
+
+/// The content of a zstd frame that tells its size; more than bytes_max is refused before memory is taken for it.
+Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max);
+
+/// CRC-32 as zlib has it. before: the checksum of the bytes that `bytes` follow, to go on from.
+std::uint32_t crc32(std::string_view bytes, std::uint32_t before = 0);
+
+} // namespace evod::wire
