@@ -36,6 +36,7 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
     case Case::kSubscribeSnapshots:
     case Case::kSubscribeEvents:
     case Case::kUnsubscribe:
+    case Case::kRequestKeyframe:
     case Case::kOpenPast:
     case Case::kExportRun:
     case Case::kContinueExport:

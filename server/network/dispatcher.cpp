@@ -33,6 +33,12 @@ const base::Refusal& busy() {
     return refused;
 }
 
+base::Refusal no_such_subscription(const char* field, std::uint32_t subscription_id) {
+    return {.code = base::RefusalCode::NotFound,
+            .message = "this session has no such subscription",
+            .violations = {{field, "one of this session's", std::to_string(subscription_id)}}};
+}
+
 /// "set_parameters"
 std::string name_of(const v1::Request& request) {
     return v1::Request::descriptor()->FindFieldByNumber(request.request_case())->name();
@@ -330,10 +336,13 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     if (request.has_unsubscribe()) {
         const std::uint32_t subscription_id = request.unsubscribe().subscription_id();
         if (!streams_.unsubscribe(session, subscription_id))
-            return refuse_it({.code = base::RefusalCode::NotFound,
-                              .message = "this session has no such subscription",
-                              .violations = {{"unsubscribe.subscription_id", "one of this session's",
-                                              std::to_string(subscription_id)}}});
+            return refuse_it(no_such_subscription("unsubscribe.subscription_id", subscription_id));
+        return session.answer(encode_response(response_to(id)));
+    }
+    if (request.has_request_keyframe()) {
+        const std::uint32_t subscription_id = request.request_keyframe().subscription_id();
+        if (!streams_.send_keyframes(session, subscription_id))
+            return refuse_it(no_such_subscription("request_keyframe.subscription_id", subscription_id));
         return session.answer(encode_response(response_to(id)));
     }
     if (auto faults = protocol::faults_of(request); !faults.empty())
@@ -357,6 +366,11 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 if (subscribe.has_island())
                     wanted->island = subscribe.island();
                 wanted->rate_hz = std::min(subscribe.rate_hz(), snapshot_rate_hz_max);
+                if (subscribe.codec() != v1::CODEC_UNSPECIFIED)
+                    wanted->codec = subscribe.codec();
+                wanted->compression = subscribe.compression();
+                if (subscribe.has_unacknowledged_max())
+                    wanted->unacknowledged_max = subscribe.unacknowledged_max();
             },
             [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
                 if (response.status().code() != v1::CODE_OK)

@@ -185,6 +185,9 @@ void Session::on_frame(const wire::Frame& frame) {
     case v1::ClientMessage::kRequest:
         host_.handle(*this, std::move(*message->mutable_request()));
         break;
+    case v1::ClientMessage::kAcknowledgePicture:
+        on_acknowledgement(message->acknowledge_picture());
+        break;
     case v1::ClientMessage::kHello:
         send_unasked(protocol::refusing(
             0, refusal(base::RefusalCode::FailedPrecondition, "this session has had its hello already")));
@@ -228,7 +231,8 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_protocol_version(wire::protocol_version);
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
-    welcome.add_features("codec:columns");
+    for (const char* feature : {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements"})
+        welcome.add_features(feature);
     *welcome.mutable_limits() = limits_message();
     welcome.set_durability(host_.durability);
     if (host_.storage)
@@ -276,17 +280,68 @@ void Session::count_dropped_events(std::uint64_t count) {
     wake_writer();
 }
 
-void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SharedBytes fields) {
+void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture) {
     const auto subscription = snapshots.find(subscription_id);
     if (subscription == snapshots.end() || finishing_ || ended_)
         return;
-    SharedBytes& waiting = subscription->second.waiting[island];
+    SnapshotSubscription::Waiting& waiting = subscription->second.islands[island].waiting;
     if (waiting)
         ++subscription->second.dropped_count;
     else
-        pictures_.push_back({subscription_id, island});
-    waiting = std::move(fields);
+        turns_.push_back({subscription_id, island});
+    waiting = std::move(picture);
     wake_writer();
+}
+
+void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& newest) {
+    const auto subscription = snapshots.find(subscription_id);
+    if (subscription == snapshots.end())
+        return;
+    SnapshotSubscription::Island& of = subscription->second.islands[island];
+    of.last_sent = 0;
+    if (!of.waiting)
+        picture(subscription_id, island, {.sequence = newest->sequence(), .columns = nullptr, .chained = newest});
+}
+
+void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
+    const auto subscription = snapshots.find(acknowledged.subscription_id());
+    if (subscription == snapshots.end())
+        return; // unsubscribed while it was on its way
+    const auto island = subscription->second.islands.find(acknowledged.island());
+    if (island == subscription->second.islands.end())
+        return;
+    auto& unacknowledged = island->second.unacknowledged;
+    while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence())
+        unacknowledged.pop_front();
+    wake_writer();
+}
+
+std::optional<Session::Outgoing> Session::next_picture() {
+    // Turns of subscriptions that are gone are found first, and go too.
+    std::erase_if(turns_, [this](const Turn& turn) { return !snapshots.contains(turn.subscription_id); });
+    const auto turn = std::find_if(turns_.begin(), turns_.end(), [this](const Turn& one) {
+        const SnapshotSubscription& of = snapshots.at(one.subscription_id);
+        return !of.unacknowledged_max || of.islands.at(one.island).unacknowledged.size() < *of.unacknowledged_max;
+    });
+    if (turn == turns_.end())
+        return std::nullopt;
+    SnapshotSubscription& subscription = snapshots.at(turn->subscription_id);
+    SnapshotSubscription::Island& island = subscription.islands.at(turn->island);
+    v1::SnapshotFrame of_viewer;
+    of_viewer.set_subscription_id(turn->subscription_id);
+    of_viewer.set_dropped_count(subscription.dropped_count);
+    turns_.erase(turn);
+    const SnapshotSubscription::Waiting picture = std::exchange(island.waiting, {});
+    Outgoing outgoing{.fields = picture.columns, .tail = of_viewer.SerializeAsString()};
+    if (picture.chained) {
+        const bool has_base = island.last_sent != 0 && island.last_sent == picture.chained->base_sequence();
+        outgoing.fields = has_base ? picture.chained->delta(subscription.compression)
+                                   : picture.chained->keyframe(subscription.compression);
+    }
+    island.last_sent = picture.sequence;
+    if (subscription.unacknowledged_max)
+        island.unacknowledged.push_back(picture.sequence);
+    return outgoing;
 }
 
 void Session::enqueue(SharedBytes frame, Kind kind) {
@@ -344,21 +399,11 @@ asio::awaitable<void> Session::write() {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
             enqueue(encode_event(std::move(event)), Kind::Event);
-        } else if (!pictures_.empty() && !finishing_) {
-            const Picture picture = pictures_.front();
-            pictures_.pop_front();
-            const auto subscription = snapshots.find(picture.subscription_id);
-            if (subscription == snapshots.end())
-                continue; // unsubscribed meanwhile
-            const SharedBytes fields = std::exchange(subscription->second.waiting[picture.island], nullptr);
-            v1::SnapshotFrame of_viewer;
-            of_viewer.set_subscription_id(picture.subscription_id);
-            of_viewer.set_dropped_count(subscription->second.dropped_count);
-            const std::string tail = of_viewer.SerializeAsString();
-            const auto header =
-                wire::encode_header({.channel = wire::Channel::Stream,
-                                     .body_bytes = static_cast<std::uint32_t>(fields->size() + tail.size())});
-            buffers = {asio::buffer(header), asio::buffer(*fields), asio::buffer(tail)};
+        } else if (const auto picture = finishing_ ? std::nullopt : next_picture()) {
+            const auto header = wire::encode_header(
+                {.channel = wire::Channel::Stream,
+                 .body_bytes = static_cast<std::uint32_t>(picture->fields->size() + picture->tail.size())});
+            buffers = {asio::buffer(header), asio::buffer(*picture->fields), asio::buffer(picture->tail)};
             const auto [error, count] = co_await line_.write(buffers);
             if (error)
                 break;

@@ -4,13 +4,15 @@
 // Threads      the network thread.
 // Full         responses: a client that leaves more than queued_response_bytes_max unread is closed. Events: dropped
 // and
-//              counted, then told with EventsDropped. Pictures: one of each subscription and island waits, the newest.
+//              counted, then told with EventsDropped. Pictures: one of each subscription and island waits, the newest,
+//              until the client has acknowledged enough of those before it.
 #pragma once
 
 #include "evod/v1/session.pb.h"
 #include "proto/wire/framing.h"
 #include "server/access/gate.h"
 #include "server/base/result.h"
+#include "server/network/chains.h"
 #include "server/network/line.h"
 #include "server/network/retries.h"
 #include "server/runtime/clock.h"
@@ -49,7 +51,23 @@ struct SnapshotSubscription {
     std::uint64_t newcomer = 0;              // number of the subscription among all of the server
     runtime::Clock::time_point next_picture; // not before then
     std::uint64_t dropped_count = 0;
-    std::map<std::uint32_t, SharedBytes> waiting; // by island: fields 1 to 49 of the newest picture not yet sent
+    v1::Codec codec = v1::CODEC_COLUMNS;
+    v1::Compression compression = v1::COMPRESSION_NONE;
+    std::optional<std::uint32_t> unacknowledged_max; // pictures of an island on their way; nullopt: any number
+
+    /// A picture as it waits, in one of two ways.
+    struct Waiting {
+        std::uint64_t sequence = 0;
+        SharedBytes columns;     // fields 1 to 49
+        ChainPicturePtr chained; // CODEC_DELTA: its form is chosen when it is sent
+        explicit operator bool() const { return columns || chained; }
+    };
+    struct Island {
+        Waiting waiting;                          // the newest picture not yet sent
+        std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
+        std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
+    };
+    std::map<std::uint32_t, Island> islands; // by index
 };
 
 struct EventSubscription {
@@ -78,7 +96,9 @@ class Session : public std::enable_shared_from_this<Session> {
     void event(const SharedBytes& frame);
     void count_dropped_events(std::uint64_t count);
     /// Takes a picture for a subscription in the place of one that has not been sent.
-    void picture(std::uint32_t subscription_id, std::uint32_t island, SharedBytes fields);
+    void picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture);
+    /// What this subscription is sent next of an island is a keyframe: one that waits, or else `picture`.
+    void keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& picture);
 
     /// Says what was wrong, and ends the session.
     void fail(const base::Refusal& refusal);
@@ -105,6 +125,15 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::awaitable<void> wait_for_work();
     void on_frame(const wire::Frame& frame);
     void on_hello(const v1::Hello& hello);
+    void on_acknowledgement(const v1::AcknowledgePicture& acknowledged);
+    /// Fields 1 to 49 of the picture whose turn it is, with what it is sent for; nullopt: none may be sent now.
+    struct Outgoing {
+        SharedBytes fields;
+        std::string tail; // fields 50 and up
+    };
+    std::optional<Outgoing> next_picture();
+    /// Says what was wrong, and ends the session.
+    void fail(const base::Refusal& refusal);
     void enqueue(SharedBytes frame, Kind kind);
     void written(const Queued& queued);
     void wake_writer();
@@ -127,10 +156,10 @@ class Session : public std::enable_shared_from_this<Session> {
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in queue_
     std::size_t in_flight_ = 0;                        // requests whose answer is not yet written
     std::uint64_t dropped_events_ = 0;                 // not yet told
-    struct Picture {
+    struct Turn {
         std::uint32_t subscription_id, island;
     };
-    std::deque<Picture> pictures_; // in the order of their turns; the bytes are in `snapshots`
+    std::deque<Turn> turns_; // of the pictures that wait in `snapshots`
     std::uint32_t subscription_id_ = 0;
 };
 

@@ -49,7 +49,7 @@ wire::BoxColumns columns_of(const runtime::BoxesSnapshot& boxes, std::size_t beg
 
 } // namespace
 
-SharedBytes encode_picture(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
+v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
     v1::SnapshotFrame frame;
     frame.set_world(snapshot.world);
     frame.set_run_id(to_text(snapshot.run_id));
@@ -78,12 +78,14 @@ SharedBytes encode_picture(const runtime::Snapshot& snapshot, const runtime::Isl
                   .crates = columns_of(island.boxes, 0, crates),
                   .obstacles = columns_of(island.boxes, crates, boxes)},
                  frame);
-    return std::make_shared<const std::string>(frame.SerializeAsString());
+    return frame;
 }
 
 std::uint32_t Streams::subscribe(Session& session, SnapshotSubscription subscription) {
     const std::uint32_t id = session.next_subscription_id();
     subscription.newcomer = ++newcomers_;
+    if (subscription.codec == v1::CODEC_DELTA)
+        groups_[group_of(subscription)].next_picture = {}; // its first picture comes at once, to the whole group
     session.snapshots.emplace(id, std::move(subscription));
     update_demand();
     return id;
@@ -102,9 +104,27 @@ bool Streams::unsubscribe(Session& session, std::uint32_t subscription_id) {
     return found > 0;
 }
 
+bool Streams::send_keyframes(Session& session, std::uint32_t subscription_id) {
+    const auto found = session.snapshots.find(subscription_id);
+    if (found == session.snapshots.end())
+        return false;
+    const SnapshotSubscription& subscription = found->second;
+    if (const auto group = groups_.find(group_of(subscription));
+        group != groups_.end() && subscription.codec == v1::CODEC_DELTA)
+        for (const auto& [island, chain] : group->second.chains)
+            if (chain.latest() && (!subscription.island || *subscription.island == island))
+                session.keyframe(subscription_id, island, chain.latest());
+    return true;
+}
+
+Streams::GroupName Streams::group_of(const SnapshotSubscription& subscription) {
+    return {subscription.world, subscription.rate_hz};
+}
+
 void Streams::update_demand() {
     runtime::Watches watches;
     bool events = false;
+    std::map<GroupName, Group> groups; // those that still have somebody
     for (const auto& [number, session] : sessions_) {
         events = events || !session->events.empty();
         for (const auto& [id, subscription] : session->snapshots) {
@@ -115,8 +135,13 @@ void Streams::update_demand() {
                 watch.islands.push_back(*subscription.island);
             else
                 watch.all_islands = true;
+            if (subscription.codec != v1::CODEC_DELTA)
+                continue;
+            if (auto group = groups_.extract(group_of(subscription)))
+                groups.insert(std::move(group));
         }
     }
+    groups_ = std::move(groups);
     for (auto& [world, watch] : watches) {
         std::sort(watch.islands.begin(), watch.islands.end());
         watch.islands.erase(std::unique(watch.islands.begin(), watch.islands.end()), watch.islands.end());
@@ -126,29 +151,107 @@ void Streams::update_demand() {
     mailbox_.wake();
 }
 
+namespace {
+
+/// When those who want so many pictures a second are to be shown the next.
+class Pace {
+  public:
+    Pace(double rate_hz, runtime::Clock::time_point& next)
+        : between_{std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz})}
+        , next_{next} {}
+
+    runtime::Clock::duration between() const { return between_; }
+
+    /// Whether this picture is for them; then the next is due a while later.
+    bool takes(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
+        // A tenth early rather than a whole picture late.
+        if (!picture.after_change && now + between_ / 10 < next_)
+            return false;
+        next_ += between_;
+        if (picture.after_change || next_ <= now)
+            next_ = now + between_;
+        return true;
+    }
+
+  private:
+    runtime::Clock::duration between_;
+    runtime::Clock::time_point& next_;
+};
+
+/// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
+class EncodedIslands {
+  public:
+    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence)
+        : snapshot_{snapshot}, sequence_{sequence}, islands_(snapshot.islands.size()) {}
+
+    const v1::SnapshotFrame& frame(std::size_t i) {
+        Island& island = islands_[i];
+        if (!island.frame) {
+            island.frame = picture_frame(snapshot_, snapshot_.islands[i]);
+            island.frame->set_sequence(++sequence_);
+        }
+        return *island.frame;
+    }
+    const SharedBytes& columns(std::size_t i) {
+        Island& island = islands_[i];
+        if (!island.columns)
+            island.columns = std::make_shared<const std::string>(frame(i).SerializeAsString());
+        return island.columns;
+    }
+    const std::shared_ptr<const wire::Scene>& scene(std::size_t i) {
+        Island& island = islands_[i];
+        if (!island.scene)
+            island.scene = std::make_shared<const wire::Scene>(wire::scene_of(frame(i)));
+        return island.scene;
+    }
+
+  private:
+    struct Island {
+        std::optional<v1::SnapshotFrame> frame;
+        SharedBytes columns;
+        std::shared_ptr<const wire::Scene> scene;
+    };
+    const runtime::Snapshot& snapshot_;
+    std::uint64_t& sequence_;
+    std::vector<Island> islands_;
+};
+
+} // namespace
+
 void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
     const runtime::Snapshot& snapshot = *picture.snapshot;
-    std::vector<SharedBytes> encoded(snapshot.islands.size());
+    EncodedIslands encoded{snapshot, sequence_};
+    // The groups that are shown this picture, and what of each island its chain comes to with it.
+    std::map<const Group*, std::vector<ChainPicturePtr>> shown;
+    for (auto& [name, group] : groups_)
+        if (name.first == snapshot.world && Pace{name.second, group.next_picture}.takes(picture, now))
+            shown[&group].resize(snapshot.islands.size());
     for (const auto& [number, session] : sessions_) {
         for (auto& [id, subscription] : session->snapshots) {
             if (subscription.world != snapshot.world)
                 continue;
-            const auto between = std::chrono::duration_cast<runtime::Clock::duration>(
-                std::chrono::duration<double>{1 / subscription.rate_hz});
-            // A tenth early rather than a whole picture late.
-            if (!picture.after_change && now + between / 10 < subscription.next_picture)
+            Pace pace{subscription.rate_hz, subscription.next_picture};
+            const bool chained = subscription.codec == v1::CODEC_DELTA;
+            Group* const group = chained ? &groups_.at(group_of(subscription)) : nullptr;
+            if (chained ? !shown.contains(group) : !pace.takes(picture, now))
                 continue;
             subscription.dropped_count += picture.replaced_count;
-            subscription.next_picture += between;
-            if (picture.after_change || subscription.next_picture <= now)
-                subscription.next_picture = now + between;
             for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
-                const runtime::IslandSnapshot& island = snapshot.islands[i];
-                if (subscription.island && *subscription.island != island.island)
+                const std::uint32_t island = snapshot.islands[i].island;
+                if (subscription.island && *subscription.island != island)
                     continue;
-                if (!encoded[i])
-                    encoded[i] = encode_picture(snapshot, island);
-                session->picture(id, island.island, encoded[i]);
+                SnapshotSubscription::Waiting waiting;
+                waiting.sequence = encoded.frame(i).sequence();
+                if (chained) {
+                    ChainPicturePtr& link = shown[group][i];
+                    if (!link)
+                        link = group->chains[island].add(encoded.frame(i), encoded.scene(i), compressor_, now,
+                                                         pace.between());
+                    waiting.chained = link;
+                } else {
+                    waiting.columns = encoded.columns(i);
+                }
+                session->picture(id, island, std::move(waiting));
             }
         }
     }

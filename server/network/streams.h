@@ -1,6 +1,7 @@
 // Streams: who watches what, and the way of pictures and events from the simulation to their sessions.
 //
-// A picture is encoded once per island, whoever gets it; the sessions share the bytes.
+// A picture is encoded once per island, whoever gets it; the sessions share the bytes. Those who take deltas of a world
+// at one rate form a group, which is shown the same pictures.
 //
 // Owner        the server; on the network thread.
 #pragma once
@@ -11,6 +12,8 @@
 #include "server/runtime/outbox.h"
 
 #include <map>
+#include <string>
+#include <utility>
 
 namespace evod::network {
 
@@ -27,6 +30,8 @@ class Streams {
     std::uint32_t subscribe(Session& session, EventSubscription subscription);
     /// false: the session has no such subscription.
     bool unsubscribe(Session& session, std::uint32_t subscription_id);
+    /// Sends the newest pictures of a subscription as keyframes. false: the session has no such subscription.
+    bool send_keyframes(Session& session, std::uint32_t subscription_id);
 
     /// To be called when the subscriptions of a session have gone with it.
     void update_demand();
@@ -37,13 +42,23 @@ class Streams {
     void count_dropped_events(std::uint64_t count);
 
   private:
+    /// The viewers of a world at one rate that take deltas.
+    struct Group {
+        runtime::Clock::time_point next_picture; // not before then
+        std::map<std::uint32_t, Chain> chains;   // by island, of those that are watched
+    };
+    using GroupName = std::pair<std::string, double>; // world, rate_hz
+    static GroupName group_of(const SnapshotSubscription& subscription);
+
     const Sessions& sessions_;
     runtime::Demand& demand_;
     runtime::Mailbox& mailbox_;
-    std::uint64_t newcomers_ = 0;
+    std::uint64_t newcomers_ = 0, sequence_ = 0;
+    wire::Compressor compressor_;
+    std::map<GroupName, Group> groups_;
 };
 
-/// Fields 1 to 49 of the SnapshotFrame of one island.
-SharedBytes encode_picture(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
+/// Fields 1 to 49 of the SnapshotFrame of one island, CODEC_COLUMNS, but for its sequence.
+v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
 
 } // namespace evod::network

@@ -141,6 +141,20 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
     return command;
 }
 
+void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
+    if (!(request.rate_hz() > 0 && std::isfinite(request.rate_hz())))
+        violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(request.rate_hz())});
+    if (!v1::Codec_IsValid(request.codec()))
+        violations.push_back({"subscribe_snapshots.codec", "one of Codec's", std::to_string(request.codec())});
+    if (!v1::Compression_IsValid(request.compression()))
+        violations.push_back(
+            {"subscribe_snapshots.compression", "one of Compression's", std::to_string(request.compression())});
+    const std::uint32_t unacknowledged = request.unacknowledged_max();
+    if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_pictures_max))
+        violations.push_back({"subscribe_snapshots.unacknowledged_max",
+                              "1 to " + std::to_string(unacknowledged_pictures_max), std::to_string(unacknowledged)});
+}
+
 void add_faults(const v1::ExportRun& request, Violations& violations) {
     const auto is_word = [](const auto* words, int number) {
         return number != 0 && words->FindValueByNumber(number) != nullptr;
@@ -181,6 +195,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kSubscribeSnapshots:
     case RequestCase::kSubscribeEvents:
     case RequestCase::kUnsubscribe:
+    case RequestCase::kRequestKeyframe:
         return RequestKind::Subscription;
     case RequestCase::kOpenPast:
     case RequestCase::kSeek:
@@ -244,9 +259,7 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
                                   "at least first_generation (" + std::to_string(query.first_generation()) + ")",
                                   std::to_string(query.last_generation())});
     } else if (request.has_subscribe_snapshots()) {
-        const double rate_hz = request.subscribe_snapshots().rate_hz();
-        if (!(rate_hz > 0 && std::isfinite(rate_hz)))
-            violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(rate_hz)});
+        add_faults(request.subscribe_snapshots(), violations);
     } else if (request.has_seek() && !request.seek().has_to()) {
         violations.push_back({"seek.to", "a moment of the run", "nothing"});
     } else if (request.has_close_past() && request.close_past().world().empty()) {

@@ -6,12 +6,14 @@
 #include "server/base/result.h"
 #include "server/simulation/commands.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace evod::protocol {
 
 constexpr std::size_t client_key_bytes_max = 64;
+constexpr std::uint32_t unacknowledged_pictures_max = 1000; // of an island, that a subscription may ask for
 
 /// What a request may need that is drawn by chance; drawn by the caller.
 struct Draws {

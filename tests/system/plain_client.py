@@ -1,6 +1,7 @@
 """A stranger's client against a real server: everything docs/PROTOCOL.md promises, and what it says of abuse.
 
-Plain Python 3, protobuf and numpy, with message classes made by protoc; nothing else of this repository. Each class below
+Plain Python 3, protobuf and numpy, with message classes made by protoc, and the decoder of docs/PROTOCOL.md; nothing else
+of this repository. Each class below
 is one test of ctest:
 
     plain_client.py EVOD MESSAGES PROTOCOL.md [CLASS …]
@@ -8,6 +9,7 @@ is one test of ctest:
 No test waits for a while; each waits for a condition, and gives up after `patience_s`.
 """
 import contextlib
+import ctypes
 import errno
 import itertools
 import math
@@ -31,6 +33,7 @@ sys.path.insert(0, messages_path)
 import numpy  # noqa: E402
 from google.protobuf import descriptor_pb2  # noqa: E402
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2 as w  # noqa: E402
+from delta_decoder import Decoder  # noqa: E402
 
 patience_s = 60
 OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 12, 14
@@ -230,9 +233,20 @@ def columns(picture):
     return result
 
 
+zstd = ctypes.CDLL("libzstd.so.1")
+zstd.ZSTD_getFrameContentSize.restype, zstd.ZSTD_decompress.restype = ctypes.c_ulonglong, ctypes.c_size_t
+
+
+def zstd_content(frame):
+    content = ctypes.create_string_buffer(zstd.ZSTD_getFrameContentSize(frame, ctypes.c_size_t(len(frame))))
+    size = zstd.ZSTD_decompress(content, ctypes.c_size_t(len(content)), frame, ctypes.c_size_t(len(frame)))
+    assert size == len(content)
+    return content.raw
+
+
 def documented_python():
     text = open(protocol_path, encoding="utf-8").read()
-    return re.search(r"```python\n(.*?)```", text, re.S)[1]
+    return re.search(r"## A complete client.*?```python\n(.*?)```", text, re.S)[1]
 
 
 class WithServer(unittest.TestCase):
@@ -288,7 +302,8 @@ class Handshake(WithServer):
         self.assertEqual(welcome.protocol_version, 1)
         self.assertRegex(welcome.server_version, r"^\d+\.\d+\.\d+$")
         self.assertRegex(welcome.instance_id, r"^[0-9a-f]{32}$")
-        self.assertIn("codec:columns", welcome.features)
+        self.assertEqual(set(welcome.features),
+                         {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements"})
         for field, limit in welcome.limits.ListFields():
             self.assertGreater(limit, 0, field.name)
         self.assertEqual(len(welcome.limits.ListFields()), len(c.Limits.DESCRIPTOR.fields))
@@ -1041,6 +1056,183 @@ class Pictures(WithServer):
         self.client.wait_world(lambda x: x.tick > now, world)
 
 
+class Deltas(WithServer):
+    """CODEC_DELTA. Every delta that is read here is decoded, so none may come whose base was not sent just before it."""
+
+    def setUp(self):
+        super().setUp()
+        self.viewer = self.enterContext(Client(self.server))
+        self.decoders = {}
+
+    def subscribe(self, world, codec=stream_pb2.CODEC_DELTA, rate_hz=120.0, **fields):
+        return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
+            world=world, codec=codec, rate_hz=rate_hz, **fields)).subscription.subscription_id
+
+    def acknowledge(self, picture):
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+            subscription_id=picture.subscription_id, island=picture.island, sequence=picture.sequence)))
+
+    def next(self, condition=lambda picture: True):
+        """The next picture that fulfils the condition, and its entities; those before it are decoded too."""
+        while True:
+            picture = self.viewer.next_picture()
+            self.assertGreater(picture.sequence, 0)
+            if picture.codec == stream_pb2.CODEC_COLUMNS:
+                seen = columns(picture)
+            else:
+                decoder = self.decoders.setdefault((picture.subscription_id, picture.island), Decoder(zstd_content))
+                seen = {kind: {field: column if field in ("id", "dx", "dy") else column / 16
+                               for field, column in fields.items()} for kind, fields in decoder.decode(picture).items()}
+            if condition(picture):
+                return picture, seen
+
+    def assert_same(self, seen, expected):
+        for kind, fields in expected.items():
+            for field, column in fields.items():
+                numpy.testing.assert_array_equal(seen[kind][field], column, f"{kind} {field}")
+
+    def compare(self, world, generations):
+        """Watches the world by every codec at once, until all have shown a good many ticks alike."""
+        kinds = {self.subscribe(world, stream_pb2.CODEC_COLUMNS): "columns", self.subscribe(world): "delta",
+                 self.subscribe(world, compression=stream_pb2.COMPRESSION_ZSTD): "zstd"}
+        self.client.call(run=c.Run(world=world))
+        shown, alike, deltas, last_generation = {}, 0, 0, 0
+        while alike < 100 or deltas < 100 or last_generation < generations:
+            picture, seen = self.next()
+            deltas += picture.base_sequence > 0
+            if picture.base_sequence > 0:
+                self.assertEqual((picture.world, picture.run_id, picture.width_px), ("", "", 0))
+            of_hash = shown.setdefault((picture.state_hash, picture.island), {})
+            of_hash[kinds[picture.subscription_id]] = seen
+            if len(of_hash) == 3:
+                self.assert_same(of_hash["delta"], of_hash["columns"])
+                self.assert_same(of_hash["zstd"], of_hash["columns"])
+                shown.pop((picture.state_hash, picture.island))
+                alike += 1
+                last_generation = picture.generation
+
+    def test_they_show_what_columns_show(self):
+        world = self.new_world(seed=3, obstacle_count=3, crate_count=4, obstacle_size_px=50, crate_size_px=30,
+                               island_count=2, generation_s=2)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=4)))
+        self.compare(world, 3)
+
+    def test_they_show_wide_islands(self):
+        self.compare(self.new_world(island_width_px=5000.0, crate_count=4), 1)
+
+    def test_a_picture_tells_when_it_is_and_deltas_leave_out_what_stays(self):
+        world = self.new_world()
+        self.subscribe(world)
+        self.client.run_to(30, world)
+        info = self.client.world(world)
+        picture, _ = self.next(lambda p: p.tick == 30)
+        for field in ("tick", "generation", "generation_tick", "simulated_s", "state_hash"):
+            self.assertEqual(getattr(picture, field), getattr(info, field), field)
+
+    def test_everybody_takes_a_keyframe_now_and_then(self):
+        world = self.new_world()
+        self.subscribe(world)
+        self.client.call(run=c.Run(world=world))
+        before, picture = None, self.next()[0]
+        # One that nothing but time has brought: none was left out before it, and the generation is the same.
+        while not before or picture.base_sequence > 0 or before.base_sequence == 0 or (
+                picture.dropped_count, picture.generation) != (before.dropped_count, before.generation):
+            before, picture = picture, self.next()[0]
+        self.assertEqual(picture.world, world)
+
+    def test_a_new_run_begins_with_a_keyframe(self):
+        world = self.new_world()
+        self.subscribe(world)
+        self.client.call(run=c.Run(world=world))
+        self.next(lambda p: p.base_sequence > 0)
+        again = self.client.call(reset_world=c.ResetWorld(world=world)).world
+        picture, _ = self.next(lambda p: p.generation_tick == 0 and p.base_sequence == 0)
+        self.assertEqual(picture.run_id, again.run_id)
+
+    def test_a_keyframe_comes_when_it_is_asked_for_even_if_the_world_stands_still(self):
+        world = self.new_world()
+        self.client.run_to(20, world)
+        subscription = self.subscribe(world)
+        first, seen = self.next()
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.viewer.pictures, [])
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
+        again, seen_again = self.next()
+        self.assertEqual((again.base_sequence, again.sequence, again.body), (0, first.sequence, first.body))
+        self.assert_same(seen_again, seen)
+        status = self.viewer.call(NOT_FOUND, request_keyframe=c.RequestKeyframe(subscription_id=99)).status
+        self.assertEqual([v.field for v in status.violations], ["request_keyframe.subscription_id"])
+
+    def test_a_damaged_picture_is_refused_and_a_keyframe_mends_it(self):
+        world = self.new_world()
+        subscription = self.subscribe(world)
+        self.client.call(run=c.Run(world=world))
+        picture, _ = self.next(lambda p: p.base_sequence > 0)
+        decoder = self.decoders[subscription, 0]
+        damaged = self.viewer.next_picture(lambda p: p.base_sequence > 0)
+        damaged.body = bytes([damaged.body[0] ^ 1]) + damaged.body[1:]
+        with self.assertRaisesRegex(ValueError, "damaged|not the last"):
+            decoder.decode(damaged)
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
+        keyframe = self.viewer.next_picture(lambda p: p.base_sequence == 0)  # deltas are thrown away meanwhile
+        decoder.decode(keyframe)
+        self.next(lambda p: p.base_sequence > 0)
+
+    def test_pictures_wait_for_acknowledgements_and_the_newest_wins(self):
+        world = self.new_world()
+        subscription = self.subscribe(world, unacknowledged_max=2)
+        self.client.call(run=c.Run(world=world))
+        first, second = self.next()[0], self.next()[0]
+        with Client(self.server) as other:
+            other.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
+            other.next_picture(lambda p: p.tick > second.tick + 60)
+            paused = self.client.call(pause=c.Pause(world=world)).world
+            other.next_picture(lambda p: p.tick == paused.tick)
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.viewer.pictures, [])  # two are on their way
+        self.acknowledge(first)
+        newest, _ = self.next()
+        self.assertEqual((newest.tick, newest.base_sequence), (paused.tick, 0))
+        self.assertGreater(newest.dropped_count, 0)
+        self.acknowledge(newest)
+        self.client.call(run=c.Run(world=world))
+        for _ in range(20):
+            picture, _ = self.next()
+            self.acknowledge(picture)
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+            subscription_id=subscription + 1, island=7, sequence=1)))  # means nothing
+
+    def test_columns_can_be_acknowledged_too(self):
+        world = self.new_world()
+        self.subscribe(world, stream_pb2.CODEC_COLUMNS, unacknowledged_max=1)
+        self.client.call(run=c.Run(world=world))
+        last = 0
+        for _ in range(10):
+            picture, _ = self.next()
+            self.assertGreater(picture.tick + 1, last)
+            last = picture.tick
+            self.viewer.call(list_worlds=c.ListWorlds())
+            self.assertEqual(self.viewer.pictures, [])
+            self.acknowledge(picture)
+
+    def test_viewers_at_other_rates_keep_their_deltas(self):
+        world = self.new_world()
+        self.client.call(run=c.Run(world=world))
+        subscriptions = [self.subscribe(world, rate_hz=rate_hz) for rate_hz in (120.0, 40.0, 30.0)]
+        deltas = dict.fromkeys(subscriptions, 0)
+        while min(deltas.values()) < 50:
+            picture, _ = self.next(lambda p: p.base_sequence > 0)
+            deltas[picture.subscription_id] += 1
+
+    def test_what_cannot_be_subscribed_to_is_refused(self):
+        world = self.new_world()
+        for field, number in (("codec", 99), ("compression", 99), ("unacknowledged_max", 0),
+                              ("unacknowledged_max", 1001)):
+            status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
+                world=world, rate_hz=1, **{field: number})).status
+            self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots." + field])
+
+
 class Queries(WithServer):
     def test_history_in_parts(self):
         world = self.new_world(fitness="gene_sum", island_count=7)
@@ -1258,6 +1450,11 @@ class Documentation(unittest.TestCase):
         self.assertEqual({k: list(v) for k, v in seen["organisms"].items()},
                          {"id": [0, 2], "x": [10.5, 50.25], "y": [20, 30.0625], "radius": [10, 8.5], "health": [100, 42.5]})
         self.assertEqual((seen["food"]["x"][0], seen["poison"]["y"][0], seen["obstacles"]["half_width"][0]), (5, 55, 15))
+
+    def test_its_decoder_is_the_one_tested_here(self):
+        text = open(protocol_path, encoding="utf-8").read()
+        decoder = re.search(r"### Deltas.*?```python\n(.*?)```", text, re.S)[1]
+        self.assertEqual(decoder, open(sys.modules[Decoder.__module__].__file__, encoding="utf-8").read())
 
     def test_its_table_of_limits_is_that_of_the_server(self):
         server = Server()

@@ -1,0 +1,74 @@
+// Chains: the pictures of an island at one rate, each told from the one before, for whoever takes deltas.
+//
+// A picture is encoded when the first session asks for it, once in each form, and the sessions share the bytes. All
+// viewers of a world at one rate are shown the same pictures, so that what is a delta for one is a delta for all.
+//
+// Owner        Streams; a ChainPicture lives as long as a session is to send it.
+// Threads      the network thread.
+#pragma once
+
+#include "proto/wire/compression.h"
+#include "proto/wire/delta_codec.h"
+#include "server/network/retries.h"
+#include "server/runtime/clock.h"
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+
+namespace evod::network {
+
+/// One picture of a chain, in every form in which it is sent: fields 1 to 49 of a SnapshotFrame.
+class ChainPicture {
+  public:
+    /// about       all of the frame but its body; what the codec says of it is set here.
+    /// scene       its entities.
+    /// compressor  there as long as forms of the picture are asked for.
+    ChainPicture(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
+
+    /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all.
+    std::shared_ptr<ChainPicture> next(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene,
+                                       bool with_delta) const;
+
+    std::uint64_t sequence() const { return about_.sequence(); }
+    /// Who was sent that picture last can take the delta; 0: there is none.
+    std::uint64_t base_sequence() const { return base_sequence_; }
+
+    const SharedBytes& keyframe(v1::Compression compression);
+    const SharedBytes& delta(v1::Compression compression);
+
+  private:
+    using Forms = std::array<SharedBytes, 2>; // as it is, compressed
+    const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
+    std::string body(bool as_delta) const;
+
+    v1::SnapshotFrame about_;
+    std::shared_ptr<const wire::Footing> footing_, base_; // base_ is null where there is no delta
+    std::uint64_t base_sequence_ = 0;
+    std::uint16_t ticks_ = 0; // since the base
+    wire::Compressor* compressor_;
+    Forms keyframe_, delta_;
+};
+
+using ChainPicturePtr = std::shared_ptr<ChainPicture>;
+
+/// The pictures of one island at one rate.
+class Chain {
+  public:
+    /// Everybody takes a keyframe at least so often, if there are pictures.
+    static constexpr std::chrono::seconds keyframe_interval{2};
+
+    /// between  how long it usually is to the next picture.
+    ChainPicturePtr add(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor,
+                        runtime::Clock::time_point now, runtime::Clock::duration between);
+
+    /// Null before the first.
+    const ChainPicturePtr& latest() const { return latest_; }
+
+  private:
+    ChainPicturePtr latest_;
+    runtime::Clock::time_point keyframe_made_; // the last that was one for all
+};
+
+} // namespace evod::network
