@@ -2,6 +2,8 @@
 
 #include "client/link/session.h"
 
+#include "proto/wire/delta_codec.h"
+
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
@@ -216,6 +218,7 @@ class Connection::Io {
         in_flight_count_ = 0;
         late_.clear();
         handle_of_server_id_.clear();
+        views_.clear();
         for (auto& [handle, subscription] : subscriptions_) {
             subscription.server_id.reset();
         }
@@ -410,6 +413,7 @@ class Connection::Io {
     void unsubscribe_from(std::uint32_t server_id) {
         if (connected() && server_id > 0) {
             handle_of_server_id_.erase(server_id);
+            views_.erase(server_id);
             evod::v1::Request request;
             request.mutable_unsubscribe()->set_subscription_id(server_id);
             add_request(
@@ -432,22 +436,68 @@ class Connection::Io {
     }
 
     void on_picture(evod::v1::SnapshotFrame frame) {
-        const auto known = handle_of_server_id_.find(frame.subscription_id());
+        const std::uint32_t server_id = frame.subscription_id();
+        const auto known = handle_of_server_id_.find(server_id);
         if (known == handle_of_server_id_.end()) {
             return; // unsubscribed while it was on its way
         }
         const SubscriptionHandle handle = known->second;
-        auto decoded = wire::decode(std::move(frame));
-        share([&] {
-            if (!decoded) {
+        if (subscriptions_.at(handle).request.subscribe_snapshots().has_unacknowledged_max()) {
+            acknowledge(frame);
+        }
+        View& view = views_[server_id][frame.island()];
+        const bool chained = frame.codec() == evod::v1::CODEC_DELTA;
+        if (chained && frame.base_sequence() != 0 && view.decoder.needs_keyframe() && view.keyframe_requests > 0) {
+            return; // it was on its way before the keyframe that has been asked for
+        }
+        auto decoded = view.decoder.decode(std::move(frame));
+        if (!decoded) {
+            // A server whose keyframes are damaged too is not asked again and again.
+            const bool ask = chained && view.keyframe_requests < keyframe_requests_max;
+            share([&] {
                 ++status_.damaged_picture_count;
                 status_.last_damage = decoded.error().what;
-                return;
+                status_.keyframe_request_count += ask ? 1 : 0;
+            });
+            if (ask) {
+                ++view.keyframe_requests;
+                request_keyframe(server_id);
             }
+            return;
+        }
+        view.keyframe_requests = 0;
+        share([&] {
             const std::uint32_t island = decoded->about.island();
             pictures_[handle][island] = std::make_shared<const wire::Picture>(*std::move(decoded));
         });
     }
+
+    /// Servers that do not know acknowledgements do not number their pictures.
+    void acknowledge(const evod::v1::SnapshotFrame& frame) {
+        if (frame.sequence() == 0) {
+            return;
+        }
+        evod::v1::ClientMessage message;
+        auto& acknowledged = *message.mutable_acknowledge_picture();
+        acknowledged.set_subscription_id(frame.subscription_id());
+        acknowledged.set_island(frame.island());
+        acknowledged.set_sequence(frame.sequence());
+        session_->send(wire::encode_frame(wire::Channel::Control, message));
+    }
+
+    void request_keyframe(std::uint32_t server_id) {
+        evod::v1::Request request;
+        request.mutable_request_keyframe()->set_subscription_id(server_id);
+        add_request(
+            std::move(request), [](const auto&) {}, default_timeout, Loss::Forgotten, Order::First);
+    }
+
+    /// What is seen of one island for one subscription of this session.
+    struct View {
+        wire::PictureDecoder decoder;
+        int keyframe_requests = 0; // since a picture could be decoded
+    };
+    static constexpr int keyframe_requests_max = 3;
 
     const Options options_;
     const std::string client_key_ = random_key();
@@ -469,6 +519,7 @@ class Connection::Io {
     std::set<std::uint64_t> late_;             // of those: nobody waits for the answer any more
     std::map<SubscriptionHandle, ActiveSubscription> subscriptions_;
     std::map<std::uint32_t, SubscriptionHandle> handle_of_server_id_;
+    std::map<std::uint32_t, std::map<std::uint32_t, View>> views_; // by server_id and island
 
     std::thread thread_; // last: it uses all of the above
 };
@@ -518,6 +569,12 @@ std::future<Result<evod::v1::Response>> Connection::send(evod::v1::Request reque
 
 SubscriptionHandle Connection::subscribe(evod::v1::SubscribeSnapshots subscription) {
     evod::v1::Request request;
+    if (subscription.codec() == evod::v1::CODEC_UNSPECIFIED) {
+        // A server that does not know these fields overlooks them, and sends columns.
+        subscription.set_codec(evod::v1::CODEC_DELTA);
+        subscription.set_compression(evod::v1::COMPRESSION_ZSTD);
+        subscription.set_unacknowledged_max(unacknowledged_pictures_max);
+    }
     *request.mutable_subscribe_snapshots() = std::move(subscription);
     return io_->post_subscription(std::move(request));
 }

@@ -16,7 +16,7 @@
 // Threads      one of its own does all input and output. Every function may be called from any thread.
 // Bounded      requests beyond the server's limit wait here for their turn; of events the newest
 //              Options::events_kept are kept and the loss is told in an EventsDropped; of pictures the newest of each
-//              subscription and island.
+//              subscription and island, and what the next delta is told from.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -120,6 +120,7 @@ struct ConnectionStatus {
     std::uint64_t connected_count = 0;        // times that Connected was reached
     std::uint64_t damaged_picture_count = 0;  // pictures thrown away because they could not be decoded
     std::string last_damage;                  // what was wrong with the last of them
+    std::uint64_t keyframe_request_count = 0; // keyframes asked for because of that
 };
 
 /// Names a subscription for as long as the Connection lives, across reconnections.
@@ -133,6 +134,9 @@ class Connection {
   public:
     using Handler = std::function<void(Result<evod::v1::Response>)>;
     static constexpr std::chrono::milliseconds default_timeout{10'000};
+    /// A server sends so many pictures of an island ahead of their acknowledgement: enough for 30 a second over a line
+    /// with a quarter of a second there and back, and a backlog of no more than that.
+    static constexpr std::uint32_t unacknowledged_pictures_max = 8;
 
     /// Begins to connect, and returns at once.
     explicit Connection(Options options);
@@ -157,7 +161,8 @@ class Connection {
     std::future<Result<evod::v1::Response>> send(evod::v1::Request request,
                                                  std::chrono::milliseconds timeout = default_timeout);
 
-    /// Subscribes now or when connected, and again after each reconnection, until unsubscribe().
+    /// Subscribes now or when connected, and again after each reconnection, until unsubscribe(). Pictures for which no
+    /// codec is chosen come in the fewest bytes that the server has, and are acknowledged as they are decoded.
     SubscriptionHandle subscribe(evod::v1::SubscribeSnapshots subscription);
     SubscriptionHandle subscribe(evod::v1::SubscribeEvents subscription);
     void unsubscribe(SubscriptionHandle handle);

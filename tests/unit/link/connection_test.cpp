@@ -1,3 +1,4 @@
+#include "proto/wire/delta_codec.h"
 #include "tests/unit/link/fake_server.h"
 
 #include <gmock/gmock.h>
@@ -376,6 +377,139 @@ TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
     EXPECT_EQ(connection.status().damaged_picture_count, 1U);
     EXPECT_THAT(connection.status().last_damage, HasSubstr("body"));
     EXPECT_EQ(connection.status().state, State::Connected);
+}
+
+/// A server's end of a chain of deltas: one organism that goes to the right.
+class WalkingPictures {
+  public:
+    v1::SnapshotFrame keyframe() { return next(false); }
+    v1::SnapshotFrame delta() { return next(true); }
+
+  private:
+    v1::SnapshotFrame next(bool as_delta) {
+        const std::vector<std::uint32_t> ids{5};
+        const std::vector<std::int32_t> x{static_cast<std::int32_t>(sequence_) * 4096}, y{4096};
+        const std::vector<float> radius{1.F}, health{2.F};
+        v1::SnapshotFrame frame;
+        wire::encode({.width_px = 100,
+                      .height_px = 100,
+                      .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}},
+                     frame);
+        const auto scene = std::make_shared<const wire::Scene>(wire::scene_of(frame));
+        frame.set_island_count(1);
+        frame.set_subscription_id(1);
+        frame.set_codec(v1::CODEC_DELTA);
+        frame.set_sequence(++sequence_);
+        frame.set_tick(sequence_);
+        const wire::Footing footing = footing_.scene ? wire::moved_on(footing_, scene, 1) : wire::standing(scene);
+        if (as_delta) {
+            frame.set_base_sequence(sequence_ - 1);
+            frame.set_body(wire::encode_delta(footing_, *scene, 1));
+            wire::leave_out_unchanging(frame);
+        } else {
+            frame.set_body(wire::encode_keyframe(footing));
+        }
+        frame.set_checksum(wire::checksum_of(frame, frame.body()));
+        footing_ = footing;
+        return frame;
+    }
+
+    wire::Footing footing_;
+    std::uint64_t sequence_ = 0;
+};
+
+std::shared_ptr<const wire::Picture> picture_of_tick(Connection& connection, SubscriptionHandle handle,
+                                                     std::uint64_t tick) {
+    std::shared_ptr<const wire::Picture> picture;
+    EXPECT_TRUE(eventually([&] {
+        if (auto newest = connection.take_picture(handle)) {
+            picture = std::move(newest);
+        }
+        return picture && picture->about.tick() == tick;
+    }));
+    return picture;
+}
+
+TEST(Pictures, AreAskedForInTheFewestBytesUnlessACodecIsChosen) {
+    FakeServer server;
+    Connection connection{server.options()};
+    connection.subscribe(v1::SubscribeSnapshots{});
+    v1::SubscribeSnapshots plain;
+    plain.set_codec(v1::CODEC_COLUMNS);
+    connection.subscribe(plain);
+    FakeSession session = server.accept_and_welcome();
+    const v1::SubscribeSnapshots first = session.read_request().subscribe_snapshots();
+    EXPECT_EQ(first.codec(), v1::CODEC_DELTA);
+    EXPECT_EQ(first.compression(), v1::COMPRESSION_ZSTD);
+    EXPECT_EQ(first.unacknowledged_max(), Connection::unacknowledged_pictures_max);
+    const v1::SubscribeSnapshots second = session.read_request().subscribe_snapshots();
+    EXPECT_EQ(second.codec(), v1::CODEC_COLUMNS);
+    EXPECT_FALSE(second.has_unacknowledged_max());
+}
+
+TEST(Pictures, DeltasAreDecodedAndAcknowledged) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    for (std::uint64_t sequence = 1; sequence <= 3; ++sequence) {
+        session.send(sequence == 1 ? pictures.keyframe() : pictures.delta());
+        const auto message = session.read();
+        EXPECT_EQ(message.acknowledge_picture().subscription_id(), 1U);
+        EXPECT_EQ(message.acknowledge_picture().sequence(), sequence);
+        const auto picture = picture_of_tick(connection, handle, sequence);
+        ASSERT_TRUE(picture);
+        EXPECT_EQ(picture->organisms.x_px, std::vector<float>{static_cast<float>(sequence - 1)});
+        EXPECT_EQ(picture->about.width_px(), 100) << "of the keyframe";
+    }
+}
+
+TEST(Pictures, ADamagedDeltaIsMendedByAKeyframeThatIsAskedFor) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    session.send(pictures.keyframe());
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    auto damaged = pictures.delta();
+    damaged.mutable_body()->back() ^= 1;
+    session.send(damaged);
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    const v1::Request request = session.read_request();
+    EXPECT_EQ(request.request_keyframe().subscription_id(), 1U);
+    session.send(pictures.delta()); // on its way before the request came
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    session.answer(request);
+    session.send(pictures.keyframe());
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    session.send(pictures.delta());
+    const auto picture = picture_of_tick(connection, handle, 5);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->organisms.x_px, std::vector<float>{4.F});
+    const ConnectionStatus status = connection.status();
+    EXPECT_EQ(status.damaged_picture_count, 1U);
+    EXPECT_THAT(status.last_damage, HasSubstr("checksum"));
+    EXPECT_EQ(status.keyframe_request_count, 1U);
+}
+
+TEST(Pictures, AServerWhoseKeyframesAreDamagedIsNotAskedForEver) {
+    FakeServer server;
+    Connection connection{server.options()};
+    connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    for (int i = 0; i < 20; ++i) {
+        auto damaged = pictures.keyframe();
+        damaged.mutable_body()->back() ^= 1;
+        session.send(damaged);
+    }
+    EXPECT_TRUE(eventually([&] { return connection.status().damaged_picture_count == 20; }));
+    EXPECT_EQ(connection.status().keyframe_request_count, 3U);
 }
 
 TEST(Events, ComeInOrderAndALossIsTold) {
