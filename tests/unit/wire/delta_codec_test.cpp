@@ -280,6 +280,7 @@ TEST(DeltaDamage, EveryOtherByteIsRefused) {
     const auto sent = two_pictures(5, first);
     ASSERT_TRUE(PictureDecoder{first}.decode(sent.delta));
     for (const auto* whole : {&sent.delta, &sent.keyframe}) {
+        ASSERT_GT(whole->body().size(), 100U);
         for (std::size_t i = 0; i < whole->body().size(); ++i) {
             for (const int change : {1, 0x80, 0xff}) {
                 auto damaged = *whole;
