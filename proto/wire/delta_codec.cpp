@@ -22,6 +22,7 @@ using Numbers = std::span<const std::uint32_t>;
 constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // in a section's parts
 constexpr std::uint8_t with_exceptions = 128;                 // in a column's width
 constexpr std::uint64_t exception_bytes = 8;
+constexpr std::uint32_t size_bytes = 2; // of a radius, health, half width or half height
 
 constexpr float steps_per_px = 16;
 
@@ -145,8 +146,14 @@ class BodyWriter {
         }
     }
 
-    void positions(Numbers values, std::uint32_t position_bytes) {
-        position_bytes == 2 ? plain<std::uint16_t>(values) : plain<std::uint32_t>(values);
+    /// The lowest byte of each, then the next of each: those that are all but the same stand together.
+    void planes(Numbers values, std::uint32_t bytes) {
+        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
+            char* const to = grow(values.size());
+            for (std::size_t i = 0; i < values.size(); ++i) {
+                to[i] = static_cast<char>(values[i] >> (8 * plane));
+            }
+        }
     }
 
     /// Signed numbers, in the width that takes the fewest bytes.
@@ -245,11 +252,11 @@ void write_parts(BodyWriter& writer, const Kind& kind, const Entities& entities,
     if (kind.ids) {
         writer.rising_column(at(entities.id, come));
     }
-    writer.positions(at(entities.x, come), position_bytes);
-    writer.positions(at(entities.y, come), position_bytes);
+    writer.planes(at(entities.x, come), position_bytes);
+    writer.planes(at(entities.y, come), position_bytes);
     if (kind.sizes) {
-        writer.plain<std::uint16_t>(at(entities.width, come));
-        writer.plain<std::uint16_t>(at(entities.height, come));
+        writer.planes(at(entities.width, come), size_bytes);
+        writer.planes(at(entities.height, come), size_bytes);
     }
     if (kind.displacements) {
         const Column still(displacements ? 0 : come.size());
@@ -286,6 +293,20 @@ class BodyReader {
 
     Column positions(std::size_t count, std::uint32_t position_bytes) {
         return position_bytes == 2 ? plain<std::uint16_t>(count) : plain<std::uint32_t>(count);
+    }
+
+    Column planes(std::size_t count, std::uint32_t bytes) {
+        if (!take(count * bytes)) {
+            return {};
+        }
+        Column values(count);
+        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
+            const char* const from = taken_ + plane * count;
+            for (std::size_t i = 0; i < count; ++i) {
+                values[i] |= std::uint32_t{static_cast<unsigned char>(from[i])} << (8 * plane);
+            }
+        }
+        return values;
     }
 
     /// The caller sees to it that there is memory for `count` numbers.
@@ -464,11 +485,11 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
         if (kind.ids) {
             come.entities.id = reader.rising_column(come_count, std::uint64_t{1} << 32);
         }
-        come.entities.x = reader.positions(come_count, step.position_bytes);
-        come.entities.y = reader.positions(come_count, step.position_bytes);
+        come.entities.x = reader.planes(come_count, step.position_bytes);
+        come.entities.y = reader.planes(come_count, step.position_bytes);
         if (kind.sizes) {
-            come.entities.width = reader.plain<std::uint16_t>(come_count);
-            come.entities.height = reader.plain<std::uint16_t>(come_count);
+            come.entities.width = reader.planes(come_count, size_bytes);
+            come.entities.height = reader.planes(come_count, size_bytes);
         }
         if (kind.displacements) {
             come.displacements.x = reader.column(come_count);

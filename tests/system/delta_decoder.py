@@ -25,6 +25,10 @@ class Body:
         self.offset += numbers.nbytes
         return numbers.astype(numpy.int64)
 
+    def planes(self, count, size):
+        planes = self.plain("<u1", count * size).reshape(size, count)
+        return sum(planes[i] << 8 * i for i in range(size))
+
     def column(self, count):
         width = self.number("<u1")
         indices = values = ()
@@ -65,7 +69,7 @@ class Decoder:
         entities = {}
         for (name, sizes), count in zip(KINDS, counts):
             of_base = self.entities[name] if frame.base_sequence else None
-            entities[name] = self.section(body, name, sizes, of_base, ticks, f"<u{frame.position_bytes}")
+            entities[name] = self.section(body, name, sizes, of_base, ticks, frame.position_bytes)
             if len(entities[name]["x"]) != count:
                 raise ValueError("not as many as there should be")
         self.entities = entities
@@ -73,7 +77,7 @@ class Decoder:
         self.sequence = frame.sequence
         return entities
 
-    def section(self, body, name, sizes, base, ticks, position):
+    def section(self, body, name, sizes, base, ticks, position_bytes):
         fields = [*(["id"] if name in HAVE_IDS else []), "x", "y", *sizes, *(["dx", "dy"] if name in MOVE else [])]
         stayed = dict(base) if base else {field: numpy.zeros(0, numpy.int64) for field in fields}
         parts, come = body.number("<u1"), {}
@@ -85,9 +89,9 @@ class Decoder:
             if name in HAVE_IDS:
                 come["id"] = body.rising_column(count)
             for field in ("x", "y"):
-                come[field] = body.plain(position, count)
+                come[field] = body.planes(count, position_bytes)
             for field in sizes:
-                come[field] = body.plain("<u2", count)
+                come[field] = body.planes(count, 2)
             for field in ("dx", "dy") if name in MOVE else ():
                 come[field] = body.column(count)
         count = len(stayed["x"])
