@@ -299,6 +299,15 @@ class Page:
                          f"{count(storage['organisms'])}, s", with_spread(storage["ready_after_kill_s"])])
         return table(["", "median (least – greatest)"], rows)
 
+    def stream(self):
+        def decoding(row):
+            return digits(row["decode_ms"]) if "decode_ms" in row else ""
+        return table(["organisms", "codec", "bytes a picture", "the same an organism", "a keyframe, bytes",
+                      "network thread, ms a picture", "numpy decodes, ms"],
+                     [[count(row["organisms"]), row["codec"], count(round(row["bytes"])), digits(row["bytes_per_organism"]),
+                       count(round(row["keyframe_bytes"])) if row.get("keyframes") else "", digits(row["server_ms"]),
+                       decoding(row)] for row in self.results["stream"]])
+
     def drawing(self):
         return table(["organisms", "ms of processor time a drawn frame, OpenGL in software included"],
                      [[count(row["organisms"]), digits(row["ms"])] for row in self.results["drawing"]])

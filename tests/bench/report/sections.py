@@ -178,11 +178,17 @@ def drawing(bench):
             for entry in json.loads(run.stdout)["benchmarks"]]
 
 
+def of_server(bench, program):
+    return programs.run_json(python, bench.root / "tests/bench" / program, bench.program("evod"),
+                             bench.build / "tests/system", "--json", *(["--runs", 2] if bench.quick else []))
+
+
 def server(bench):
-    def measured(program):
-        return programs.run_json(python, bench.root / "tests/bench" / program, bench.program("evod"),
-                                 bench.build / "tests/system", "--json", *(["--runs", 2] if bench.quick else []))
-    return {**measured("viewer_cost.py"), "storage": measured("storage_cost.py")}
+    return {**of_server(bench, "viewer_cost.py"), "storage": of_server(bench, "storage_cost.py")}
+
+
+def stream(bench):
+    return of_server(bench, "stream_cost.py")
 
 
 def evod_run(bench, *arguments):
@@ -218,7 +224,7 @@ def whole_program(bench):
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
               "agreement": agreement, "instruction_sets": instruction_sets, "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
-              "server": server, "drawing": drawing}
+              "server": server, "stream": stream, "drawing": drawing}
 
 
 def columns():
