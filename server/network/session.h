@@ -132,8 +132,6 @@ class Session : public std::enable_shared_from_this<Session> {
         std::string tail; // fields 50 and up
     };
     std::optional<Outgoing> next_picture();
-    /// Says what was wrong, and ends the session.
-    void fail(const base::Refusal& refusal);
     void enqueue(SharedBytes frame, Kind kind);
     void written(const Queued& queued);
     void wake_writer();
