@@ -42,12 +42,19 @@ std::shared_ptr<const wire::Picture> picture(std::size_t organism_count, std::ui
     return made;
 }
 
+/// Where no server is.
+link::Options nobody() {
+    link::Options options;
+    options.server = {.host = "127.0.0.1", .port = 1};
+    return options;
+}
+
 /// Range 0: organisms; range 1: how many times larger than fitted.
 void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
     const sf::Context context{context_settings(), 1280, 720};
     Stage stage;
-    Watch watch{{.server = {.host = "127.0.0.1", .port = 1}, .world = "", .island = 0}};
+    Watch watch{{.connection = nobody(), .world = "", .island = 0}};
     Camera camera;
     const auto start = link::WorldView::Clock::now();
     const auto first = picture(organism_count, 0), second = picture(organism_count, 2);
