@@ -15,6 +15,7 @@
 #include <boost/asio/post.hpp>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <csignal>
 #include <utility>
 
@@ -255,6 +256,13 @@ void Server::accepted(tcp::socket socket) {
             base::Refusal{.code = base::RefusalCode::ResourceExhausted,
                           .message = "the server has " + std::to_string(sessions_max) + " sessions already",
                           .violations = {}});
+    const auto neighbours = std::ranges::count_if(
+        sessions_, [&](const auto& other) { return other.second->neighbourhood() == session->neighbourhood(); });
+    if (neighbours >= sessions_per_address_max)
+        return session->start(base::Refusal{.code = base::RefusalCode::ResourceExhausted,
+                                            .message = "there are " + std::to_string(sessions_per_address_max) +
+                                                       " sessions from this address already",
+                                            .violations = {}});
     sessions_.emplace(session->number(), session);
     session->start();
 }

@@ -39,7 +39,7 @@ std::string to_text(const tcp::endpoint& endpoint) {
 }
 
 /// As far as an address tells people apart: of IPv6, whoever has one has a whole /64.
-std::string neighbourhood(const asio::ip::address& address) {
+std::string neighbourhood_of(const asio::ip::address& address) {
     if (!address.is_v6())
         return address.to_string();
     auto bytes = address.to_v6().to_bytes();
@@ -84,14 +84,23 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , host_{host}
     , number_{number}
     , peer_{peer_of(line_.socket())}
+    , neighbourhood_{neighbourhood_of(peer_.address())}
     , hello_timer_{line_.socket().get_executor()}
+    , frame_timer_{line_.socket().get_executor()}
     , farewell_timer_{line_.socket().get_executor()}
     , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
     line_.socket().set_option(tcp::no_delay{true}, ignored);
     line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
-    const int unsent = unsent_bytes_max;
-    ::setsockopt(line_.socket().native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+    const auto set = [&](int option, std::int64_t value) {
+        const int given = static_cast<int>(value);
+        ::setsockopt(line_.socket().native_handle(), IPPROTO_TCP, option, &given, sizeof given);
+    };
+    set(TCP_NOTSENT_LOWAT, unsent_bytes_max);
+    set(TCP_KEEPIDLE, silence_max.count());
+    set(TCP_KEEPINTVL, probe_every.count());
+    set(TCP_KEEPCNT, probes_max);
+    set(TCP_USER_TIMEOUT, untaken_max.count());
 }
 
 void Session::start(const std::optional<base::Refusal>& refused) {
@@ -141,6 +150,7 @@ asio::awaitable<void> Session::read() {
         if (error || ended_)
             break;
         reader_.feed({bytes.data(), count});
+        bool one_came = false;
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
@@ -149,14 +159,33 @@ asio::awaitable<void> Session::read() {
             }
             if (!*frame)
                 break;
+            one_came = true;
             on_frame(**frame);
         }
+        mind_frame(one_came);
     }
     if (finishing_ && !ended_)
         co_await discard_input();
     else
         close();
     end();
+}
+
+void Session::mind_frame(bool one_came) {
+    const bool within = reader_.buffered_bytes() > 0 && !finishing_ && !ended_;
+    const bool goes_on = within && within_frame_ && !one_came;
+    within_frame_ = within;
+    if (goes_on)
+        return;
+    frame_timer_.cancel();
+    if (!within)
+        return;
+    frame_timer_.expires_after(frame_timeout);
+    frame_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
+        if (const auto self = weak.lock(); self && !error)
+            self->fail(refusal(base::RefusalCode::FailedPrecondition,
+                               "a frame did not come whole within " + std::to_string(frame_timeout.count()) + " s"));
+    });
 }
 
 /// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
@@ -215,7 +244,7 @@ void Session::on_hello(const v1::Hello& hello) {
                      .message = "this server speaks another version of the protocol",
                      .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
                                      std::to_string(hello.protocol_version())}}});
-    auto visitor = host_.admit(hello.token(), neighbourhood(peer_.address()));
+    auto visitor = host_.admit(hello.token(), neighbourhood_);
     if (!visitor)
         return fail(visitor.error());
     visitor_ = *std::move(visitor);
@@ -441,6 +470,7 @@ void Session::close() {
         return;
     line_.close();
     hello_timer_.cancel();
+    frame_timer_.cancel();
     farewell_timer_.cancel();
     wake_writer();
 }

@@ -37,7 +37,7 @@ struct SessionHost {
     std::string instance_id; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
     std::optional<v1::Storage> storage; // as it stands now; nothing: runs are not kept
-    asio::ssl::context* tls = nullptr; // nullptr: in the clear
+    asio::ssl::context* tls = nullptr;  // nullptr: in the clear
     /// Who comes with a token, from an address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit;
     std::function<void(Session&, v1::Request)> handle;
@@ -86,6 +86,8 @@ class Session : public std::enable_shared_from_this<Session> {
     /// Client name and address, and whose token it has: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
     const access::Visitor& visitor() const { return visitor_; }
+    /// Where it comes from, as far as an address tells people apart: of IPv6, its /64.
+    const std::string& neighbourhood() const { return neighbourhood_; }
 
     /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
     bool admit_request();
@@ -120,6 +122,8 @@ class Session : public std::enable_shared_from_this<Session> {
     };
 
     asio::awaitable<void> read();
+    /// A frame that has begun has to come whole in time. one_came: since the last call.
+    void mind_frame(bool one_came);
     asio::awaitable<void> write();
     asio::awaitable<void> discard_input();
     asio::awaitable<void> wait_for_work();
@@ -141,11 +145,13 @@ class Session : public std::enable_shared_from_this<Session> {
     SessionHost& host_;
     const std::uint64_t number_;
     const tcp::endpoint peer_;
+    const std::string neighbourhood_;
     std::string client_;
     access::Visitor visitor_;
     wire::FrameReader reader_{wire::hello_limits};
-    asio::steady_timer hello_timer_, farewell_timer_, writer_signal_;
-    bool begun_ = false; // the line can be written to
+    asio::steady_timer hello_timer_, frame_timer_, farewell_timer_, writer_signal_;
+    bool within_frame_ = false; // a frame has begun to come
+    bool begun_ = false;        // the line can be written to
     bool greeted_ = false, finishing_ = false, ended_ = false;
     bool input_over_ = false; // the client will send nothing more
     int coroutines_ = 0;      // that still run

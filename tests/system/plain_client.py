@@ -75,8 +75,8 @@ class Server:
 
 
 class Client:
-    def __init__(self, server, hello=True, key=None):
-        self.socket = socket.create_connection(("127.0.0.1", server.port))
+    def __init__(self, server, hello=True, key=None, come_from="127.0.0.1"):
+        self.socket = socket.create_connection(("127.0.0.1", server.port), source_address=(come_from, 0))
         self.socket.settimeout(patience_s)
         self.key, self.request_id = key or secrets.token_hex(8), 0
         self.events, self.pictures, self.responses = [], [], {}
@@ -366,12 +366,38 @@ class Handshake(WithServer):
     def test_one_session_too_many_is_told(self):
         limit = self.client.welcome.limits.sessions_max
         with contextlib.ExitStack() as stack:
-            sessions = [stack.enter_context(Client(self.server)) for _ in range(limit - 1)]
+            from_one = self.client.welcome.limits.sessions_per_address_max
+            sessions = [stack.enter_context(Client(self.server)) for _ in range(from_one - 1)]
+            neighbour = stack.enter_context(Client(self.server, hello=False))
+            self.refused(neighbour, EXHAUSTED, "from this address")
+            sessions += [stack.enter_context(Client(self.server, come_from=f"127.0.1.{1 + i // from_one}"))
+                         for i in range(limit - from_one)]
             client = stack.enter_context(Client(self.server, hello=False))
             self.refused(client, EXHAUSTED, "sessions")
             sessions[0].call(list_worlds=c.ListWorlds())
             sessions[0].socket.close()
             until(lambda: self.admitted(), "a place is free again")
+
+    def test_a_frame_that_does_not_come_whole_ends_its_session(self):
+        client, patient = self.enterContext(Client(self.server)), self.enterContext(Client(self.server))
+        began = time.monotonic()
+        client.socket.sendall(b"EV\x01\x01\x08\x00\x00\x00")  # and then nothing
+        message = client.control()
+        self.assertEqual((message.response.request_id, message.response.status.code), (0, PRECONDITION))
+        self.assertIn("did not come whole", message.response.status.message)
+        client.assert_closed()
+        self.assertGreater(time.monotonic() - began, self.client.welcome.limits.frame_timeout_s - 0.5)
+        patient.call(list_worlds=c.ListWorlds())  # who says nothing at all may stay
+
+    def test_frames_that_follow_each_other_closely_may_go_on_for_long(self):
+        client = self.enterContext(Client(self.server))
+        body = session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())).SerializeToString()
+        frame = b"EV\x01\x01" + struct.pack("<I", len(body)) + body
+        end = time.monotonic() + client.welcome.limits.frame_timeout_s + 1
+        client.socket.sendall(frame[:5])
+        while time.monotonic() < end:  # never a moment without half a frame
+            client.socket.sendall(frame[5:] + frame[:5])
+            client.response(1)
 
     def admitted(self):
         with Client(self.server, hello=False) as client:
