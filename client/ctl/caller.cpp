@@ -30,11 +30,12 @@ std::string prompt_for_token(const std::string& server) {
     }
     termios silent = as_it_was;
     silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    // Before it asks: what is typed or pasted at once is neither shown nor thrown away.
+    ::tcsetattr(STDIN_FILENO, TCSADRAIN, &silent);
     std::cerr << "token for " << server << ": " << std::flush;
-    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent);
     std::string token;
     std::cin >> token;
-    ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &as_it_was);
+    ::tcsetattr(STDIN_FILENO, TCSADRAIN, &as_it_was);
     std::cerr << '\n';
     return token;
 }
