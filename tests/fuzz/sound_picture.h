@@ -1,0 +1,51 @@
+// What every decoded picture must be: columns of one length in each struct, finite numbers, the counts that its frame
+// tells, ids that rise.
+#pragma once
+
+#include "proto/wire/snapshot_codec.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace evod::fuzz {
+
+inline void require(bool holds) {
+    if (!holds) {
+        std::abort();
+    }
+}
+
+inline void require_finite(const std::vector<float>& column, std::size_t size) {
+    require(column.size() == size);
+    require(std::all_of(column.begin(), column.end(), [](float value) { return std::isfinite(value); }));
+}
+
+inline void require_rising(const std::vector<std::uint32_t>& ids) {
+    require(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end());
+}
+
+inline void require_sound(const wire::Picture& picture) {
+    const auto& organisms = picture.organisms;
+    require(organisms.id.size() == picture.about.organism_count());
+    require_rising(organisms.id);
+    for (const auto* column : {&organisms.x_px, &organisms.y_px, &organisms.radius_px, &organisms.health}) {
+        require_finite(*column, organisms.id.size());
+    }
+    for (const auto* items : {&picture.food, &picture.poison}) {
+        require_rising(items->id);
+        require_finite(items->x_px, items->id.size());
+        require_finite(items->y_px, items->id.size());
+    }
+    require(picture.food.id.size() == picture.about.food_count());
+    require(picture.poison.id.size() == picture.about.poison_count());
+    require(picture.crates.x_px.size() == picture.about.crate_count());
+    require(picture.obstacles.x_px.size() == picture.about.obstacle_count());
+    for (const auto* boxes : {&picture.crates, &picture.obstacles}) {
+        for (const auto* column : {&boxes->x_px, &boxes->y_px, &boxes->half_width_px, &boxes->half_height_px}) {
+            require_finite(*column, boxes->x_px.size());
+        }
+    }
+}
+
+} // namespace evod::fuzz
