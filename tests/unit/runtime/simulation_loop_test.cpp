@@ -554,9 +554,10 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     pass_until([&] { return state() == simulation::StorageState::KeepsUp; });
     EXPECT_GE(news, news_before + 2) << "of room, and of the end of the trouble";
     pass_until([&] { return tick("w") > stands; });
-    EXPECT_EQ(told.front(), simulation::StorageState::Failing);
-    EXPECT_EQ(told[1], simulation::StorageState::Stalled);
-    EXPECT_EQ(told.back(), simulation::StorageState::KeepsUp);
+    // While the queue has room, before it is full and when it was emptied, the disk is told to fail only;
+    // how long either lasts is the disk's affair, and it may be too short to be seen.
+    std::erase(told, simulation::StorageState::Failing);
+    EXPECT_EQ(told, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
 }
 
 TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
