@@ -32,10 +32,6 @@ using Key = std::unique_ptr<EVP_PKEY, Freed<EVP_PKEY, EVP_PKEY_free>>;
 using Certificate = std::unique_ptr<X509, Freed<X509, X509_free>>;
 using Extension = std::unique_ptr<X509_EXTENSION, Freed<X509_EXTENSION, X509_EXTENSION_free>>;
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 bool is_host_name(const std::string& host) {
     return !host.empty() && host.size() <= 253 && std::ranges::all_of(host, [](unsigned char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '.';

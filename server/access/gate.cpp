@@ -13,10 +13,6 @@ using base::Result;
 
 namespace {
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 } // namespace
 
 Gate::Stamp Gate::stamp() const {

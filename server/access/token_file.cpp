@@ -28,10 +28,6 @@ using base::Result;
 constexpr std::string_view heading = "# evod tokens 1";
 constexpr std::size_t file_bytes_max = tokens_max * 200;
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 Refusal cannot(const std::string& what, const std::string& path) {
     return refusal(RefusalCode::Unavailable, path + ": cannot be " + what + ": " + std::strerror(errno));
 }

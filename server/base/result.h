@@ -40,6 +40,11 @@ struct Refusal {
     std::vector<Violation> violations;
 };
 
+/// A refusal that is not about a field.
+inline Refusal refusal(RefusalCode code, std::string message) {
+    return {.code = code, .message = std::move(message), .violations = {}};
+}
+
 /// The refusal as one text: the message, then a line per violation.
 std::string to_text(const Refusal& refusal);
 

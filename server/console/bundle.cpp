@@ -20,10 +20,6 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 template <class Write>
 Result<void> write_file(const fs::path& path, Write&& write) {
     std::ofstream out{path, std::ios::binary};

@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::uintmax_t file_bytes_max = 1 << 20;
 
-base::Refusal refusal(base::RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 } // namespace
 
 base::Result<simulation::Experiment> load_experiment(const std::string& path) {

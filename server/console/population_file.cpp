@@ -17,10 +17,6 @@ namespace {
 using base::RefusalCode;
 using base::Result;
 
-base::Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 base::Refusal wrong_line(std::uint64_t line, const std::string& allowed, std::string_view got) {
     constexpr std::size_t shown_bytes_max = 80;
     return refusal(RefusalCode::InvalidArgument, "line " + std::to_string(line) + ": got \"" +

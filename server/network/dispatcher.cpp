@@ -23,10 +23,6 @@
 namespace evod::network {
 namespace {
 
-base::Refusal refusal(base::RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 const base::Refusal& busy() {
     static const base::Refusal refused =
         refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again");

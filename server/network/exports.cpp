@@ -10,10 +10,6 @@ namespace {
 
 using base::RefusalCode;
 
-base::Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 SharedBytes refused(std::uint64_t request_id, const base::Refusal& why) {
     return encode_response(protocol::refusing(request_id, why));
 }

@@ -25,10 +25,6 @@ constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::size_t batch_frames_max = 64;
 
-base::Refusal refusal(base::RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 tcp::endpoint peer_of(const tcp::socket& socket) {
     boost::system::error_code ignored; // one who has gone already is at no address
     return socket.remote_endpoint(ignored);

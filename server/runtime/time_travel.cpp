@@ -12,10 +12,6 @@ using base::Result;
 
 namespace {
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 /// A field of a RunMoment is known to clients by its path.
 Refusal within(Refusal refused, const std::string& field) {
     for (base::Violation& violation : refused.violations)

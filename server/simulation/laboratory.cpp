@@ -12,10 +12,6 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 /// Generations of the run that are over.
 std::uint64_t generations_over(const World& world) {
     return world.moment().generation - (world.generation_over() ? 0 : 1);

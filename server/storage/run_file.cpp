@@ -17,10 +17,6 @@ using base::RefusalCode;
 using base::Result;
 using Columns = std::vector<std::string>;
 
-Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
-}
-
 const Columns journal_columns = {"number", "tick",    "client",           "client_key", "request_id", "request",
                                  "answer", "endless", "until_generation", "until_tick", "paused",     "speed"};
 const Columns parameters_columns = {"number", "revision", "active", "requested"};
