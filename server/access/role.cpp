@@ -33,10 +33,12 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
     case Case::kGetHistory:
     case Case::kGetOrganism:
     case Case::kDescribe:
+    case Case::kGetMetrics:
     case Case::kSubscribeSnapshots:
     case Case::kSubscribeEvents:
     case Case::kUnsubscribe:
     case Case::kRequestKeyframe:
+    case Case::kSetView:
     case Case::kOpenPast:
     case Case::kExportRun:
     case Case::kContinueExport:
@@ -51,6 +53,8 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
         return of_own_past ? Role::Viewer : Role::Controller;
     case Case::kResetWorld:
     case Case::kSetParameters:
+    case Case::kReleaseLease:
+    case Case::kRenewLease:
         return Role::Controller;
     case Case::kCreateWorld:
     case Case::kDeleteWorld:
