@@ -206,6 +206,10 @@ RequestKind kind_of(const v1::Request& request) {
         return RequestKind::Export;
     case RequestCase::kShutDown:
         return RequestKind::Server;
+    case RequestCase::kReleaseLease:
+    case RequestCase::kRenewLease:
+    case RequestCase::kGetMetrics:
+    case RequestCase::kSetView:
     case RequestCase::REQUEST_NOT_SET:
         break;
     }
