@@ -38,6 +38,7 @@ struct ServeOptions {
     std::string data_folder;
     bool keep_nothing = false;
     bool token_needed = false;
+    network::SessionBounds session_bounds;
     access::TlsFiles tls;
     std::string durability = "full";
     std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
@@ -96,6 +97,13 @@ void add_access_options(CLI::App& app, ServeOptions& options) {
     app.add_option("--tls-key", options.tls.key, "PEM file with its key");
     app.add_option("--tls-client-ca", options.tls.client_ca,
                    "PEM file: clients must show a certificate that one of these vouches for");
+    const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
+        app.add_option(name, count, help)->check(CLI::Range(1, 1'000'000))->capture_default_str();
+    };
+    add_sessions("--sessions-max", options.session_bounds.sessions_max,
+                 "Sessions at a time; one more is told, and closed. Each takes a file descriptor");
+    add_sessions("--sessions-per-address-max", options.session_bounds.sessions_per_address_max,
+                 "The same, of one address; of IPv6, of one /64");
 }
 
 /// "max" or a factor of real time; nullopt: neither.
@@ -145,6 +153,7 @@ int serve(const ServeOptions& options) {
         .threads = options.threads,
         .data_folder = data_folder,
         .token_folder = folder_of_runs(options.data_folder),
+        .session_bounds = options.session_bounds,
         .token_needed = options.token_needed,
         .tls = options.tls,
         .run_files = {.durability =
@@ -170,6 +179,7 @@ int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
                   .threads = options.threads,
                   .data_folder = {},
                   .token_folder = folder_of_runs(options.data_folder),
+                  .session_bounds = options.session_bounds,
                   .token_needed = options.token_needed,
                   .tls = options.tls,
                   .run_files = {},
@@ -350,6 +360,8 @@ int main(int argument_count, char** arguments) {
 
     const CLI::App& parameters =
         *app.add_subcommand("parameters", "Print every parameter, as docs/PARAMETERS.md has it");
+    const CLI::App& limits =
+        *app.add_subcommand("limits", "Print every limit of the network, as docs/OPERATIONS.md has it");
 
     app.require_subcommand(0, 1);
     try {
@@ -389,6 +401,10 @@ int main(int argument_count, char** arguments) {
         return console::export_run(export_options);
     if (parameters.parsed()) {
         std::cout << console::parameter_list();
+        return 0;
+    }
+    if (limits.parsed()) {
+        std::cout << network::limit_list();
         return 0;
     }
 

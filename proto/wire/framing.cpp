@@ -54,8 +54,9 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
     }
     const auto body_bytes = load<std::uint32_t>(bytes.data() + 4);
     if (body_bytes > *limit) {
-        return Damage{"a frame declares " + std::to_string(body_bytes) + " bytes; at most " + std::to_string(*limit) +
-                      " are taken on its channel"};
+        return Damage{.what = "a frame declares " + std::to_string(body_bytes) + " bytes; at most " +
+                              std::to_string(*limit) + " are taken on its channel",
+                      .too_long = true};
     }
     return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
 }

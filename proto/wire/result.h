@@ -10,6 +10,7 @@ namespace evod::wire {
 /// Bytes that are not what they should be. `what` is one sentence without a full stop, fit for a log or a person.
 struct Damage {
     std::string what;
+    bool too_long = false; // a frame declared more than is taken
     friend bool operator==(const Damage&, const Damage&) = default;
 };
 

@@ -1,7 +1,6 @@
 #include "server/network/description.h"
 
 #include "evod/v1/session.pb.h"
-#include "server/network/limits.h"
 #include "server/protocol/parameters.h"
 
 #include <google/protobuf/descriptor.pb.h>
@@ -30,7 +29,6 @@ v1::Description make_description() {
     description.set_file_descriptor_set(set.SerializeAsString());
     for (const auto& parameter : simulation::parameter_registry())
         *description.add_parameters() = protocol::to_proto(parameter);
-    *description.mutable_limits() = limits_message();
     return description;
 }
 

@@ -2,7 +2,6 @@
 
 #include "server/access/role.h"
 #include "server/network/description.h"
-#include "server/network/limits.h"
 #include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
@@ -10,6 +9,7 @@
 #include "server/protocol/queries.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
+#include "server/simulation/world_name.h"
 
 #include <spdlog/spdlog.h>
 
@@ -22,12 +22,6 @@
 
 namespace evod::network {
 namespace {
-
-const base::Refusal& busy() {
-    static const base::Refusal refused =
-        refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again");
-    return refused;
-}
 
 base::Refusal no_such_subscription(const char* field, std::uint32_t subscription_id) {
     return {.code = base::RefusalCode::NotFound,
@@ -129,6 +123,15 @@ bool is_of_own_past(const Session& session, const v1::Request& request) {
     }
 }
 
+/// Of a command that is wrong in itself.
+void count_limits_met(const v1::Request& request, LimitCounters& counters) {
+    if (request.client_key().size() > protocol::client_key_bytes_max)
+        counters.met(Limit::ClientKeyBytes);
+    if (std::max(request.create_world().name().size(), request.fork_world().name().size()) >
+        simulation::world_name_bytes_max)
+        counters.met(Limit::WorldNameBytes);
+}
+
 /// Puts a refusal in the place of an answer.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
@@ -138,14 +141,21 @@ void refuse(v1::Response& response, const base::Refusal& refused) {
 } // namespace
 
 Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-                       std::function<void()> shut_down)
+                       LimitCounters& limit_counters, std::function<void()> shut_down)
     : mailbox_{mailbox}
     , outbox_{outbox}
     , demand_{demand}
     , streams_{streams}
+    , limit_counters_{limit_counters}
     , shut_down_{std::move(shut_down)}
-    , exports_{outbox}
-    , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max}} {}
+    , exports_{outbox, limit_counters}
+    , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max},
+               [&limit_counters] { limit_counters.met(Limit::ClientKeys); }} {}
+
+base::Refusal Dispatcher::busy() {
+    limit_counters_.met(Limit::MailboxCommands);
+    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again");
+}
 
 void Dispatcher::handle(Session& session, v1::Request request) {
     const auto refuse_it = [&](const base::Refusal& refused) {
@@ -198,8 +208,10 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     const auto refused = [id](const base::Refusal& why) { return encode_response(protocol::refusing(id, why)); };
 
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
-    if (!command)
+    if (!command) {
+        count_limits_met(request, limit_counters_);
         return session.answer(refused(command.error()));
+    }
 
     const std::string& key = request.client_key();
     const auto verdict =
@@ -215,6 +227,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
                                        .message = "this client_key has used the request_id for another request",
                                        .violations = {{"request_id", "a new one", std::to_string(id)}}}));
     case Retries::Verdict::TooOld:
+        limit_counters_.met(Limit::RetriesKept);
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
                     "the request is older than those whose answers are kept, so it may have been run: it is not run "
@@ -229,6 +242,8 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
                                                     const simulation::Command& applied_command,
                                                     const base::Result<simulation::Applied>& applied) {
         const SharedBytes frame = encode_response(response_to(request, laboratory, applied));
+        if (!applied && applied.error().code == base::RefusalCode::ResourceExhausted)
+            limit_counters_.met(Limit::Worlds); // nothing else that commands make is bounded there
         std::optional<v1::Event> event;
         if (applied && demand_.events_wanted())
             event = protocol::event_of(applied_command, *applied, by, laboratory);
@@ -311,14 +326,20 @@ void Dispatcher::query(Session& session, v1::Request request) {
                 else
                     refuse(response, protocol::with_paths(found.error(), name));
             },
-            [rows](Session&, v1::Response& response) {
-                if (response.status().code() == v1::CODE_OK)
-                    *response.mutable_history() = protocol::to_proto(*rows);
+            [this, rows](Session&, v1::Response& response) {
+                if (response.status().code() != v1::CODE_OK)
+                    return;
+                if (rows->begins_late)
+                    limit_counters_.met(Limit::HistoryGenerationsKept);
+                if (rows->next_generation)
+                    limit_counters_.met(Limit::HistoryGenerations);
+                *response.mutable_history() = protocol::to_proto(*rows);
             });
     }
     default: {
         v1::Response response = response_to(id);
         *response.mutable_description() = description();
+        *response.mutable_description()->mutable_limits() = session.limits();
         return session.answer(encode_response(std::move(response)));
     }
     }
@@ -345,7 +366,12 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         return refuse_it(protocol::invalid(std::move(faults)));
 
     // The world is looked up by the simulation; the subscription begins back here.
-    const auto full = [](const Session& s) { return s.snapshots.size() + s.events.size() >= subscriptions_max; };
+    const auto full = [this](const Session& s) {
+        const bool is = s.snapshots.size() + s.events.size() >= subscriptions_max;
+        if (is)
+            limit_counters_.met(Limit::Subscriptions);
+        return is;
+    };
     const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
                                   "this session has " + std::to_string(subscriptions_max) + " subscriptions already");
     const std::string name = name_of(request);
@@ -353,7 +379,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
         auto wanted = std::make_shared<SnapshotSubscription>();
         ask(
             session, id,
-            [name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
+            [this, name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
                 const auto& subscribe = request.subscribe_snapshots();
                 const auto watched = protocol::find_watched(laboratory, subscribe);
                 if (!watched)
@@ -362,6 +388,8 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 if (subscribe.has_island())
                     wanted->island = subscribe.island();
                 wanted->rate_hz = std::min(subscribe.rate_hz(), snapshot_rate_hz_max);
+                if (wanted->rate_hz < subscribe.rate_hz())
+                    limit_counters_.met(Limit::SnapshotRate);
                 if (subscribe.codec() != v1::CODEC_UNSPECIFIED)
                     wanted->codec = subscribe.codec();
                 wanted->compression = subscribe.compression();
@@ -407,6 +435,8 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
                   weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
                                                    const base::Result<std::string>& world) {
         v1::Response response = response_to(id);
+        if (opens && !world && world.error().code == base::RefusalCode::ResourceExhausted)
+            limit_counters_.met(Limit::Pasts);
         if (!world)
             refuse(response, protocol::with_paths(world.error(), name));
         else if (const auto entry = laboratory.find(*world); entry && !closes)

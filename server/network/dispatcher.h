@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/network/exports.h"
+#include "server/network/limits.h"
 #include "server/network/retries.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
@@ -20,7 +21,7 @@ class Dispatcher {
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
     /// shut_down  ends the server.
     Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-               std::function<void()> shut_down);
+               LimitCounters& limit_counters, std::function<void()> shut_down);
 
     void handle(Session& session, v1::Request request);
 
@@ -40,6 +41,8 @@ class Dispatcher {
     void past(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
 
+    /// The mailbox is full.
+    base::Refusal busy();
     /// Asks the simulation; `answer` runs there and fills in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
     void ask(Session& session, std::uint64_t request_id, Answer answer);
@@ -51,6 +54,7 @@ class Dispatcher {
     runtime::Outbox& outbox_;
     runtime::Demand& demand_;
     Streams& streams_;
+    LimitCounters& limit_counters_;
     std::function<void()> shut_down_;
     Exports exports_;
     Retries retries_;

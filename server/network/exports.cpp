@@ -27,10 +27,12 @@ void Exports::begin(Session& session, std::uint64_t request_id, const storage::P
     if (const auto before = exports_.find(session.number()); before != exports_.end())
         give_up(before);
     std::erase_if(given_up_, [](const auto& thread) { return thread->finished(); });
-    if (exports_.size() + given_up_.size() >= exports_max)
+    if (exports_.size() + given_up_.size() >= exports_max) {
+        limit_counters_.met(Limit::Exports);
         return session.answer(
             refused(request_id, refusal(RefusalCode::ResourceExhausted,
                                         std::to_string(exports_max) + " exports are under way already: try again")));
+    }
     Export begun{++last_id_, std::make_unique<runtime::ExportThread>(run, wanted)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
 }
@@ -54,6 +56,8 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     from.thread->next([this, request_id, id = from.id, number = session.number(),
                        weak = session.weak_from_this()](base::Result<runtime::ExportThread::Part> part) {
         outbox_.answer([this, request_id, id, number, weak, part = std::move(part)]() mutable {
+            if (!part && part.error().code == RefusalCode::FailedPrecondition)
+                limit_counters_.met(Limit::ExportPatience);
             came(number, id, !part || part->last);
             const auto asking = weak.lock();
             if (!asking)

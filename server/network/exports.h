@@ -16,8 +16,9 @@ namespace evod::network {
 
 class Exports {
   public:
-    /// outbox  outlives this.
-    explicit Exports(runtime::Outbox& outbox) : outbox_{outbox} {}
+    /// Everything handed in outlives this.
+    Exports(runtime::Outbox& outbox, LimitCounters& limit_counters)
+        : outbox_{outbox}, limit_counters_{limit_counters} {}
 
     /// Answers the request with the first part. The session's export before this one is given up.
     void begin(Session& session, std::uint64_t request_id, const storage::Past& run, const tables::WantedTable& wanted);
@@ -38,6 +39,7 @@ class Exports {
     void give_up(std::map<std::uint64_t, Export>::iterator of);
 
     runtime::Outbox& outbox_;
+    LimitCounters& limit_counters_;
     std::uint64_t last_id_ = 0;
     std::map<std::uint64_t, Export> exports_;                      // by number of the session
     std::vector<std::unique_ptr<runtime::ExportThread>> given_up_; // that may still be at a tick

@@ -119,6 +119,7 @@ void Retries::trim_keys() {
             answer_bytes_ -= command.answer->size();
         keys_.erase(key);
         oldest = used_.erase(oldest);
+        key_forgotten_();
     }
 }
 

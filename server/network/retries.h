@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace evod::network {
@@ -31,7 +32,10 @@ class Retries {
     /// Called with the answer when it is there.
     using Waiter = std::function<void(const SharedBytes&)>;
 
-    explicit Retries(Bounds bounds) : bounds_{bounds} {}
+    /// key_forgotten  called for each key whose answers had to make room.
+    explicit Retries(
+        Bounds bounds, std::function<void()> key_forgotten = [] {})
+        : bounds_{bounds}, key_forgotten_{std::move(key_forgotten)} {}
 
     enum class Verdict {
         New,       // run it, then finish() or forget() it; the waiter is kept
@@ -74,6 +78,7 @@ class Retries {
     void trim_keys();
 
     const Bounds bounds_;
+    const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
     std::list<std::string> used_; // keys, the last used first
     std::size_t answer_bytes_ = 0;

@@ -60,7 +60,8 @@ Server::Server(ServerOptions options)
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
-    , dispatcher_{mailbox_, outbox_, demand_, streams_, [this] { stop(); }} {
+    , dispatcher_{mailbox_, outbox_, demand_, streams_, limit_counters_, [this] { stop(); }} {
+    host_.limits = limits_message(options_.session_bounds);
     host_.instance_id = to_text(draw_run_id());
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
@@ -251,18 +252,18 @@ void Server::accepted(tcp::socket socket) {
     if (going_away_)
         return session->start(base::Refusal{
             .code = base::RefusalCode::Unavailable, .message = "the server is going away", .violations = {}});
-    if (sessions_.size() >= sessions_max)
-        return session->start(
-            base::Refusal{.code = base::RefusalCode::ResourceExhausted,
-                          .message = "the server has " + std::to_string(sessions_max) + " sessions already",
-                          .violations = {}});
+    const SessionBounds& bounds = options_.session_bounds;
+    const auto full = [&](Limit limit, const std::string& why) {
+        limit_counters_.met(limit);
+        session->start(refusal(base::RefusalCode::ResourceExhausted, why));
+    };
+    if (sessions_.size() >= bounds.sessions_max)
+        return full(Limit::Sessions, "the server has " + std::to_string(bounds.sessions_max) + " sessions already");
     const auto neighbours = std::ranges::count_if(
         sessions_, [&](const auto& other) { return other.second->neighbourhood() == session->neighbourhood(); });
-    if (neighbours >= sessions_per_address_max)
-        return session->start(base::Refusal{.code = base::RefusalCode::ResourceExhausted,
-                                            .message = "there are " + std::to_string(sessions_per_address_max) +
-                                                       " sessions from this address already",
-                                            .violations = {}});
+    if (neighbours >= bounds.sessions_per_address_max)
+        return full(Limit::SessionsPerAddress, "there are " + std::to_string(bounds.sessions_per_address_max) +
+                                                   " sessions from this address already");
     sessions_.emplace(session->number(), session);
     session->start();
 }
@@ -271,8 +272,10 @@ void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
     for (runtime::Delivery& delivery : taken.deliveries)
         delivery();
-    if (taken.dropped_events > 0)
+    if (taken.dropped_events > 0) {
+        limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
         streams_.count_dropped_events(taken.dropped_events);
+    }
     const auto now = clock_.now();
     for (const auto& picture : taken.pictures)
         streams_.show(picture, now);

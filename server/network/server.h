@@ -26,7 +26,8 @@ struct ServerOptions {
     std::size_t threads = 1;                 // of the worker pool
     std::string data_folder;                 // where runs are kept; empty: nowhere
     std::string token_folder;                // where the token file is, or will be; empty: nowhere
-    bool token_needed = false;               // on the loopback interface too; on others it always is
+    SessionBounds session_bounds;
+    bool token_needed = false; // on the loopback interface too; on others it always is
     access::TlsFiles tls;
     storage::RunFile::Options run_files;
     struct Replay {
@@ -90,10 +91,11 @@ class Server {
     runtime::Demand demand_;
     runtime::Outbox outbox_;
 
+    LimitCounters limit_counters_;
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
     std::size_t connections_ = 0; // sessions, and those that are being told there are too many
-    SessionHost host_;
+    SessionHost host_{limit_counters_};
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses

@@ -1,6 +1,5 @@
 #include "server/network/session.h"
 
-#include "server/network/limits.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 
@@ -111,9 +110,11 @@ void Session::start(const std::optional<base::Refusal>& refused) {
     }
     hello_timer_.expires_after(hello_timeout);
     hello_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error && !self->greeted_)
+        if (const auto self = weak.lock(); self && !error && !self->greeted_) {
+            self->host_.limit_counters.met(Limit::HelloTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
                                "no hello came within " + std::to_string(hello_timeout.count()) + " s"));
+        }
     });
 }
 
@@ -150,6 +151,8 @@ asio::awaitable<void> Session::read() {
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
+                if (frame.error().too_long)
+                    host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what));
                 break;
             }
@@ -178,9 +181,11 @@ void Session::mind_frame(bool one_came) {
         return;
     frame_timer_.expires_after(frame_timeout);
     frame_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error)
+        if (const auto self = weak.lock(); self && !error) {
+            self->host_.limit_counters.met(Limit::FrameTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
                                "a frame did not come whole within " + std::to_string(frame_timeout.count()) + " s"));
+        }
     });
 }
 
@@ -258,7 +263,7 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_instance_id(host_.instance_id);
     for (const char* feature : {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements"})
         welcome.add_features(feature);
-    *welcome.mutable_limits() = limits_message();
+    *welcome.mutable_limits() = host_.limits;
     welcome.set_durability(host_.durability);
     if (host_.storage)
         *welcome.mutable_storage() = *host_.storage;
@@ -278,8 +283,10 @@ void Session::fail(const base::Refusal& refused) {
 // ---- what is sent ----------------------------------------------------------------------------------------------
 
 bool Session::admit_request() {
-    if (in_flight_ >= requests_in_flight_max)
+    if (in_flight_ >= requests_in_flight_max) {
+        host_.limit_counters.met(Limit::RequestsInFlight);
         return false;
+    }
     ++in_flight_;
     return true;
 }
@@ -294,10 +301,10 @@ void Session::send_unasked(const v1::Response& response) {
 
 void Session::event(const SharedBytes& frame) {
     // Once some are dropped the rest are too until that has been told, so that the gap is where it is said to be.
-    if (dropped_events_ > 0 || event_bytes_ + frame->size() > queued_event_bytes_max)
-        count_dropped_events(1);
-    else
-        enqueue(frame, Kind::Event);
+    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max)
+        return enqueue(frame, Kind::Event);
+    host_.limit_counters.met(Limit::QueuedEventBytes);
+    count_dropped_events(1);
 }
 
 void Session::count_dropped_events(std::uint64_t count) {
@@ -375,6 +382,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
     queue_.push_back({std::move(frame), kind});
     if (response_bytes_ > queued_response_bytes_max) {
+        host_.limit_counters.met(Limit::QueuedResponseBytes);
         spdlog::warn("session {}: {} is closed: it does not read its answers", number_, by());
         close();
         return;

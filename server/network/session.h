@@ -13,6 +13,7 @@
 #include "server/access/gate.h"
 #include "server/base/result.h"
 #include "server/network/chains.h"
+#include "server/network/limits.h"
 #include "server/network/line.h"
 #include "server/network/retries.h"
 #include "server/runtime/clock.h"
@@ -34,14 +35,16 @@ using SessionPtr = std::shared_ptr<Session>;
 
 /// What a session needs of the rest of the server.
 struct SessionHost {
-    std::string instance_id; // 32 hexadecimal digits
+    LimitCounters& limit_counters;
+    v1::Limits limits = {};
+    std::string instance_id = {}; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
-    std::optional<v1::Storage> storage; // as it stands now; nothing: runs are not kept
-    asio::ssl::context* tls = nullptr;  // nullptr: in the clear
+    std::optional<v1::Storage> storage = {}; // as it stands now; nothing: runs are not kept
+    asio::ssl::context* tls = nullptr;       // nullptr: in the clear
     /// Who comes with a token, from an address.
-    std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit;
-    std::function<void(Session&, v1::Request)> handle;
-    std::function<void(Session&)> ended; // called once
+    std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
+    std::function<void(Session&, v1::Request)> handle = {};
+    std::function<void(Session&)> ended = {}; // called once
 };
 
 struct SnapshotSubscription {
@@ -85,6 +88,7 @@ class Session : public std::enable_shared_from_this<Session> {
     bool greeted() const { return greeted_; }
     /// Client name and address, and whose token it has: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
+    const v1::Limits& limits() const { return host_.limits; }
     const access::Visitor& visitor() const { return visitor_; }
     /// Where it comes from, as far as an address tells people apart: of IPv6, its /64.
     const std::string& neighbourhood() const { return neighbourhood_; }

@@ -22,6 +22,7 @@ base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& labora
 struct HistoryRows {
     std::vector<simulation::GenerationStatistics> rows;
     std::optional<std::uint64_t> next_generation;
+    bool begins_late = false; // some of those that were asked for are not kept any more
 };
 base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
 v1::History to_proto(const HistoryRows& rows);

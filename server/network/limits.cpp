@@ -1,0 +1,103 @@
+#include "server/network/limits.h"
+
+#include "proto/wire/framing.h"
+#include "server/base/assert.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/queries.h"
+#include "server/runtime/export_thread.h"
+#include "server/runtime/mailbox.h"
+#include "server/runtime/outbox.h"
+#include "server/runtime/time_travel.h"
+#include "server/simulation/world.h"
+#include "server/simulation/world_name.h"
+
+#include <google/protobuf/descriptor.h>
+
+namespace evod::network {
+namespace {
+
+constexpr std::uint64_t seconds(std::chrono::milliseconds duration) {
+    return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::seconds>(duration).count());
+}
+
+constexpr LimitRow table[] = {
+    {Limit::HelloFrameBytes, "hello_frame_bytes_max", *wire::hello_limits.control_bytes_max,
+     "body of a client's first frame", "told, and closed; no memory is taken for what a header declares"},
+    {Limit::ControlFrameBytes, "control_frame_bytes_max", *wire::server_limits.control_bytes_max,
+     "body of a later frame of a client", "the same"},
+    {Limit::HelloTimeout, "hello_timeout_s", seconds(hello_timeout), "from connecting to a hello, TLS included",
+     "told, and closed"},
+    {Limit::FrameTimeout, "frame_timeout_s", seconds(frame_timeout), "from the first byte of a frame to its last",
+     "told, and closed"},
+    {Limit::Sessions, "sessions_max", SessionBounds{}.sessions_max, "sessions; `--sessions-max`",
+     "a new one is told, and closed"},
+    {Limit::SessionsPerAddress, "sessions_per_address_max", SessionBounds{}.sessions_per_address_max,
+     "sessions from one address, of IPv6 from one /64; `--sessions-per-address-max`", "a new one is told, and closed"},
+    {Limit::RequestsInFlight, "requests_in_flight_max", requests_in_flight_max, "unanswered requests of a session",
+     "refused, `RESOURCE_EXHAUSTED`: wait for an answer"},
+    {Limit::MailboxCommands, "mailbox_commands_max", runtime::mailbox_commands_max,
+     "requests of all sessions waiting for the simulation", "refused, `RESOURCE_EXHAUSTED`: try again"},
+    {Limit::Subscriptions, "subscriptions_max", subscriptions_max, "subscriptions of a session",
+     "refused, `RESOURCE_EXHAUSTED`"},
+    {Limit::SnapshotRate, "snapshot_rate_hz_max", static_cast<std::uint64_t>(snapshot_rate_hz_max),
+     "pictures a second of a subscription", "lowered to it, and the answer says so"},
+    {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds", "refused, `RESOURCE_EXHAUSTED`"},
+    {Limit::Pasts, "pasts_max", runtime::TimeTravel::pasts_max, "worlds of a session that show the past",
+     "refused, `RESOURCE_EXHAUSTED`; so too beyond 64 of all sessions"},
+    {Limit::Exports, "exports_max", exports_max, "exports under way, of all sessions", "refused, `RESOURCE_EXHAUSTED`"},
+    {Limit::ExportPatience, "export_patience_s", seconds(runtime::ExportThread::patience),
+     "until the next part of an export is asked for", "the export is given up"},
+    {Limit::WorldNameBytes, "world_name_bytes_max", simulation::world_name_bytes_max, "a new world's name",
+     "refused, `INVALID_ARGUMENT`"},
+    {Limit::ClientKeyBytes, "client_key_bytes_max", protocol::client_key_bytes_max, "a `client_key`",
+     "refused, `INVALID_ARGUMENT`"},
+    {Limit::RetriesKept, "retries_kept", retries_kept, "answers kept of each `client_key`, for retries",
+     "an older request is refused, `FAILED_PRECONDITION`"},
+    {Limit::ClientKeys, "client_keys_max", client_keys_max, "keys whose answers are kept; 64 MiB in all",
+     "those of the key longest unused are forgotten"},
+    {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::World::history_generations_kept,
+     "generations of statistics kept of each world", "the oldest are forgotten; a `History` begins after them"},
+    {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,
+     "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
+    {Limit::QueuedResponseBytes, "queued_response_bytes_max", queued_response_bytes_max,
+     "answers that a session has not read", "closed"},
+    {Limit::QueuedEventBytes, "queued_event_bytes_max", queued_event_bytes_max, "events that a session has not read",
+     "the next are dropped, and `EventsDropped` tells how many"},
+    {Limit::OutboxEvents, "waiting_events_max", runtime::outbox_events_max,
+     "events of all worlds on their way from the simulation", "the same, for all"},
+};
+
+} // namespace
+
+std::span<const LimitRow> limit_table() {
+    return table;
+}
+
+std::string limit_list() {
+    std::string text = "| name | default | of what | what happens |\n|---|---|---|---|\n";
+    for (const LimitRow& row : table)
+        text += "| `" + std::string{row.name} + "` | " + std::to_string(row.value) + " | " + std::string{row.of} +
+                " | " + std::string{row.then} + " |\n";
+    return text;
+}
+
+v1::Limits limits_message(const SessionBounds& bounds) {
+    v1::Limits limits;
+    for (const LimitRow& row : table) {
+        const auto* field = v1::Limits::descriptor()->FindFieldByName(std::string{row.name});
+        if (field == nullptr)
+            continue;
+        const auto& in = *v1::Limits::GetReflection();
+        if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE)
+            in.SetDouble(&limits, field, static_cast<double>(row.value));
+        else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_UINT64)
+            in.SetUInt64(&limits, field, row.value);
+        else
+            in.SetUInt32(&limits, field, static_cast<std::uint32_t>(row.value));
+    }
+    limits.set_sessions_max(bounds.sessions_max);
+    limits.set_sessions_per_address_max(bounds.sessions_per_address_max);
+    return limits;
+}
+
+} // namespace evod::network
