@@ -2,6 +2,10 @@
 
 #include "proto/wire/little_endian.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/wire_format_lite.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -36,7 +40,51 @@ Result<std::uint32_t> limit_of(std::byte channel, const FrameLimits& limits) {
     return Damage{"a frame is on channel " + std::to_string(number) + ", which is not taken here"};
 }
 
+/// Whether messages and groups stand more than `levels` deep within the rest of a message, up to where it is damaged.
+///
+/// of  the message, nullptr: unknown, so that of what it holds groups alone can be told from bytes.
+bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobuf::Descriptor* of, int levels) {
+    using google::protobuf::internal::WireFormatLite;
+    while (const std::uint32_t tag = in.ReadTag()) {
+        const auto type = WireFormatLite::GetTagWireType(tag);
+        if (type == WireFormatLite::WIRETYPE_END_GROUP)
+            return false;
+        if (type == WireFormatLite::WIRETYPE_START_GROUP) {
+            if (levels == 0 || is_deeper(in, nullptr, levels - 1))
+                return true;
+            continue;
+        }
+        const auto* field = of == nullptr ? nullptr : of->FindFieldByNumber(WireFormatLite::GetTagFieldNumber(tag));
+        if (type != WireFormatLite::WIRETYPE_LENGTH_DELIMITED || field == nullptr || field->message_type() == nullptr) {
+            if (!WireFormatLite::SkipField(&in, tag))
+                return false;
+            continue;
+        }
+        int bytes = 0;
+        if (!in.ReadVarintSizeAsInt(&bytes))
+            return false;
+        if (levels == 0)
+            return true;
+        const auto rest = in.PushLimit(bytes);
+        if (is_deeper(in, field->message_type(), levels - 1))
+            return true;
+        in.PopLimit(rest);
+    }
+    return false;
+}
+
 } // namespace
+
+Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::Descriptor& message) {
+    const std::string frame = "the body of a frame of " + std::to_string(body.size()) + " bytes ";
+    google::protobuf::io::CodedInputStream in{reinterpret_cast<const std::uint8_t*>(body.data()),
+                                              static_cast<int>(body.size())};
+    if (is_deeper(in, &message, message_depth_max))
+        return {.what =
+                    frame + "has messages within messages, more than " + std::to_string(message_depth_max) + " deep",
+                .beyond = Beyond::MessageDepth};
+    return {.what = frame + "is not a " + message.full_name()};
+}
 
 std::array<std::byte, header_bytes> encode_header(FrameHeader header) {
     std::array<std::byte, header_bytes> bytes{prefix[0], prefix[1], prefix[2], static_cast<std::byte>(header.channel)};
@@ -56,7 +104,7 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
     if (body_bytes > *limit) {
         return Damage{.what = "a frame declares " + std::to_string(body_bytes) + " bytes; at most " +
                               std::to_string(*limit) + " are taken on its channel",
-                      .too_long = true};
+                      .beyond = Beyond::FrameBytes};
     }
     return FrameHeader{.channel = static_cast<Channel>(bytes[3]), .body_bytes = body_bytes};
 }
@@ -83,6 +131,14 @@ void FrameReader::feed(std::span<const std::byte> bytes) {
         buffer_ = std::vector<std::byte>{};
     }
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+}
+
+void FrameReader::trim() {
+    constexpr std::size_t kept_bytes = 16 << 10;
+    if (buffered_bytes() == 0 && buffer_.capacity() > kept_bytes) {
+        buffer_ = std::vector<std::byte>{};
+        begin_ = 0;
+    }
 }
 
 Result<std::optional<Frame>> FrameReader::next() {

@@ -17,7 +17,7 @@
 
 #include "proto/wire/result.h"
 
-#include <google/protobuf/message_lite.h>
+#include <google/protobuf/message.h>
 
 #include <array>
 #include <cstddef>
@@ -63,13 +63,18 @@ Result<FrameHeader> decode_header(std::span<const std::byte, header_bytes> bytes
 /// Header and message as one string of bytes.
 std::string encode_frame(Channel channel, const google::protobuf::MessageLite& message);
 
+/// How deep messages may stand within messages: what protobuf itself reads.
+constexpr int message_depth_max = 100;
+
+/// What is wrong with the body of a frame that could not be read as this message.
+Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::Descriptor& message);
+
 /// A message from the body of a frame.
 template <class Message>
 Result<Message> parse_body(std::span<const std::byte> body) {
     Message message;
     if (!message.ParseFromArray(body.data(), static_cast<int>(body.size()))) {
-        return Damage{"the body of a frame of " + std::to_string(body.size()) + " bytes is not a " +
-                      message.GetTypeName()};
+        return damage_of_body(body, *Message::descriptor());
     }
     return message;
 }
@@ -98,6 +103,9 @@ class FrameReader {
 
     /// The next complete frame, nullopt if it has not come yet. Damage stays: there is no way back into step.
     Result<std::optional<Frame>> next();
+
+    /// Gives back the memory of a long frame once all of it has been minded.
+    void trim();
 
     /// For the frames that next() has not begun to return: a server's limits change after the hello.
     void set_limits(FrameLimits limits) { limits_ = limits; }

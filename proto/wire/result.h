@@ -7,10 +7,13 @@
 
 namespace evod::wire {
 
+/// A limit that bytes went beyond.
+enum class Beyond { Nothing, FrameBytes, MessageDepth };
+
 /// Bytes that are not what they should be. `what` is one sentence without a full stop, fit for a log or a person.
 struct Damage {
     std::string what;
-    bool too_long = false; // a frame declared more than is taken
+    Beyond beyond = Beyond::Nothing;
     friend bool operator==(const Damage&, const Damage&) = default;
 };
 

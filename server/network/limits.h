@@ -25,6 +25,10 @@ constexpr std::uint32_t client_keys_max = 256;
 constexpr std::uint32_t exports_max = 8;
 constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
+constexpr std::chrono::seconds stalled_timeout{10};
+constexpr std::uint32_t requests_per_s_max = 50'000; // more than one client asks for that waits for each answer
+constexpr std::uint32_t request_burst_max = 5'000;
+constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
 
@@ -37,10 +41,14 @@ struct SessionBounds {
 enum class Limit : std::uint8_t {
     HelloFrameBytes,
     ControlFrameBytes,
+    MessageDepth,
     HelloTimeout,
     FrameTimeout,
+    StalledTimeout,
     Sessions,
     SessionsPerAddress,
+    RequestsPerSecond,
+    RequestBurst,
     RequestsInFlight,
     MailboxCommands,
     Subscriptions,
@@ -55,6 +63,7 @@ enum class Limit : std::uint8_t {
     ClientKeys,
     HistoryGenerationsKept,
     HistoryGenerations,
+    ClientBufferBytes,
     QueuedResponseBytes,
     QueuedEventBytes,
     OutboxEvents,
@@ -105,8 +114,8 @@ constexpr std::chrono::milliseconds untaken_max{30'000};
 // Of all retries together: the answers of the longest unused keys go first.
 constexpr std::size_t retry_bytes_max = 64 << 20;
 
-constexpr std::chrono::milliseconds tokens_look_every{500}; // for a token file that has changed
-constexpr std::chrono::seconds farewell_timeout{1};         // for the last bytes of a session that ends
-constexpr std::chrono::milliseconds accept_pause{100};      // when the system has no file descriptors left
+constexpr std::chrono::milliseconds look_every{500};   // for a token file that has changed, and who is stalled
+constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
+constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
 
 } // namespace evod::network

@@ -4,6 +4,9 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
+
 #include <utility>
 
 namespace evod::network {
@@ -48,10 +51,23 @@ asio::awaitable<Line::Transferred> Line::read_some(asio::mutable_buffer buffer) 
 asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buffer>& buffers) {
     if (tls_)
         co_return co_await asio::async_write(*tls_, buffers, no_throw);
-    co_return co_await asio::async_write(socket_, buffers, no_throw);
+    const auto count = [this, before = given_](const boost::system::error_code& error, std::size_t so_far) {
+        given_ = before + so_far;
+        return asio::transfer_all()(error, so_far);
+    };
+    co_return co_await asio::async_write(socket_, buffers, count, no_throw);
 }
 
-void Line::finish() {
+Line::Progress Line::progress() {
+    int not_taken = 0;
+    ::ioctl(socket_.native_handle(), SIOCOUTQ, &not_taken);
+    return {.given = tls_ ? BIO_number_written(SSL_get_wbio(tls_->native_handle())) : given_,
+            .not_taken = static_cast<std::uint64_t>(not_taken)};
+}
+
+asio::awaitable<void> Line::finish() {
+    if (tls_) // close_notify, RFC 8446 §6.1: who reads knows that this was all
+        co_await tls_->async_shutdown(no_throw);
     boost::system::error_code ignored; // it may be gone already
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
 }

@@ -9,6 +9,7 @@
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -34,14 +35,24 @@ class Line {
     /// All of them.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 
+    /// Differs from before if the other end has taken anything since.
+    struct Progress {
+        std::uint64_t given = 0;     // to the system
+        std::uint64_t not_taken = 0; // of that, by the other end's system
+        bool operator==(const Progress&) const = default;
+    };
+    Progress progress();
+
     tcp::socket& socket() { return socket_; }
-    /// Nothing more is written.
-    void finish();
+    /// Says that nothing more is written. One of TLS waits for the other end to say the same, which somebody has to
+    /// read meanwhile.
+    asio::awaitable<void> finish();
     void close();
 
   private:
     tcp::socket socket_;
     std::optional<asio::ssl::stream<tcp::socket&>> tls_;
+    std::uint64_t given_ = 0;
 };
 
 } // namespace evod::network

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <functional>
 #include <utility>
 
 namespace evod::network {
@@ -57,6 +58,7 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
 
 Server::Server(ServerOptions options)
     : options_{std::move(options)}
+    , buffers_{client_buffer_bytes_max, [this] { asio::post(context_, [this] { relieve(); }); }}
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
@@ -216,7 +218,7 @@ void Server::run() {
         spdlog::info("{}: going away", signal == SIGINT ? "SIGINT" : "SIGTERM");
         go_away();
     });
-    watch_tokens();
+    look_around();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
                    asio::detached);
     context_.run();
@@ -226,24 +228,45 @@ void Server::stop() {
     asio::post(context_, [this] { go_away(); });
 }
 
-void Server::watch_tokens() {
-    tokens_timer_.expires_after(tokens_look_every);
-    tokens_timer_.async_wait([this](boost::system::error_code error) {
+void Server::look_around() {
+    look_timer_.expires_after(look_every);
+    look_timer_.async_wait([this](boost::system::error_code error) {
         if (error)
             return;
-        if (gate_->refresh()) {
-            if (gate_->trouble())
-                spdlog::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
-            // Those whose end comes now go from the table: it must not be walked meanwhile.
-            const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
-            for (const auto& [number, session] : sessions)
-                if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
-                    session->fail({.code = base::RefusalCode::Unauthenticated,
-                                   .message = "the token has been revoked",
-                                   .violations = {}});
-        }
-        watch_tokens();
+        mind_tokens();
+        const auto now = clock_.now();
+        for (const auto& [number, session] : sessions_)
+            session->mind_progress(now);
+        look_around();
     });
+}
+
+void Server::mind_tokens() {
+    if (!gate_->refresh())
+        return;
+    if (gate_->trouble())
+        spdlog::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
+    // Those whose end comes now go from the table: it must not be walked meanwhile.
+    const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
+    for (const auto& [number, session] : sessions)
+        if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
+            session->fail(refusal(base::RefusalCode::Unauthenticated, "the token has been revoked"));
+}
+
+void Server::relieve() {
+    std::vector<std::pair<std::size_t, SessionPtr>> most;
+    for (const auto& [number, session] : sessions_)
+        most.emplace_back(session->held_bytes(), session);
+    std::ranges::sort(most, std::greater{}, [](const auto& item) { return item.first; });
+    std::size_t excess = buffers_.excess();
+    for (const auto& [bytes, session] : most) {
+        if (excess == 0 || bytes == 0)
+            break;
+        session->make_room();
+        excess -= std::min(excess, bytes);
+    }
+    // What they were being sent goes in the turns of the loop that have been asked for before this one.
+    asio::post(context_, [this] { buffers_.relieved(); });
 }
 
 void Server::accepted(tcp::socket socket) {
@@ -271,7 +294,7 @@ void Server::accepted(tcp::socket socket) {
 void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
     for (runtime::Delivery& delivery : taken.deliveries)
-        delivery();
+        std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
     if (taken.dropped_events > 0) {
         limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
         streams_.count_dropped_events(taken.dropped_events);
@@ -285,7 +308,7 @@ void Server::go_away() {
     if (std::exchange(going_away_, true))
         return;
     signals_.cancel();
-    tokens_timer_.cancel();
+    look_timer_.cancel();
     listener_->close();
     dispatcher_.refuse_all();
     // What was admitted is still answered.

@@ -69,19 +69,25 @@ class Server {
     bool creates_first_world() const;
     void begin_first_world();
     void command_of_own(v1::Request request);
-    void watch_tokens();
+    /// Every now and then: for tokens that are revoked, and for clients that take nothing.
+    void look_around();
+    void mind_tokens();
+    /// More waits for all clients than may: closes those for whom most waits.
+    void relieve();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
     void go_away();
 
     ServerOptions options_;
+    LimitCounters limit_counters_;
+    Buffers buffers_; // outlives the sessions, which may be alive as long as the context
     boost::asio::io_context context_{1};
     boost::asio::signal_set signals_{context_};
     std::optional<Listener> listener_;
 
     std::unique_ptr<asio::ssl::context> tls_; // nullptr: in the clear
     std::optional<access::Gate> gate_;
-    asio::steady_timer tokens_timer_{context_};
+    asio::steady_timer look_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
     std::unique_ptr<storage::Archive> archive_;         // nullptr: nothing is kept
@@ -91,11 +97,10 @@ class Server {
     runtime::Demand demand_;
     runtime::Outbox outbox_;
 
-    LimitCounters limit_counters_;
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
     std::size_t connections_ = 0; // sessions, and those that are being told there are too many
-    SessionHost host_{limit_counters_};
+    SessionHost host_{limit_counters_, buffers_};
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses

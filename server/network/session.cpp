@@ -80,8 +80,11 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , number_{number}
     , peer_{peer_of(line_.socket())}
     , neighbourhood_{neighbourhood_of(peer_.address())}
+    , reader_bytes_{host.buffers}
+    , turns_to_send_{requests_per_s_max, request_burst_max, std::chrono::steady_clock::now()}
     , hello_timer_{line_.socket().get_executor()}
     , frame_timer_{line_.socket().get_executor()}
+    , turn_timer_{line_.socket().get_executor()}
     , farewell_timer_{line_.socket().get_executor()}
     , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
@@ -137,7 +140,8 @@ asio::awaitable<void> Session::read() {
     wake_writer();
     while (!finishing_ && !ended_) {
         const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
-        if (error == asio::error::eof && in_flight_ + queue_.size() > 0 && !finishing_ && !ended_) {
+        const bool more_to_say = in_flight_ + queue_.size() + sending_.size() > 0;
+        if (error == asio::error::eof && more_to_say && !finishing_ && !ended_) {
             // It has said all it wants, and may still read: it gets its answers.
             input_over_ = true;
             wake_writer();
@@ -147,11 +151,12 @@ asio::awaitable<void> Session::read() {
         if (error || ended_)
             break;
         reader_.feed({bytes.data(), count});
+        reader_bytes_.set(reader_.capacity_bytes());
         bool one_came = false;
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
-                if (frame.error().too_long)
+                if (frame.error().beyond == wire::Beyond::FrameBytes)
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what));
                 break;
@@ -159,9 +164,14 @@ asio::awaitable<void> Session::read() {
             if (!*frame)
                 break;
             one_came = true;
-            on_frame(**frame);
+            if (!turns_to_send_.take(std::chrono::steady_clock::now()))
+                co_await wait_for_turn();
+            if (!finishing_ && !ended_)
+                on_frame(**frame);
         }
         mind_frame(one_came);
+        reader_.trim();
+        reader_bytes_.set(ended_ ? 0 : reader_.capacity_bytes());
     }
     if (finishing_ && !ended_)
         co_await discard_input();
@@ -189,6 +199,18 @@ void Session::mind_frame(bool one_came) {
     });
 }
 
+asio::awaitable<void> Session::wait_for_turn() {
+    host_.limit_counters.met(Limit::RequestsPerSecond);
+    host_.limit_counters.met(Limit::RequestBurst);
+    // What does not come now is not late: it is not being read.
+    within_frame_ = false;
+    frame_timer_.cancel();
+    do {
+        turn_timer_.expires_after(turns_to_send_.time_for(request_burst_max / 10));
+        co_await turn_timer_.async_wait(no_throw);
+    } while (!finishing_ && !ended_ && !turns_to_send_.take(std::chrono::steady_clock::now()));
+}
+
 /// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
 asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
@@ -202,6 +224,8 @@ asio::awaitable<void> Session::discard_input() {
 
 void Session::on_frame(const wire::Frame& frame) {
     auto message = wire::parse_body<v1::ClientMessage>(frame.body);
+    if (!message && message.error().beyond == wire::Beyond::MessageDepth)
+        host_.limit_counters.met(Limit::MessageDepth);
     if (!greeted_) {
         if (!message)
             return fail(refusal(base::RefusalCode::InvalidArgument, message.error().what));
@@ -316,12 +340,13 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
     const auto subscription = snapshots.find(subscription_id);
     if (subscription == snapshots.end() || finishing_ || ended_)
         return;
-    SnapshotSubscription::Waiting& waiting = subscription->second.islands[island].waiting;
-    if (waiting)
+    SnapshotSubscription::Island& of = subscription->second.islands[island];
+    if (of.waiting)
         ++subscription->second.dropped_count;
     else
         turns_.push_back({subscription_id, island});
-    waiting = std::move(picture);
+    of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
+    of.waiting = std::move(picture);
     wake_writer();
 }
 
@@ -364,6 +389,7 @@ std::optional<Session::Outgoing> Session::next_picture() {
     of_viewer.set_dropped_count(subscription.dropped_count);
     turns_.erase(turn);
     const SnapshotSubscription::Waiting picture = std::exchange(island.waiting, {});
+    island.columns = {};
     Outgoing outgoing{.fields = picture.columns, .tail = of_viewer.SerializeAsString()};
     if (picture.chained) {
         const bool has_base = island.last_sent != 0 && island.last_sent == picture.chained->base_sequence();
@@ -380,7 +406,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     if (finishing_ || ended_)
         return;
     (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
-    queue_.push_back({std::move(frame), kind});
+    queue_.push_back({{host_.buffers, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
         spdlog::warn("session {}: {} is closed: it does not read its answers", number_, by());
@@ -391,7 +417,8 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
 }
 
 void Session::written(const Queued& queued) {
-    (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.frame->size();
+    if (queued.kind != Kind::Picture)
+        (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
     if (queued.kind == Kind::Answer)
         --in_flight_;
 }
@@ -414,20 +441,22 @@ asio::awaitable<void> Session::write() {
             co_await wait_for_work();
         } else if (!queue_.empty()) {
             // Answers and events first: they are small, and somebody waits for them.
-            const std::size_t batch = std::min(queue_.size(), batch_frames_max);
-            for (std::size_t i = 0; i < batch; ++i)
-                buffers.push_back(asio::buffer(*queue_[i].frame));
-            const auto [error, count] = co_await line_.write(buffers);
-            if (error || ended_)
-                break;
-            for (std::size_t i = 0; i < batch; ++i) {
-                written(queue_.front());
+            while (!queue_.empty() && sending_.size() < batch_frames_max) {
+                sending_.push_back(std::move(queue_.front()));
                 queue_.pop_front();
+                buffers.push_back(asio::buffer(*sending_.back().bytes));
             }
-        } else if (input_over_) {
-            if (in_flight_ == 0)
+            const auto [error, count] = co_await line_.write(buffers);
+            if (error)
                 break;
-            co_await wait_for_work();
+            for (const Queued& sent : sending_)
+                written(sent);
+            sending_.clear();
+        } else if (input_over_ && !finishing_) {
+            if (in_flight_ == 0)
+                finish();
+            else
+                co_await wait_for_work();
         } else if (dropped_events_ > 0 && !finishing_) {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
@@ -437,30 +466,65 @@ asio::awaitable<void> Session::write() {
                 {.channel = wire::Channel::Stream,
                  .body_bytes = static_cast<std::uint32_t>(picture->fields->size() + picture->tail.size())});
             buffers = {asio::buffer(header), asio::buffer(*picture->fields), asio::buffer(picture->tail)};
+            sending_.push_back({{host_.buffers, picture->fields}, Kind::Picture});
             const auto [error, count] = co_await line_.write(buffers);
             if (error)
                 break;
+            sending_.clear();
         } else if (finishing_) {
             break;
         } else {
             co_await wait_for_work();
         }
     }
-    if (finishing_ && !ended_) {
-        line_.finish();
-    } else {
+    if (finishing_ && !ended_)
+        co_await line_.finish();
+    else
         close();
-    }
+    sending_.clear();
     end();
 }
 
 // ---- the end ---------------------------------------------------------------------------------------------------
+
+void Session::mind_progress(runtime::Clock::time_point now) {
+    const Line::Progress progress = sending_.empty() ? Line::Progress{} : line_.progress();
+    if (sending_.empty() || ended_ || progress != progress_) {
+        progress_ = progress;
+        progressed_ = now;
+    } else if (now - progressed_ >= stalled_timeout) {
+        host_.limit_counters.met(Limit::StalledTimeout);
+        spdlog::warn("session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
+                     stalled_timeout.count());
+        close();
+    }
+}
+
+std::size_t Session::held_bytes() const {
+    std::size_t bytes = reader_bytes_.bytes();
+    for (const Queued& queued : queue_)
+        bytes += queued.bytes.share();
+    for (const Queued& queued : sending_)
+        bytes += queued.bytes.share();
+    for (const auto& [id, subscription] : snapshots)
+        for (const auto& [index, island] : subscription.islands)
+            bytes += island.columns.share();
+    return bytes;
+}
+
+void Session::make_room() {
+    host_.limit_counters.met(Limit::ClientBufferBytes);
+    spdlog::warn("session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_,
+                 by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
+    close();
+}
 
 void Session::finish() {
     if (finishing_ || ended_)
         return;
     finishing_ = true;
     hello_timer_.cancel();
+    turn_timer_.cancel();
     farewell_timer_.expires_after(farewell_timeout);
     farewell_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
         if (const auto self = weak.lock(); self && !error)
@@ -475,7 +539,14 @@ void Session::close() {
     line_.close();
     hello_timer_.cancel();
     frame_timer_.cancel();
+    turn_timer_.cancel();
     farewell_timer_.cancel();
+    // What is being sent goes when the line has let go of it.
+    queue_.clear();
+    for (auto& [id, subscription] : snapshots)
+        subscription.islands.clear();
+    turns_.clear();
+    reader_bytes_.set(0);
     wake_writer();
 }
 

@@ -2,21 +2,21 @@
 //
 // Owner        the server's table of sessions, until the connection ends; its two coroutines keep it alive meanwhile.
 // Threads      the network thread.
-// Full         responses: a client that leaves more than queued_response_bytes_max unread is closed. Events: dropped
-// and
-//              counted, then told with EventsDropped. Pictures: one of each subscription and island waits, the newest,
-//              until the client has acknowledged enough of those before it.
+// Full         requests: more than requests_per_s_max are not read before it is time. Responses: a client that leaves
+//              more than queued_response_bytes_max unread is closed. Events: dropped and counted, then told with
+//              EventsDropped. Pictures: one of each subscription and island waits, the newest, until the client has
+//              acknowledged enough of those before it. Whoever takes nothing at all for a while is closed.
 #pragma once
 
 #include "evod/v1/session.pb.h"
 #include "proto/wire/framing.h"
 #include "server/access/gate.h"
 #include "server/base/result.h"
+#include "server/network/buffers.h"
 #include "server/network/chains.h"
 #include "server/network/limits.h"
 #include "server/network/line.h"
-#include "server/network/retries.h"
-#include "server/runtime/clock.h"
+#include "server/network/token_bucket.h"
 
 #include <boost/asio/steady_timer.hpp>
 
@@ -27,6 +27,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace evod::network {
 
@@ -36,6 +37,7 @@ using SessionPtr = std::shared_ptr<Session>;
 /// What a session needs of the rest of the server.
 struct SessionHost {
     LimitCounters& limit_counters;
+    Buffers& buffers;
     v1::Limits limits = {};
     std::string instance_id = {}; // 32 hexadecimal digits
     v1::Durability durability = v1::DURABILITY_NONE;
@@ -67,6 +69,7 @@ struct SnapshotSubscription {
     };
     struct Island {
         Waiting waiting;                          // the newest picture not yet sent
+        Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
         std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
     };
@@ -113,15 +116,22 @@ class Session : public std::enable_shared_from_this<Session> {
     /// Closes now.
     void close();
 
+    /// Whether its client takes what is sent; one that does not is closed. To be called now and then.
+    void mind_progress(runtime::Clock::time_point now);
+    /// Memory that closing it would free.
+    std::size_t held_bytes() const;
+    /// Closes it, for there is no room for what waits for all.
+    void make_room();
+
     std::uint32_t next_subscription_id() { return ++subscription_id_; }
     std::map<std::uint32_t, SnapshotSubscription> snapshots; // by subscription id
     std::map<std::uint32_t, EventSubscription> events;
     std::set<std::string> pasts; // worlds that it has opened to look at the past
 
   private:
-    enum class Kind { Answer, Unasked, Event };
+    enum class Kind { Answer, Unasked, Event, Picture };
     struct Queued {
-        SharedBytes frame;
+        Buffers::Held bytes; // a frame, or fields 1 to 49 of a picture
         Kind kind;
     };
 
@@ -129,6 +139,8 @@ class Session : public std::enable_shared_from_this<Session> {
     /// A frame that has begun has to come whole in time. one_came: since the last call.
     void mind_frame(bool one_came);
     asio::awaitable<void> write();
+    /// Until the client may go on, if it has sent too much for now.
+    asio::awaitable<void> wait_for_turn();
     asio::awaitable<void> discard_input();
     asio::awaitable<void> wait_for_work();
     void on_frame(const wire::Frame& frame);
@@ -153,7 +165,9 @@ class Session : public std::enable_shared_from_this<Session> {
     std::string client_;
     access::Visitor visitor_;
     wire::FrameReader reader_{wire::hello_limits};
-    asio::steady_timer hello_timer_, frame_timer_, farewell_timer_, writer_signal_;
+    Buffers::Own reader_bytes_;
+    TokenBucket turns_to_send_;
+    asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a frame has begun to come
     bool begun_ = false;        // the line can be written to
     bool greeted_ = false, finishing_ = false, ended_ = false;
@@ -161,9 +175,12 @@ class Session : public std::enable_shared_from_this<Session> {
     int coroutines_ = 0;      // that still run
 
     std::deque<Queued> queue_;
-    std::size_t response_bytes_ = 0, event_bytes_ = 0; // in queue_
-    std::size_t in_flight_ = 0;                        // requests whose answer is not yet written
-    std::uint64_t dropped_events_ = 0;                 // not yet told
+    std::vector<Queued> sending_;                      // not empty: the line is being written to
+    std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
+    Line::Progress progress_;
+    runtime::Clock::time_point progressed_; // when it was last seen that something was taken, or nothing waited
+    std::size_t in_flight_ = 0;             // requests whose answer is not yet written
+    std::uint64_t dropped_events_ = 0;      // not yet told
     struct Turn {
         std::uint32_t subscription_id, island;
     };

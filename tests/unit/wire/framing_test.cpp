@@ -30,6 +30,51 @@ std::array<std::byte, header_bytes> header_of(std::array<int, 8> values) {
     return header;
 }
 
+/// Groups of a field that nobody knows, so many within each other.
+std::string groups(int count) {
+    std::string begin, end;
+    for (int i = 0; i < count; ++i) {
+        begin += "\xa3\x06"; // field 100
+        end += "\xa4\x06";
+    }
+    return begin + end;
+}
+
+/// With so many bytes or a message as field `number`.
+std::string within(char number, const std::string& body) {
+    EXPECT_LT(body.size(), 128u * 128u);
+    return std::string{static_cast<char>(number << 3 | 2)} + static_cast<char>(body.size() % 128 + 128) +
+           static_cast<char>(body.size() / 128) + body;
+}
+
+TEST(Body, IsReadDownToItsDepthAndNoDeeper) {
+    using evod::v1::ClientMessage;
+    for (const auto& [body, depth] :
+         {std::pair{groups(message_depth_max), 0}, {within(2, groups(message_depth_max - 1)), 1}})
+        EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(body))) << depth;
+    for (const auto& body : {groups(message_depth_max + 1), within(2, groups(message_depth_max)), groups(200'000),
+                             within(2, within(10, groups(message_depth_max - 1)))}) {
+        const auto deep = parse_body<ClientMessage>(bytes_of(body));
+        ASSERT_FALSE(deep);
+        EXPECT_EQ(deep.error().beyond, Beyond::MessageDepth) << deep.error().what;
+        EXPECT_NE(deep.error().what.find("more than 100 deep"), std::string::npos) << deep.error().what;
+    }
+}
+
+TEST(Body, ThatIsDamagedIsNotCalledTooDeep) {
+    using evod::v1::ClientMessage;
+    for (const std::string body : {"\xff\xff\xff", "\x12\x7f", "\xa4\x06", "\x12\x04\x12\x02\xff\xfe"}) {
+        const auto damaged = parse_body<ClientMessage>(bytes_of(body));
+        ASSERT_FALSE(damaged);
+        EXPECT_EQ(damaged.error().beyond, Beyond::Nothing) << damaged.error().what;
+        EXPECT_NE(damaged.error().what.find("is not a evod.v1.ClientMessage"), std::string::npos);
+    }
+    // What looks deep within a string is no message.
+    ClientMessage named;
+    named.mutable_hello()->set_token("\x12\x04\x12\x02\x12");
+    EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(named.SerializeAsString())));
+}
+
 TEST(Header, IsEightBytesWithALittleEndianLength) {
     EXPECT_EQ(encode_header({.channel = Channel::Stream, .body_bytes = 0x01020304}),
               header_of({'E', 'V', 1, 2, 4, 3, 2, 1}));

@@ -1,0 +1,54 @@
+#include "server/network/token_bucket.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::network {
+namespace {
+
+using namespace std::chrono_literals;
+
+class TokenBucketOf : public testing::Test {
+  protected:
+    int take_all() {
+        int taken = 0;
+        while (bucket.take(now))
+            ++taken;
+        return taken;
+    }
+    runtime::Clock::time_point now{1000s};
+    TokenBucket bucket{100, 20, now};
+};
+
+TEST_F(TokenBucketOf, ABurstIsThereAtOnce) {
+    EXPECT_EQ(take_all(), 20);
+}
+
+TEST_F(TokenBucketOf, TokensComeAtTheirRateAndNoMoreThanItHolds) {
+    take_all();
+    now += 50ms;
+    EXPECT_EQ(take_all(), 5);
+    now += 5ms;
+    EXPECT_EQ(take_all(), 0) << "half a token";
+    now += 5ms;
+    EXPECT_EQ(take_all(), 1);
+    now += 1h;
+    EXPECT_EQ(take_all(), 20);
+}
+
+TEST_F(TokenBucketOf, WhoIsNotFasterNeverWaits) {
+    take_all();
+    for (int i = 0; i < 1000; ++i) {
+        now += 10ms;
+        EXPECT_TRUE(bucket.take(now)) << i;
+    }
+}
+
+TEST_F(TokenBucketOf, WaitingAsLongAsItSaysIsLongEnough) {
+    take_all();
+    EXPECT_EQ(bucket.time_for(10), 100ms);
+    now += bucket.time_for(10);
+    EXPECT_EQ(take_all(), 10);
+}
+
+} // namespace
+} // namespace evod::network
