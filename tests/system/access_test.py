@@ -9,6 +9,7 @@ import ssl
 import stat
 import subprocess
 import sys
+import time
 import unittest
 
 import past_test as past
@@ -42,12 +43,11 @@ class Client(past.Client):
     """token: sent in the hello. come_from: an address of this machine. tls: a context, instead of in the clear."""
 
     def __init__(self, server, token="", come_from="127.0.0.1", tls=None, host="localhost"):
-        super().__init__(server, hello=False)
-        self.socket.close()
-        self.socket = socket.create_connection(("127.0.0.1", server.port), source_address=(come_from, 0))
-        self.socket.settimeout(plain.patience_s)
+        over = socket.create_connection(("127.0.0.1", server.port), source_address=(come_from, 0))
+        over.settimeout(plain.patience_s)
         if tls:
-            self.socket = tls.wrap_socket(self.socket, server_hostname=host)
+            over = tls.wrap_socket(over, server_hostname=host)
+        super().__init__(server, hello=False, over=over)
         self.hello(token=token)
         self.first = self.control()
         self.welcome = self.first.welcome if self.first.HasField("welcome") else None
@@ -185,9 +185,11 @@ class Tokens(Access):
         server = self.serve("--require-token")
         stays, goes = self.come(server, karl), self.come(server, anna)
         token_command("revoke", "anna", data=self.folder)
+        revoked = time.monotonic()
         message = goes.control()
         self.assertEqual((message.response.request_id, message.response.status.code), (0, UNAUTHENTICATED))
         goes.assert_closed()
+        self.assertLess(time.monotonic() - revoked, 2)
         stays.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.come(server, anna, come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
 
@@ -227,7 +229,28 @@ class Tokens(Access):
         server = self.serve("--require-token")
         client = self.come(server, secret)
         client.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
-        self.come(server, secret[:-1] + "x")
+        # Whatever can be refused, with the token in it where it belongs, and everything about it wrong elsewhere.
+        refusals = [self.come(server, secret[:-1] + "x", come_from="127.0.0.3").refusal]
+        for hello in (dict(protocol_version=2), dict(client_version="v" * 65), dict(client_name="n" * 65)):
+            with plain.Client(server, hello=False) as stranger:
+                stranger.hello(token=secret, **hello)
+                refusals.append(stranger.control().response.status)
+        client.hello(token=secret)
+        refusals.append(client.response(0).status)
+        body = session_pb2.ClientMessage(hello=session_pb2.Hello(token=secret)).SerializeToString()
+        for damaged in (body[:-1], body + b"\xff", b"\x12" + body):
+            client.send_body(damaged)
+            refusals.append(client.response(0).status)
+        client.socket.sendall(body)  # without its header
+        refusals.append(client.response(0).status)
+        client.assert_closed()
+        for refusal in refusals:
+            self.assertTrue(refusal.message)
+            self.assertNotIn(secret[5:37], str(refusal))
+        refused = self.evoctl("worlds", server=server, environment={"EVOD_TOKEN": secret[:-1]}, status=4)
+        self.assertNotIn(secret[5:37], refused)
+        token_command("revoke", "anna", data=self.folder)
+        plain.until(lambda: Client(server, secret, come_from="127.0.0.9").refusal, "it is revoked")
         server.end()
         for digits in (secret[5:], secret[5:37]):
             self.assertNotIn(digits, server.output())
@@ -303,6 +326,22 @@ class Tls(Access):
         client.next_picture(lambda picture: picture.tick == 30)
         self.assertIsNotNone(self.come(server, secret, tls=self.context(), host="127.0.0.1").welcome)
         server.end()
+
+    def test_the_end_is_said_and_not_only_had(self):
+        server = self.serve(*self.files())
+        client, other = self.come(server, tls=self.context()), self.come(server, tls=self.context())
+        failing = self.come(server, tls=self.context())
+        for one in (client, other, failing):  # what is cut off raises, and is no end
+            one.socket.suppress_ragged_eofs = False
+        failing.socket.sendall(b"not a frame")
+        self.assertEqual(failing.control().response.status.code, 3)
+        self.assertEqual(failing.socket.recv(1), b"")
+        client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
+        client.call(shut_down=c.ShutDown())
+        for one in (client, other):
+            one.next_event("server_going_away")
+            one.assert_closed()
+        self.assertEqual(server.process.wait(plain.patience_s), 0)
 
     def test_older_tls_other_authorities_and_other_hosts_are_not_believed(self):
         server = self.serve(*self.files())

@@ -178,9 +178,14 @@ class Check(Folder):
         self.assertIn("this is a folder", evod("check", self.folder.name, status=1).stderr)
 
 
-class Parameters(unittest.TestCase):
-    def test_the_document_is_what_the_program_prints(self):
+class Documents(unittest.TestCase):
+    """What the program prints stands in them."""
+
+    def test_parameters(self):
         self.assertEqual((ROOT / "docs/PARAMETERS.md").read_text(), evod("parameters").stdout)
+
+    def test_limits(self):
+        self.assertIn("\n\n" + evod("limits").stdout + "\n", (ROOT / "docs/OPERATIONS.md").read_text())
 
 
 unittest.main()

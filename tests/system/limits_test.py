@@ -1,0 +1,508 @@
+"""Every limit of docs/OPERATIONS.md driven to its edge over real sockets: at the limit it works, beyond it what the table
+says happens, and everybody else goes on. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes.
+
+Two of the table are driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can
+hold the network's thread still; and running out of file descriptors by plain_client.py.
+"""
+import contextlib
+import os
+import pathlib
+import re
+import socket
+import struct
+import sys
+import threading
+import time
+import unittest
+
+import access_test as access
+from access_test import c, plain
+
+from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
+
+OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 5, 6, 8, 9, 12
+
+
+def frame(message):
+    body = message.SerializeToString()
+    return b"EV\x01\x01" + struct.pack("<I", len(body)) + body
+
+
+def request(**fields):
+    return session_pb2.ClientMessage(request=c.Request(**{"request_id": 1, **fields}))
+
+
+def padded(message, size):
+    """The bytes of a message, made that long by a field that nobody knows."""
+    body = message.SerializeToString()
+    padding = size - len(body) - 5
+    return body + b"\xa2\x06" + bytes([padding & 127 | 128, padding >> 7 & 127 | 128, padding >> 14]) + b"x" * padding
+
+
+def nested(message, depth):
+    """A request with so many unknown groups within each other in it."""
+    body = message.SerializeToString() + b"\xa3\x06" * depth + b"\xa4\x06" * depth
+    assert 128 <= len(body) < 128 * 128
+    return b"\x12" + bytes([len(body) % 128 + 128, len(body) // 128]) + body
+
+
+class Case(access.Access):
+    def serve(self, *options):
+        return super().serve("--durability", "relaxed", *options)
+
+    def small(self, server):
+        """A client of which little fits into the kernel."""
+        over = socket.socket()
+        self.addCleanup(over.close)
+        over.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        over.connect(("127.0.0.1", server.port))
+        return plain.Client(server, over=over)
+
+    def told_and_closed(self, client, code, words):
+        status = client.response(0).status
+        self.assertEqual(status.code, code)
+        self.assertIn(words, status.message)
+        client.assert_closed()
+
+    def counts(self, client):
+        """By name, how often each limit was met; nothing where the server has no GetMetrics."""
+        response = client.response(client.ask(get_metrics=c.GetMetrics()))
+        if response.status.code == UNIMPLEMENTED:
+            return None
+        return {label.value: sample.value for family in response.metrics.families
+                if family.name == "evod_limit_reached_total" for sample in family.samples for label in sample.labels}
+
+    @contextlib.contextmanager
+    def meets(self, client, *limits):
+        """What is done within meets these limits, and after it the client is served as ever."""
+        before = self.counts(client)
+        yield
+        client.call(list_worlds=c.ListWorlds())
+        if before is not None:
+            after = self.counts(client)
+            for limit in limits:
+                self.assertGreater(after[limit], before[limit], limit)
+
+    def world_of_short_generations(self, client, generations, **parameters):
+        client.call(create_world=c.CreateWorld(name="short", seed=1, parameters=plain.assignments(
+            fitness="gene_sum", **parameters)))
+        client.call(set_speed=c.SetSpeed(world="short", speed=plain.w.Speed(max=True)))
+        client.call(run=c.Run(world="short", generations=generations))
+        client.wait_world(lambda world: world.state == plain.w.RUN_STATE_WAITING, "short")
+
+
+class Frames(Case):
+    def test_sizes(self):
+        server = self.serve()
+        other = self.come(server)
+        limits = other.welcome.limits
+        hello = session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1))
+        longest = plain.Client(server, hello=False)
+        self.addCleanup(longest.socket.close)
+        longest.send_body(padded(hello, limits.hello_frame_bytes_max))
+        self.assertTrue(longest.control().HasField("welcome"))
+        longest.send_body(padded(request(list_worlds=c.ListWorlds()), limits.control_frame_bytes_max))
+        self.assertEqual(longest.response(1).status.code, OK)
+        with self.meets(other, "hello_frame_bytes_max"), plain.Client(server, hello=False) as longer:
+            longer.socket.sendall(b"EV\x01\x01" + struct.pack("<I", limits.hello_frame_bytes_max + 1))
+            self.told_and_closed(longer, INVALID, str(limits.hello_frame_bytes_max))
+        with self.meets(other, "control_frame_bytes_max"):
+            longest.socket.sendall(b"EV\x01\x01" + struct.pack("<I", limits.control_frame_bytes_max + 1))
+            self.told_and_closed(longest, INVALID, str(limits.control_frame_bytes_max))
+
+    def test_a_declared_length_takes_no_memory(self):
+        server = self.serve()
+        other = self.come(server)
+        before = memory_kib(server)
+        clients = [self.come(server) for _ in range(100)]
+        for client in clients:
+            client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", 1 << 20) + b"x" * 1000)
+        other.call(list_worlds=c.ListWorlds())
+        self.assertLess(memory_kib(server) - before, 100 * 64)
+
+    def test_depth(self):
+        server = self.serve()
+        client, other = self.come(server), self.come(server)
+        depth = client.welcome.limits.message_depth_max
+        asking = c.Request(request_id=7, list_worlds=c.ListWorlds())
+        client.send_body(nested(asking, depth - 1))  # within the request, which is itself within a message
+        self.assertEqual(client.response(7).status.code, OK)
+        for deeper in (depth, 3000):
+            with self.meets(other, "message_depth_max"):
+                client.send_body(nested(asking, deeper))
+                status = client.response(0).status
+                self.assertEqual(status.code, INVALID)
+                self.assertIn(f"more than {depth} deep", status.message)
+        client.call(list_worlds=c.ListWorlds())
+        with self.meets(other, "message_depth_max"), plain.Client(server, hello=False) as stranger:
+            stranger.send_body(nested(asking, depth))
+            self.told_and_closed(stranger, INVALID, f"more than {depth} deep")
+
+
+class Sessions(Case):
+    def test_sessions_and_of_one_address(self):
+        server = self.serve("--sessions-max", "6", "--sessions-per-address-max", "4")
+        here = [self.come(server) for _ in range(4)]
+        self.assertEqual(here[0].welcome.limits.sessions_max, 6)
+        self.assertEqual(here[0].welcome.limits.sessions_per_address_max, 4)
+        self.assertEqual(here[0].call(describe=c.Describe()).description.limits, here[0].welcome.limits)
+        with self.meets(here[0], "sessions_per_address_max"):
+            refused = self.come(server)
+            self.assertEqual(refused.refusal.code, EXHAUSTED)
+            self.assertIn("4 sessions from this address", refused.refusal.message)
+            refused.assert_closed()
+        for _ in range(2):
+            self.assertIsNotNone(self.come(server, come_from="127.0.0.2").welcome)
+        with self.meets(here[0], "sessions_max"):
+            refused = self.come(server, come_from="127.0.0.3")
+            self.assertEqual(refused.refusal.code, EXHAUSTED)
+            self.assertIn("6 sessions already", refused.refusal.message)
+            refused.assert_closed()
+        for client in here:
+            client.call(list_worlds=c.ListWorlds())
+        here[3].socket.close()
+        plain.until(lambda: self.come(server, come_from="127.0.0.3").welcome, "a place is free again")
+
+    def test_a_thousand_who_do_nothing_take_little(self):
+        server = self.serve("--sessions-max", "1100", "--sessions-per-address-max", "1100")
+        first = self.come(server)
+        before = memory_kib(server)
+        idle = []
+        for _ in range(1000):
+            client = self.come(server)
+            client.send_body(padded(request(list_worlds=c.ListWorlds()), 3000))
+            idle.append(client)
+        for client in idle:
+            self.assertEqual(client.response(1).status.code, OK)
+        first.call(list_worlds=c.ListWorlds())
+        each = (memory_kib(server) - before) / len(idle)
+        print(f"{each:.1f} KiB for each session", file=sys.stderr)
+        self.assertLess(each, 32)
+
+
+class Requests(Case):
+    def test_in_flight(self):
+        server = self.serve()
+        client, other = self.come(server), self.come(server)
+        limit = client.welcome.limits.requests_in_flight_max
+
+        def codes(count):
+            # In one piece, so that none is answered before all are read.
+            client.socket.sendall(b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
+                                           for i in range(count)))
+            return [client.response(i + 1).status.code for i in range(count)]
+        self.assertEqual(codes(limit), [OK] * limit)
+        with self.meets(other, "requests_in_flight_max"):
+            self.assertEqual(codes(limit + 1), [OK] * limit + [EXHAUSTED])
+        client.call(list_worlds=c.ListWorlds())
+
+    def test_those_waiting_for_the_simulation(self):
+        server = self.serve()
+        admin = self.come(server)
+        limits = admin.welcome.limits
+        clients = [self.come(server) for _ in range(limits.mailbox_commands_max // limits.requests_in_flight_max + 1)]
+        burst = b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
+                         for i in range(limits.requests_in_flight_max))
+        rounds = iter(range(1000))
+
+        def crowd():
+            # While the simulation makes a large world it minds nothing else.
+            name = f"large{next(rounds)}"
+            asked = admin.ask(create_world=c.CreateWorld(name=name, seed=1, parameters=plain.assignments(
+                population_size=100_000, scale_with_population=True, reference_population=50)))
+            for client in clients:
+                client.socket.sendall(burst)
+            codes = [client.response(i + 1).status.code for client in clients
+                     for i in range(limits.requests_in_flight_max)]
+            self.assertEqual(admin.response(asked).status.code, OK)
+            admin.call(delete_world=c.DeleteWorld(world=name))
+            self.assertLessEqual(set(codes), {OK, EXHAUSTED})
+            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max)
+            return EXHAUSTED in codes
+        with self.meets(admin, "mailbox_commands_max"):
+            plain.until(crowd, "one too many")
+
+    def test_rate(self):
+        server = self.serve()
+        flooding, other = self.come(server), self.come(server)
+        limits = other.welcome.limits
+        frames = limits.requests_per_s_max + limits.request_burst_max
+        damaged = b"EV\x01\x01\x03\0\0\0\xff\xff\xff"
+        latencies, over = [], threading.Event()
+
+        def go_on():
+            while not over.is_set():
+                began = time.monotonic()
+                other.call(list_worlds=c.ListWorlds())
+                latencies.append(time.monotonic() - began)
+        with self.meets(self.come(server), "requests_per_s_max", "request_burst_max"):
+            began = time.monotonic()
+            sender = threading.Thread(target=flooding.socket.sendall, args=(damaged * frames,))
+            neighbour = threading.Thread(target=go_on)
+            sender.start()
+            neighbour.start()
+            try:
+                answers = 0
+                while answers < frames:  # each is answered, and none for being one too many
+                    response = flooding.control().response
+                    self.assertEqual((response.request_id, response.status.code), (0, INVALID))
+                    answers += 1
+                took = time.monotonic() - began
+            finally:
+                over.set()
+                sender.join()
+                neighbour.join()
+        self.assertGreater(took, 0.9)
+        self.assertLess(sorted(latencies)[len(latencies) // 2], 0.05)
+        flooding.call(list_worlds=c.ListWorlds())
+
+    def test_subscriptions_and_their_pictures(self):
+        server = self.serve()
+        client, other = self.come(server), self.come(server)
+        limits = client.welcome.limits
+        with self.meets(other, "snapshot_rate_hz_max"):
+            for asked, got in ((limits.snapshot_rate_hz_max, limits.snapshot_rate_hz_max),
+                               (limits.snapshot_rate_hz_max + 1, limits.snapshot_rate_hz_max)):
+                answer = client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=asked)).subscription
+                self.assertEqual(answer.rate_hz, got)
+        for _ in range(limits.subscriptions_max - 2):
+            last = client.call(subscribe_events=c.SubscribeEvents()).subscription
+        with self.meets(other, "subscriptions_max"):
+            client.call(EXHAUSTED, subscribe_events=c.SubscribeEvents())
+            client.call(EXHAUSTED, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=1))
+        client.call(unsubscribe=c.Unsubscribe(subscription_id=last.subscription_id))
+        client.call(subscribe_events=c.SubscribeEvents())
+        other.call(subscribe_events=c.SubscribeEvents())
+
+    def test_names(self):
+        server = self.serve()
+        client = self.come(server)
+        limits = client.welcome.limits
+        client.call(create_world=c.CreateWorld(name="n" * limits.world_name_bytes_max))
+        with self.meets(client, "world_name_bytes_max"):
+            client.call(INVALID, create_world=c.CreateWorld(name="n" * (limits.world_name_bytes_max + 1)))
+            client.call(INVALID, fork_world=c.ForkWorld(name="n" * (limits.world_name_bytes_max + 1)))
+        client.call(client_key="k" * limits.client_key_bytes_max, pause=c.Pause(world="default"))
+        with self.meets(client, "client_key_bytes_max"):
+            client.call(INVALID, client_key="k" * (limits.client_key_bytes_max + 1), pause=c.Pause(world="default"))
+
+    def test_answers_kept_for_retries(self):
+        server = self.serve()
+        client = self.come(server)
+        limits = client.welcome.limits
+        first = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
+        for i in range(2, limits.retries_kept + 1):
+            client.call(client_key="old", request_id=i, pause=c.Pause(world="default"))
+        again = client.call(client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
+        self.assertEqual(again, first)
+        client.call(client_key="old", request_id=limits.retries_kept + 1, pause=c.Pause(world="default"))
+        with self.meets(client, "retries_kept"):
+            client.call(PRECONDITION, client_key="old", request_id=1, create_world=c.CreateWorld(name="a", seed=1))
+        first = client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
+        for i in range(limits.client_keys_max - 1):
+            client.call(client_key=f"key {i}", request_id=1, pause=c.Pause(world="default"))
+        self.assertEqual(client.call(client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1)), first)
+        with self.meets(client, "client_keys_max"):
+            for i in range(limits.client_keys_max):
+                client.call(client_key=f"another {i}", request_id=1, pause=c.Pause(world="default"))
+            client.call(EXISTS, client_key="one", request_id=1, create_world=c.CreateWorld(name="b", seed=1))
+
+
+class Worlds(Case):
+    def test_worlds_and_looks_at_the_past(self):
+        server = self.serve()
+        client, other = self.come(server), self.come(server)
+        limits = client.welcome.limits
+        for _ in range(limits.pasts_max):
+            client.call(open_past=c.OpenPast(world="default"))
+        with self.meets(other, "pasts_max"):
+            client.call(EXHAUSTED, open_past=c.OpenPast(world="default"))
+        other.call(open_past=c.OpenPast(world="default"))
+        small = plain.assignments(population_size=1, food_count=0, poison_count=0)
+        while len(client.call(list_worlds=c.ListWorlds()).worlds.worlds) < limits.worlds_max:
+            client.call(create_world=c.CreateWorld(name=f"w{client.request_id}", parameters=small))
+        with self.meets(other, "worlds_max"):
+            client.call(EXHAUSTED, create_world=c.CreateWorld(name="one_more", parameters=small))
+        client.call(delete_world=c.DeleteWorld(world="default"))
+        client.call(create_world=c.CreateWorld(name="one_more", parameters=small))
+
+    def test_history(self):
+        server = self.serve()
+        client = self.come(server)
+        limits = client.welcome.limits
+        self.world_of_short_generations(client, limits.history_generations_kept + 20, population_size=2)
+        with self.meets(client, "history_generations_max", "history_generations_kept"):
+            history = client.call(get_history=c.GetHistory(world="short")).history
+        self.assertEqual(history.generations[0].generation, 21)
+        self.assertEqual(len(history.generations), limits.history_generations_max)
+        self.assertEqual(history.next_generation, 21 + limits.history_generations_max)
+        kept = client.call(get_history=c.GetHistory(world="short", first_generation=21, last_generation=1020)).history
+        self.assertEqual((len(kept.generations), kept.HasField("next_generation")), (1000, False))
+
+    def test_exports(self):
+        server = self.serve()
+        client = self.come(server)
+        self.world_of_short_generations(client, 300)
+        limits = client.welcome.limits
+        export = c.ExportRun(world="short", table=c.RUN_TABLE_ORGANISMS, format=c.TEXT_FORMAT_CSV)
+        busy = [self.come(server) for _ in range(limits.exports_max)]
+        for one in busy:
+            self.assertFalse(one.call(export_run=export).export_part.last)
+        with self.meets(client, "exports_max"):
+            client.call(EXHAUSTED, export_run=export)
+        busy[0].socket.close()
+        plain.until(lambda: client.response(client.ask(export_run=export)).status.code == OK, "one has ended")
+
+
+class Unread(Case):
+    def test_answers(self):
+        server = self.serve()
+        other = self.come(server)
+        with self.meets(other, "queued_response_bytes_max"), self.small(server) as silent:
+            many = frame(request(describe=c.Describe())) * 1000
+            with self.assertRaises(OSError):
+                while True:
+                    silent.socket.sendall(many)
+            plain.until(lambda: "does not read its answers" in server.output(), "it is logged")
+
+    def test_events(self):
+        server = self.serve()
+        other = self.come(server)
+        silent = self.small(server)
+        silent.call(subscribe_events=c.SubscribeEvents())
+        with self.meets(other, "queued_event_bytes_max"):
+            self.world_of_short_generations(other, 8000)
+            dropped = silent.next_event("events_dropped")
+            self.assertGreater(dropped.events_dropped.dropped_count, 0)
+        silent.call(list_worlds=c.ListWorlds())
+
+    def test_what_waits_for_all_clients(self):
+        server = self.serve()
+        other = self.come(server)
+        limits = other.welcome.limits
+        self.world_of_short_generations(other, 1100, island_count=1)
+        asking = b"".join(frame(request(request_id=i + 1, get_history=c.GetHistory(world="short")))
+                          for i in range(limits.requests_in_flight_max))
+        modest = self.small(server)
+        answer_bytes = len(modest.call(get_history=c.GetHistory(world="short")).SerializeToString())
+        fits = limits.client_buffer_bytes_max // (answer_bytes * limits.requests_in_flight_max)
+        modest.ask(get_history=c.GetHistory(world="short"))  # and does not read it
+        with self.meets(other, "client_buffer_bytes_max"):
+            for _ in range(fits - 2):
+                self.small(server).socket.sendall(asking)
+                other.call(list_worlds=c.ListWorlds())  # which is answered after those
+            self.assertNotIn("wait for all clients", server.output())
+            for _ in range(6):
+                self.small(server).socket.sendall(asking)
+            plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
+        self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
+        closed = re.findall(r"closed: more than 256 MiB wait for all clients, of which (\d+) KiB", server.output())
+        self.assertLess(len(closed), 10)
+        self.assertGreater(min(map(int, closed)), 1024)
+        self.assertEqual(modest.response(modest.request_id).status.code, OK)  # whoever had little is still there
+
+
+class Times(Case):
+    def test_all_at_once(self):
+        """Side by side, for each takes its time."""
+        certificates = pathlib.Path(self.folder) / "certificates"
+        access.Tls.pair(self, "certificates")
+        self.assertTrue(certificates.exists())
+        server = self.serve("--sessions-per-address-max", "250")
+        encrypted = access.Access.server(self, "--keep-nothing", *access.Tls.files(self))
+        other = self.come(server)
+        limits = other.welcome.limits
+        other.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(
+            population_size=3000, scale_with_population=True, reference_population=50)))
+        other.call(run=c.Run(world="w"))
+        faults = []
+
+        def part(of, *arguments):
+            def run():
+                try:
+                    of(*arguments)
+                except BaseException as fault:  # told below, by the thread that unittest listens to
+                    faults.append((of.__name__, fault))
+            thread = threading.Thread(target=run)
+            thread.start()
+            return thread
+        with self.meets(other, "hello_timeout_s", "frame_timeout_s", "stalled_timeout_s", "export_patience_s"):
+            parts = [part(self.no_hello, server, limits), part(self.frames_byte_by_byte, server, limits),
+                     part(self.subscribers_that_never_read, server, limits), part(self.a_slow_one_stays, server),
+                     part(self.one_of_tls_that_never_reads, encrypted), part(self.an_export_nobody_goes_on_with, server)]
+            while any(thread.is_alive() for thread in parts):
+                other.call(list_worlds=c.ListWorlds())
+                parts[-1].join(0.05)
+        self.assertEqual(faults, [])
+
+    def no_hello(self, server, limits):
+        began = time.monotonic()
+        client = plain.Client(server, hello=False)
+        self.told_and_closed(client, PRECONDITION, "no hello")
+        self.assertGreater(time.monotonic() - began, limits.hello_timeout_s - 0.5)
+        client.socket.close()
+
+    def frames_byte_by_byte(self, server, limits):
+        clients = [self.come(server) for _ in range(50)]
+        slow = frame(request(list_worlds=c.ListWorlds(), client_key="k" * 60))
+        began, closed = time.monotonic(), []
+        for byte in slow:
+            for client in [x for x in clients if x not in closed]:
+                try:
+                    client.socket.sendall(bytes([byte]))
+                except OSError:
+                    closed.append(client)
+            if len(closed) == len(clients):
+                break
+            time.sleep(1)
+        self.assertEqual(len(closed), len(clients))
+        self.assertGreater(time.monotonic() - began, limits.frame_timeout_s)
+        self.assertLess(time.monotonic() - began, limits.frame_timeout_s + 8)  # it is noticed at the next byte but one
+        self.told_and_closed(clients[0], PRECONDITION, "did not come whole")
+
+    def subscribers_that_never_read(self, server, limits):
+        before = memory_kib(server)
+        began = time.monotonic()
+        deaf = [self.small(server) for _ in range(100)]
+        for client in deaf:
+            client.ask(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=60))
+        most = 0
+        while server.output().count("it has taken nothing") < len(deaf):
+            most = max(most, memory_kib(server) - before)
+            self.assertLess(time.monotonic() - began, limits.stalled_timeout_s + 20)
+            time.sleep(0.05)
+        self.assertGreater(time.monotonic() - began, limits.stalled_timeout_s)
+        self.assertLess(most, len(deaf) * 2048)
+
+    def a_slow_one_stays(self, server):
+        client = self.small(server)
+        client.ask(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=60))
+        end = time.monotonic() + 14
+        while time.monotonic() < end:
+            self.assertTrue(client.socket.recv(500))
+            time.sleep(0.25)
+
+    def one_of_tls_that_never_reads(self, server):
+        client = self.come(server, tls=access.Tls.context(self))
+        client.call(run=c.Run())
+        for _ in range(30):
+            client.ask(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=120))
+        plain.until(lambda: "it has taken nothing" in server.output(), "it is closed")
+
+    def an_export_nobody_goes_on_with(self, server):
+        client = self.come(server)
+        self.world_of_short_generations(client, 300)
+        part = client.call(export_run=c.ExportRun(world="short", table=c.RUN_TABLE_ORGANISMS,
+                                                  format=c.TEXT_FORMAT_CSV)).export_part
+        self.assertFalse(part.last)
+        time.sleep(client.welcome.limits.export_patience_s + 1)  # the export's own patience, which nothing else tells of
+        client.call(PRECONDITION, continue_export=c.ContinueExport(export_id=part.export_id))
+
+
+def memory_kib(server):
+    text = pathlib.Path(f"/proc/{server.process.pid}/smaps_rollup").read_text()
+    return int(re.search(r"Pss_Anon: +(\d+)", text)[1])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)
