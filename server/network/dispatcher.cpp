@@ -268,9 +268,11 @@ void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) 
     ask(session, request_id, std::move(answer), [](Session&, v1::Response&) {});
 }
 
-void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, Then then) {
+bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, Then then) {
     auto ask = [this, request_id, answer = std::move(answer), then = std::move(then),
                 weak = session.weak_from_this()](const simulation::Laboratory& laboratory) {
+        if (weak.expired())
+            return; // nobody waits for it
         v1::Response response = response_to(request_id);
         answer(laboratory, response);
         outbox_.answer([weak, then, response = std::move(response)]() mutable {
@@ -280,8 +282,10 @@ void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, 
             }
         });
     };
-    if (!mailbox_.try_push(runtime::QueryMail{std::move(ask)}))
-        session.answer(encode_response(protocol::refusing(request_id, busy())));
+    if (mailbox_.try_push(runtime::QueryMail{std::move(ask)}))
+        return true;
+    session.answer(encode_response(protocol::refusing(request_id, busy())));
+    return false;
 }
 
 void Dispatcher::query(Session& session, v1::Request request) {
@@ -318,7 +322,8 @@ void Dispatcher::query(Session& session, v1::Request request) {
     case v1::Request::kGetHistory: {
         // The rows are copied there and made into messages here, for there can be many.
         auto rows = std::make_shared<protocol::HistoryRows>();
-        return ask(
+        constexpr std::ptrdiff_t bytes = protocol::history_statistics_max * sizeof(simulation::GenerationStatistics);
+        const bool asked = ask(
             session, id,
             [name, request, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
                 if (auto found = protocol::get_history(laboratory, request.get_history()))
@@ -326,7 +331,8 @@ void Dispatcher::query(Session& session, v1::Request request) {
                 else
                     refuse(response, protocol::with_paths(found.error(), name));
             },
-            [this, rows](Session&, v1::Response& response) {
+            [this, rows](Session& asking, v1::Response& response) {
+                asking.expect(-bytes);
                 if (response.status().code() != v1::CODE_OK)
                     return;
                 if (rows->begins_late)
@@ -335,6 +341,9 @@ void Dispatcher::query(Session& session, v1::Request request) {
                     limit_counters_.met(Limit::HistoryGenerations);
                 *response.mutable_history() = protocol::to_proto(*rows);
             });
+        if (asked)
+            session.expect(bytes);
+        return;
     }
     default: {
         v1::Response response = response_to(id);

@@ -47,8 +47,9 @@ class Dispatcher {
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
     void ask(Session& session, std::uint64_t request_id, Answer answer);
     /// The same, for an answer that has to be finished here, by `then`, which may use the session: it is still there.
+    /// false: there is no room to ask, and the session has been told so.
     using Then = std::function<void(Session&, v1::Response&)>;
-    void ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
+    bool ask(Session& session, std::uint64_t request_id, Answer answer, Then then);
 
     runtime::Mailbox& mailbox_;
     runtime::Outbox& outbox_;

@@ -68,7 +68,7 @@ constexpr LimitRow table[] = {
     {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,
      "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
     {Limit::ClientBufferBytes, "client_buffer_bytes_max", client_buffer_bytes_max,
-     "what waits for all clients together, and what they have sent of frames that are not whole",
+     "what waits or is got together for all clients, and what they have sent of frames that are not whole",
      "the sessions with the most are closed"},
     {Limit::QueuedResponseBytes, "queued_response_bytes_max", queued_response_bytes_max,
      "answers that a session has not read", "closed"},

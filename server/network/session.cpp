@@ -81,6 +81,7 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , peer_{peer_of(line_.socket())}
     , neighbourhood_{neighbourhood_of(peer_.address())}
     , reader_bytes_{host.buffers}
+    , expected_bytes_{host.buffers}
     , turns_to_send_{requests_per_s_max, request_burst_max, std::chrono::steady_clock::now()}
     , hello_timer_{line_.socket().get_executor()}
     , frame_timer_{line_.socket().get_executor()}
@@ -315,6 +316,11 @@ bool Session::admit_request() {
     return true;
 }
 
+void Session::expect(std::ptrdiff_t bytes) {
+    if (!ended_)
+        expected_bytes_.set(expected_bytes_.bytes() + static_cast<std::size_t>(bytes));
+}
+
 void Session::answer(SharedBytes frame) {
     enqueue(std::move(frame), Kind::Answer);
 }
@@ -501,7 +507,7 @@ void Session::mind_progress(runtime::Clock::time_point now) {
 }
 
 std::size_t Session::held_bytes() const {
-    std::size_t bytes = reader_bytes_.bytes();
+    std::size_t bytes = reader_bytes_.bytes() + expected_bytes_.bytes();
     for (const Queued& queued : queue_)
         bytes += queued.bytes.share();
     for (const Queued& queued : sending_)
@@ -547,6 +553,7 @@ void Session::close() {
         subscription.islands.clear();
     turns_.clear();
     reader_bytes_.set(0);
+    expected_bytes_.set(0);
     wake_writer();
 }
 

@@ -98,6 +98,8 @@ class Session : public std::enable_shared_from_this<Session> {
 
     /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
     bool admit_request();
+    /// So many bytes are being got together elsewhere for an answer to it; a difference, below 0 when they are there.
+    void expect(std::ptrdiff_t bytes);
     /// The answer to an admitted request.
     void answer(SharedBytes frame);
     /// A response to something that was not admitted.
@@ -165,7 +167,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::string client_;
     access::Visitor visitor_;
     wire::FrameReader reader_{wire::hello_limits};
-    Buffers::Own reader_bytes_;
+    Buffers::Own reader_bytes_, expected_bytes_;
     TokenBucket turns_to_send_;
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a frame has begun to come
