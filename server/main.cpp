@@ -9,13 +9,13 @@
 #include "server/console/run.h"
 #include "server/console/token.h"
 #include "server/console/verify.h"
+#include "server/log/log.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
 #include "server/protocol/refusals.h"
 #include "server/simulation/experiment.h"
 
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <charconv>
@@ -30,6 +30,7 @@ using namespace evod;
 struct ServeOptions {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = wire::default_port;
+    std::string log_level = "info", log_format = "text";
     std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
     std::string experiment_file, population_file;
     std::optional<std::uint64_t> seed;
@@ -75,21 +76,27 @@ int serve(network::ServerOptions options) {
     if (!server)
         return fail(to_text(server.error()));
     if (!folder.empty())
-        spdlog::info("runs are kept in {}", folder);
+        log::info("runs are kept in {}", folder);
     const auto endpoint = (*server)->endpoint();
     if (!endpoint.address().is_loopback() && !encrypted)
-        spdlog::warn("without TLS, whoever is on the way to {} can read tokens and take them: see --tls-cert",
-                     endpoint.address().to_string());
+        log::warn("without TLS, whoever is on the way to {} can read tokens and take them: see --tls-cert",
+                  endpoint.address().to_string());
     const auto seed = (*server)->first_seed();
-    spdlog::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
-                 seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
+    log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
+              seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
     (*server)->run();
-    spdlog::info("stopped");
+    log::info("stopped");
     return 0;
 }
 
 /// Of who may come in, and how: for every way to serve.
 void add_access_options(CLI::App& app, ServeOptions& options) {
+    app.add_option("--log-level", options.log_level, "Least weight of what is logged")
+        ->check(CLI::IsMember(std::vector<std::string>{log::level_names.begin(), log::level_names.end()}))
+        ->capture_default_str();
+    app.add_option("--log-format", options.log_format, "text: sentences; json: an object a line")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
     app.add_flag("--require-token", options.token_needed,
                  "Let nobody in without a token, be it from this machine; from others it is always needed");
     app.add_option("--tls-cert", options.tls.certificate,
@@ -408,7 +415,7 @@ int main(int argument_count, char** arguments) {
         return 0;
     }
 
-    spdlog::set_pattern("%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
-    spdlog::flush_on(spdlog::level::info);
+    log::begin(log::level_named(options.log_level),
+               options.log_format == "json" ? log::Format::Json : log::Format::Text);
     return replay_run.parsed() ? replay(options, replay_options) : serve(options);
 }

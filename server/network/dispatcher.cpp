@@ -1,6 +1,7 @@
 #include "server/network/dispatcher.h"
 
 #include "server/access/role.h"
+#include "server/log/log.h"
 #include "server/network/description.h"
 #include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
@@ -10,8 +11,6 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"
-
-#include <spdlog/spdlog.h>
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/coded_stream.h>
@@ -189,7 +188,7 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     case protocol::RequestKind::Export:
         return export_text(session, request);
     case protocol::RequestKind::Server:
-        spdlog::info("session {}: {} shuts the server down", session.number(), session.by());
+        log::info("session {}: {} shuts the server down", session.number(), session.by());
         session.answer(encode_response(response_to(request.request_id())));
         return shut_down_();
     case protocol::RequestKind::Unknown:

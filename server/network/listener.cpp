@@ -1,12 +1,12 @@
 #include "server/network/listener.h"
 
+#include "server/log/log.h"
 #include "server/network/limits.h"
 
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <spdlog/spdlog.h>
 
 #include <utility>
 
@@ -55,7 +55,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
             accepted(std::move(socket));
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
             // Out of descriptors or memory: it would fail again at once, so give sessions time to end.
-            spdlog::warn("cannot accept a connection: {}", error.message());
+            log::warn("cannot accept a connection: {}", error.message());
             pause.expires_after(accept_pause);
             co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
         }

@@ -1,6 +1,7 @@
 #include "server/network/server.h"
 
 #include "server/base/assert.h"
+#include "server/log/log.h"
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
@@ -13,7 +14,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <csignal>
@@ -177,7 +177,7 @@ void Server::command_of_own(v1::Request request) {
                                            [](const simulation::Laboratory&, const simulation::Command&,
                                               const base::Result<simulation::Applied>& applied) {
                                                if (!applied)
-                                                   spdlog::error("cannot begin as asked: {}", to_text(applied.error()));
+                                                   log::error("cannot begin as asked: {}", to_text(applied.error()));
                                                return runtime::CommandAnswer{};
                                            }});
 }
@@ -215,7 +215,7 @@ void Server::run() {
     signals_.async_wait([this](boost::system::error_code error, int signal) {
         if (error)
             return;
-        spdlog::info("{}: going away", signal == SIGINT ? "SIGINT" : "SIGTERM");
+        log::info("{}: going away", signal == SIGINT ? "SIGINT" : "SIGTERM");
         go_away();
     });
     look_around();
@@ -245,7 +245,7 @@ void Server::mind_tokens() {
     if (!gate_->refresh())
         return;
     if (gate_->trouble())
-        spdlog::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
+        log::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
     // Those whose end comes now go from the table: it must not be walked meanwhile.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions)

@@ -1,5 +1,6 @@
 #include "server/network/session.h"
 
+#include "server/log/log.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 
@@ -8,7 +9,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <spdlog/spdlog.h>
 
 #include <netinet/tcp.h>
 
@@ -134,7 +134,7 @@ asio::awaitable<void> Session::read() {
         fail(refusal(base::RefusalCode::FailedPrecondition,
                      "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls"));
     else if (error) {
-        spdlog::info("session {}: {} is closed: TLS: {}", number_, to_text(peer_), error.message());
+        log::info("session {}: {} is closed: TLS: {}", number_, to_text(peer_), error.message());
         close();
     }
     begun_ = true;
@@ -278,8 +278,8 @@ void Session::on_hello(const v1::Hello& hello) {
     hello_timer_.cancel();
     reader_.set_limits(wire::server_limits);
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
-    spdlog::info("session {}: {} connected as {}, version {}", number_, by(), access::name_of(visitor_.role),
-                 hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
+    log::info("session {}: {} connected as {}, version {}", number_, by(), access::name_of(visitor_.role),
+              hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
 
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
@@ -300,7 +300,7 @@ void Session::on_hello(const v1::Hello& hello) {
 void Session::fail(const base::Refusal& refused) {
     if (finishing_ || ended_)
         return;
-    spdlog::info("session {}: {} is closed: {}", number_, greeted_ ? by() : to_text(peer_), refused.message);
+    log::info("session {}: {} is closed: {}", number_, greeted_ ? by() : to_text(peer_), refused.message);
     send_unasked(protocol::refusing(0, refused));
     finish();
 }
@@ -415,7 +415,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     queue_.push_back({{host_.buffers, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
-        spdlog::warn("session {}: {} is closed: it does not read its answers", number_, by());
+        log::warn("session {}: {} is closed: it does not read its answers", number_, by());
         close();
         return;
     }
@@ -500,7 +500,7 @@ void Session::mind_progress(runtime::Clock::time_point now) {
         progressed_ = now;
     } else if (now - progressed_ >= stalled_timeout) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        spdlog::warn("session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
+        log::warn("session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
                      stalled_timeout.count());
         close();
     }
@@ -520,7 +520,7 @@ std::size_t Session::held_bytes() const {
 
 void Session::make_room() {
     host_.limit_counters.met(Limit::ClientBufferBytes);
-    spdlog::warn("session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_,
+    log::warn("session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_,
                  by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
     close();
 }
@@ -561,7 +561,7 @@ void Session::end() {
     if (--coroutines_ > 0)
         return;
     if (greeted_)
-        spdlog::info("session {}: {} disconnected", number_, by());
+        log::info("session {}: {} disconnected", number_, by());
     host_.ended(*this);
 }
 

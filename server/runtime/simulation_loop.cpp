@@ -1,6 +1,6 @@
 #include "server/runtime/simulation_loop.h"
 
-#include <spdlog/spdlog.h>
+#include "server/log/log.h"
 
 #include <algorithm>
 #include <memory>
@@ -280,9 +280,9 @@ void SimulationLoop::mind_storage() {
     if (now == before)
         return;
     if (now.worlds_wait() && !before.worlds_wait())
-        spdlog::warn("worlds wait for the disk: {}", now.reason);
+        log::warn("worlds wait for the disk: {}", now.reason);
     else if (before.worlds_wait() && !now.worlds_wait())
-        spdlog::info("worlds go on");
+        log::info("worlds go on");
     laboratory_.set_storage(now);
     outputs_.storage(now);
 }

@@ -1,6 +1,6 @@
 #include "server/storage/archive.h"
 
-#include <spdlog/spdlog.h>
+#include "server/log/log.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -102,9 +102,8 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
         return recovered.error();
     const EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
-    spdlog::info("world \"{}\" goes on from generation {}, tick {}{}", identity.name,
-                 recovered->world.moment().generation, recovered->world.moment().tick,
-                 was_closed ? "" : ", where its file was left without being closed");
+    log::info("world \"{}\" goes on from generation {}, tick {}{}", identity.name, recovered->world.moment().generation,
+              recovered->world.moment().tick, was_closed ? "" : ", where its file was left without being closed");
     const auto name = std::filesystem::path{path}.stem().string();
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});

@@ -1,10 +1,10 @@
 #include "server/storage/storage_thread.h"
 
 #include "server/base/overloaded.h"
+#include "server/log/log.h"
 #include "server/storage/data_folder.h"
 
 #include <pthread.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <utility>
@@ -168,9 +168,9 @@ void StorageThread::set_trouble(const std::string& why) {
             when_changed_();
     }
     if (before.empty() && !why.empty())
-        spdlog::error("{}; commands are refused until it can be written again", why);
+        log::error("{}; commands are refused until it can be written again", why);
     else if (!before.empty() && why.empty())
-        spdlog::info("run files can be written again");
+        log::info("run files can be written again");
 }
 
 void StorageThread::work() {
@@ -291,7 +291,7 @@ bool StorageThread::write_out(Run& run) {
         if (const auto thinned = run.file->thin_if_large(); !thinned)
             return fail(run, thinned.error());
     if (run.file && !run.said_large && run.file->is_large()) {
-        spdlog::warn("{} is larger than it should be: what is kept for good takes more", run.path);
+        log::warn("{} is larger than it should be: what is kept for good takes more", run.path);
         run.said_large = true;
     }
     return true;

@@ -1,0 +1,114 @@
+#include "server/log/log.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+
+namespace evod::log {
+namespace {
+
+std::atomic<Format> format_in_use = Format::Text;
+
+spdlog::level::level_enum to_spdlog(Level level) {
+    return static_cast<spdlog::level::level_enum>(level);
+}
+static_assert(static_cast<int>(Level::Trace) == static_cast<int>(spdlog::level::trace) &&
+              static_cast<int>(Level::Error) == static_cast<int>(spdlog::level::err));
+
+/// Bytes of the character of UTF-8 that `text` begins with, 1 to 4; 0: it begins with none.
+std::size_t character_bytes(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t count = byte(0) < 0x80    ? 1
+                              : byte(0) < 0xc2  ? 0
+                              : byte(0) < 0xe0  ? 2
+                              : byte(0) < 0xf0  ? 3
+                              : byte(0) <= 0xf4 ? 4
+                                                : 0;
+    if (count > text.size())
+        return 0;
+    for (std::size_t i = 1; i < count; ++i)
+        if ((byte(i) & 0xc0) != 0x80)
+            return 0;
+    // Longer than needed, half of a pair of UTF-16, or beyond the last character: RFC 3629 §4.
+    if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
+        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f))
+        return 0;
+    return count;
+}
+
+std::string json_text(std::string_view text) {
+    std::string quoted = "\"";
+    while (!text.empty()) {
+        const std::size_t count = character_bytes(text);
+        const auto first = static_cast<unsigned char>(text[0]);
+        // Those that steer terminals are U+0080 to U+009F, too.
+        const unsigned control = count == 1 && (first < 0x20 || first == 0x7f) ? first
+                                 : count == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0
+                                     ? static_cast<unsigned char>(text[1])
+                                     : 0x100u;
+        if (count == 0)
+            quoted += "\\ufffd";
+        else if (control < 0x100)
+            quoted += fmt::format("\\u{:04x}", control);
+        else if (first == '"' || first == '\\')
+            (quoted += '\\') += text[0];
+        else
+            quoted += text.substr(0, count);
+        text.remove_prefix(std::max<std::size_t>(count, 1));
+    }
+    return quoted + '"';
+}
+
+} // namespace
+
+void begin(Level least, Format format) {
+    format_in_use = format;
+    spdlog::set_pattern(format == Format::Json ? "%v" : "%Y-%m-%d %H:%M:%S.%e %^%l%$ %v");
+    spdlog::set_level(to_spdlog(least));
+    spdlog::flush_on(to_spdlog(least));
+}
+
+Level level_named(std::string_view name) {
+    return static_cast<Level>(std::ranges::find(level_names, name) - level_names.begin());
+}
+
+bool wanted(Level level) {
+    return spdlog::should_log(to_spdlog(level));
+}
+
+void write(Level level, const Fields& fields, std::string_view message) {
+    const std::string line = format_in_use == Format::Json
+                                 ? json_line(std::chrono::system_clock::now(), level, fields, message)
+                                 : plain_line(message);
+    spdlog::log(to_spdlog(level), "{}", line);
+}
+
+std::string json_line(std::chrono::system_clock::time_point time, Level level, const Fields& fields,
+                      std::string_view message) {
+    const auto whole = std::chrono::floor<std::chrono::seconds>(time);
+    const auto milliseconds = std::chrono::floor<std::chrono::milliseconds>(time - whole).count();
+    const std::time_t since_1970 = std::chrono::system_clock::to_time_t(whole);
+    std::tm utc{};
+    ::gmtime_r(&since_1970, &utc);
+    std::string line = fmt::format(R"({{"time":"{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z","level":"{}","message":{})",
+                                   utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec,
+                                   milliseconds, level_names[static_cast<std::size_t>(level)], json_text(message));
+    if (fields.session)
+        line += fmt::format(R"(,"session":{})", *fields.session);
+    for (const auto& [name, value] :
+         {std::pair{"client", &fields.client}, {"world", &fields.world}, {"code", &fields.code}})
+        if (!value->empty())
+            line += fmt::format(R"(,"{}":{})", name, json_text(*value));
+    return line + '}';
+}
+
+std::string plain_line(std::string_view message) {
+    std::string line{message};
+    std::ranges::replace_if(
+        line, [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7f; }, '?');
+    return line;
+}
+
+} // namespace evod::log

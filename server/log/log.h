@@ -1,0 +1,64 @@
+// Log: what the server says to whoever looks after it, on standard output: sentences to read, or an object of JSON a
+// line.
+//
+//   log::info({.session = 3, .client = "anna"}, "session {}: {} connected", 3, "anna");
+//
+// Threads      any.
+// Outside text what clients send is made harmless here, too: no byte of it ends a line or steers a terminal.
+#pragma once
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace evod::log {
+
+enum class Level { Trace, Debug, Info, Warn, Error };
+constexpr std::array<const char*, 5> level_names{"trace", "debug", "info", "warn", "error"};
+enum class Format { Text, Json };
+
+/// What a message is about, as far as that is known. The sentence says it, too.
+struct Fields {
+    std::optional<std::uint64_t> session = {};
+    std::string client = {}, world = {}, code = {}; // empty: not known
+};
+
+/// From now on; until then, text from Level::Info on.
+void begin(Level least, Format format);
+Level level_named(std::string_view name); // one of level_names
+
+bool wanted(Level level);
+void write(Level level, const Fields& fields, std::string_view message);
+
+/// {"time":"2025-01-31T23:59:59.123Z","level":"info","message":"…","session":3,…}: the time is UTC, and of the fields
+/// those are there that are known. Bytes that are no UTF-8 become U+FFFD.
+std::string json_line(std::chrono::system_clock::time_point time, Level level, const Fields& fields,
+                      std::string_view message);
+/// Control characters but the ends of lines become '?'.
+std::string plain_line(std::string_view message);
+
+template <Level level>
+struct Says {
+    template <class... Arguments>
+    void operator()(const Fields& fields, fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
+        if (wanted(level))
+            write(level, fields, fmt::format(text, std::forward<Arguments>(arguments)...));
+    }
+    template <class... Arguments>
+    void operator()(fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
+        (*this)(Fields{}, text, std::forward<Arguments>(arguments)...);
+    }
+};
+inline constexpr Says<Level::Trace> trace;
+inline constexpr Says<Level::Debug> debug;
+inline constexpr Says<Level::Info> info;
+inline constexpr Says<Level::Warn> warn;
+inline constexpr Says<Level::Error> error;
+
+} // namespace evod::log
