@@ -72,7 +72,9 @@ v1::Response Caller::call(v1::Request request, std::optional<std::chrono::millis
     auto response = connection_->request(std::move(request), timeout.value_or(timeout_));
     if (!response) {
         const bool usage = response.error().kind == link::Error::Kind::Usage;
-        throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection, response.error().what};
+        const bool late = response.error().kind == link::Error::Kind::Timeout;
+        throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection,
+                   response.error().what + (late ? "; for a busy server wait longer, with --timeout" : "")};
     }
     if (!link::accepted(*response)) {
         throw Stop{ExitCode::Refused, link::to_text(response->status())};

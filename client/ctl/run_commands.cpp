@@ -10,8 +10,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -37,7 +39,7 @@ ExperimentFile read_experiment(const std::string& path, const Registry& registry
     std::ifstream file{path, std::ios::binary};
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     if (!file.is_open() || file.bad()) {
-        throw Stop{ExitCode::Usage, "the experiment file " + path + " cannot be read"};
+        throw Stop{ExitCode::Usage, "the experiment file " + path + " cannot be read: " + std::strerror(errno)};
     }
     auto experiment = parse_experiment(text, registry);
     if (!experiment) {
@@ -49,7 +51,7 @@ ExperimentFile read_experiment(const std::string& path, const Registry& registry
 void add_population(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file{path, std::ios::binary};
     if (!file.is_open()) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read"};
+        throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read: " + std::strerror(errno)};
     }
     const auto islands = read_population(file);
     if (!islands) {

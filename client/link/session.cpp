@@ -36,7 +36,7 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
     }
     if (error == asio::error::host_not_found || error == asio::error::host_not_found_try_again ||
         error == asio::error::no_data) {
-        return "the host " + server.host + " is not known";
+        return "the host " + server.host + " is not known: check its name";
     }
     if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe ||
         error == asio::ssl::error::stream_truncated) {
@@ -238,7 +238,7 @@ void Session::take_first(const evod::v1::ServerMessage& message) {
     } else if (message.welcome().protocol_version() != wire::protocol_version) {
         end({.reason = "the server at " + to_text(options_.server) + " speaks protocol version " +
                        std::to_string(message.welcome().protocol_version()) + ", this program version " +
-                       std::to_string(wire::protocol_version),
+                       std::to_string(wire::protocol_version) + ": use a program of the server's version",
              .final = true});
     } else {
         deadline_.cancel();
@@ -277,7 +277,8 @@ void Session::expect_within(std::chrono::milliseconds timeout, std::string what)
     deadline_.async_wait([self = shared_from_this(), timeout, what = std::move(what)](const error_code& error) {
         if (!error && !self->ended_ && !self->welcomed_) {
             self->end({.reason = what + " " + to_text(self->options_.server) + " within " +
-                                 std::to_string(timeout.count()) + " ms"});
+                                 std::to_string(timeout.count()) +
+                                 " ms: check the address, and what lies between here and there"});
         }
     });
 }

@@ -158,14 +158,14 @@ void Watch::take_statistics(const evod::v1::Statistics& statistics) {
 void Watch::take_worlds(const evod::v1::WorldList& worlds) {
     const auto& list = worlds.worlds();
     if (list.empty()) {
-        notices_.push_back("There is no world on this server yet");
+        notices_.push_back("There is no world on this server yet: make one with evoctl create NAME");
         return;
     }
     const std::string& shown = control_.known() ? control_.world() : wanted_.world;
     const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
     const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
     if (next == here) {
-        notices_.push_back("There is only this world");
+        notices_.push_back("There is only this world: make another with evoctl create NAME");
     } else {
         look_at(next->name(), 0);
     }

@@ -11,9 +11,7 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-namespace {
-
-} // namespace
+namespace {} // namespace
 
 Gate::Stamp Gate::stamp() const {
     struct stat about {};
@@ -81,15 +79,19 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
     if (token.empty() && !token_needed_)
         return Visitor{};
     if (trouble_)
-        return refusal(RefusalCode::Unavailable, "the server cannot tell at present who may come in: see its log");
+        return refusal(RefusalCode::Unavailable,
+                       "the server cannot tell at present who may come in: its log says why, to whoever runs it");
     const Digest digest = digest_of(token);
     const Token* known = token.empty() ? nullptr : find(tokens_, digest);
     if (known == nullptr) {
         // Who has none is asked for one, and need not wait with it.
         if (!token.empty())
             fail(address, now);
-        return refusal(RefusalCode::Unauthenticated,
-                       token.empty() ? "this server wants a token" : "this server does not know the token");
+        return refusal(
+            RefusalCode::Unauthenticated,
+            token.empty()
+                ? "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them"
+                : "this server does not know the token: ask whoever runs it for one");
     }
     failures_.erase(address);
     return Visitor{known->name, known->role, digest};

@@ -45,9 +45,14 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
             --end; // not in the middle of a character
         text = text.substr(0, end);
     }
-    std::string quoted{text};
-    std::replace_if(
-        quoted.begin(), quoted.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    std::string quoted;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
+        const bool of_two_bytes = byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0; // U+0080 to U+009F
+        const bool control = of_two_bytes || byte(i) < 0x20 || byte(i) == 0x7f;
+        quoted += control ? '?' : text[i];
+        i += of_two_bytes ? 1 : 0;
+    }
     return cut ? quoted + "…" : quoted;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 Refusal over() {
     return {.code = RefusalCode::FailedPrecondition,
-            .message = "the export is over, or was given up because nobody went on with it",
+            .message = "the export is over, or was given up because nobody went on with it: begin it again",
             .violations = {}};
 }
 

@@ -91,7 +91,8 @@ Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
     if (const auto look = looks_.find((*entry)->name); look != looks_.end())
         return look->second.past;
     if (!recorder_)
-        return refusal(RefusalCode::FailedPrecondition, "this server keeps no runs, so nothing tells of their past");
+        return refusal(RefusalCode::FailedPrecondition,
+                       "this server keeps no runs, so nothing tells of their past: start it without --keep-nothing");
     return storage::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
 }
 
@@ -200,9 +201,10 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
     if (static_cast<std::size_t>(of_owner) >= pasts_max || looks_.size() >= pasts_of_all_max)
         return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
                                           static_cast<std::size_t>(of_owner) >= pasts_max
-                                              ? "this session looks at " + std::to_string(pasts_max) + " pasts already"
+                                              ? "this session looks at " + std::to_string(pasts_max) +
+                                                    " pasts already: close one first"
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
-                                                    " pasts already"));
+                                                    " pasts already: try again when one of them is closed"));
     const std::string name = (*origin)->is_look_back() ? (*origin)->recording->past_of : (*origin)->name;
     look_at((*origin)->name,
             [this, name, request, reply](Result<simulation::Recording> there, const storage::Past& past) {
@@ -234,14 +236,14 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
     if (!looks_.contains(name))
         return reply(laboratory_, Refusal{.code = RefusalCode::FailedPrecondition,
                                           .message = "this world lives and cannot be taken to another moment: open its "
-                                                     "past",
+                                                     "past, or serve its file with evod replay",
                                           .violations = {}});
     const std::string& past_of = (*entry)->recording->past_of;
     look_at(past_of.empty() ? name : past_of, [this, name, request, reply](Result<simulation::Recording> there,
                                                                            const storage::Past& past) {
         const auto look = looks_.find(name);
         if (look == looks_.end())
-            return reply(laboratory_, refusal(RefusalCode::NotFound, "the past has been closed"));
+            return reply(laboratory_, refusal(RefusalCode::NotFound, "the past has been closed: open it again"));
         // The world may have begun another run: what is looked at is still the one of the look.
         if (!there || past.run_id() != look->second.past.run_id())
             there = look->second.past.recording();
@@ -259,14 +261,17 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
             old != journeys_.end()) {
             const Arrived gave_up = std::move(old->arrived);
             journeys_.erase(old);
-            gave_up(refusal(RefusalCode::FailedPrecondition, "another moment was asked for meanwhile"));
+            gave_up(refusal(
+                RefusalCode::FailedPrecondition,
+                "another moment was asked for meanwhile, and that is shown: seek again if this one is still wanted"));
         }
         look->second.journey =
             set_out(look->second.past, *moment, [this, name, there = *there, reply](Result<storage::Rerun> rerun) {
                 const auto seen_from = looks_.find(name);
                 if (!rerun || seen_from == looks_.end())
                     return reply(laboratory_,
-                                 rerun ? refusal(RefusalCode::NotFound, "the past has been closed") : rerun.error());
+                                 rerun ? refusal(RefusalCode::NotFound, "the past has been closed: open it again")
+                                       : rerun.error());
                 simulation::Entry& arrived = *entry_of(name);
                 arrived.recording = there;
                 arrive_in(arrived, seen_from->second, *std::move(rerun));

@@ -262,7 +262,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
     World& world = entry.world;
     if (command.expected_revision && *command.expected_revision != world.parameters().revision)
         return Refusal{.code = RefusalCode::FailedPrecondition,
-                       .message = "the parameters have been changed by someone else since",
+                       .message = "the parameters have been changed by someone else since: read them again, and set "
+                                  "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}}};
     const Result<Parameters> requested = assign(world.parameters().requested, command.assignments, "set_parameters.");
@@ -283,8 +284,9 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
     if (command.at_generation)
-        return refusal(RefusalCode::FailedPrecondition,
-                       "how a generation began is known to the file of a run only, and there is none");
+        return refusal(RefusalCode::FailedPrecondition, "how a generation began is known to the file of a run only, "
+                                                        "and there is none: fork the world as it is now, or "
+                                                        "start the server without --keep-nothing");
     return fork(command, entry.world);
 }
 

@@ -49,9 +49,10 @@ Result<std::unique_ptr<RunFile>> Past::open() const {
         if (!file && (!refused || refused->code == RefusalCode::NotFound))
             refused = file.error();
     }
-    return refused.value_or(Refusal{.code = RefusalCode::NotFound,
-                                    .message = paths_.front() + " is the file of another run now",
-                                    .violations = {}});
+    return refused.value_or(
+        Refusal{.code = RefusalCode::NotFound,
+                .message = paths_.front() + " is the file of another run now: close this past, and open it again",
+                .violations = {}});
 }
 
 Result<std::string> Past::world_name() const {

@@ -106,7 +106,8 @@ std::optional<base::Refusal> Recorder::refusal() const {
     if (!why)
         return std::nullopt;
     return base::Refusal{.code = base::RefusalCode::Unavailable,
-                         .message = "nothing can be changed while it cannot be written down: " + *why,
+                         .message = "nothing can be changed while it cannot be written down: " + *why +
+                                    "; send it again once that is mended",
                          .violations = {}};
 }
 

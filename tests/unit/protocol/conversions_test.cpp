@@ -375,6 +375,7 @@ TEST(Requests, WhatIsLeftOutIsDrawnAndWhatIs0IsKept) {
 
 TEST(Refusals, QuoteNothingThatHarms) {
     EXPECT_EQ(quotable("a\nb\x1b[31m"), "a?b?[31m");
+    EXPECT_EQ(quotable("a\xc2\x9b[31m é\xc2\xa0\xc2"), "a?[31m é\xc2\xa0\xc2") << "U+009B begins an escape, too";
     EXPECT_EQ(quotable("abcdef", 3), "abc…");
     EXPECT_EQ(quotable("ää", 3), "ä…") << "not in the middle of a character";
     EXPECT_EQ(quotable("äää", 0), "…");
