@@ -28,8 +28,9 @@ namespace {
 using namespace evod;
 
 struct ServeOptions {
-    std::string bind_address = "127.0.0.1";
+    std::string bind_address = "127.0.0.1", http_bind_address = "127.0.0.1";
     std::uint16_t port = wire::default_port;
+    std::optional<std::uint16_t> http_port;
     std::string log_level = "info", log_format = "text";
     std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
     std::string experiment_file, population_file;
@@ -81,6 +82,14 @@ int serve(network::ServerOptions options) {
     if (!endpoint.address().is_loopback() && !encrypted)
         log::warn("without TLS, whoever is on the way to {} can read tokens and take them: see --tls-cert",
                   endpoint.address().to_string());
+    if (const auto http = (*server)->http_endpoint()) {
+        const std::string address = http->address().to_string();
+        log::info("metrics and health at http://{}:{}/metrics and /healthz",
+                  http->address().is_v6() ? "[" + address + "]" : address, http->port());
+        if (!http->address().is_loopback())
+            log::warn("whoever reaches {}:{} can read the metrics: there are no tokens for HTTP", address,
+                      http->port());
+    }
     const auto seed = (*server)->first_seed();
     log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
               seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
@@ -89,9 +98,23 @@ int serve(network::ServerOptions options) {
     return 0;
 }
 
-/// Of who may come in, and how: for every way to serve.
-void add_access_options(CLI::App& app, ServeOptions& options) {
-    app.add_option("--log-level", options.log_level, "Least weight of what is logged")
+/// Of who may come in, and how, and what the server says of itself: for every way to serve.
+void add_common_options(CLI::App& app, ServeOptions& options) {
+    app.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
+        ->capture_default_str();
+    app.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
+    app.add_option("--threads", options.threads, "Threads that simulate")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    CLI::Option* http = app.add_option("--http-port", options.http_port,
+                                       "Port for /metrics and /healthz over HTTP, such as 7745; 0 is any that is free. "
+                                       "Otherwise there are none");
+    app.add_option("--http-bind", options.http_bind_address, "Address to serve those on")
+        ->needs(http)
+        ->capture_default_str();
+    app.add_option("--log-level", options.log_level,
+                   "Least weight of what is logged: debug has every refusal, trace "
+                   "every request")
         ->check(CLI::IsMember(std::vector<std::string>{log::level_names.begin(), log::level_names.end()}))
         ->capture_default_str();
     app.add_option("--log-format", options.log_format, "text: sentences; json: an object a line")
@@ -131,6 +154,12 @@ std::string whole_number(const std::string& text) {
     return good ? std::string{} : "must be a whole number, 0 to 18446744073709551615, not " + text;
 }
 
+std::optional<network::ServerOptions::HttpOptions> http_options(const ServeOptions& options) {
+    if (!options.http_port)
+        return std::nullopt;
+    return network::ServerOptions::HttpOptions{.bind_address = options.http_bind_address, .port = *options.http_port};
+}
+
 int serve(const ServeOptions& options) {
     simulation::CreateWorld create{
         .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
@@ -168,6 +197,7 @@ int serve(const ServeOptions& options) {
                       .vfs = nullptr,
                       .file_bytes_max = options.file_bytes_max,
                       .keep_every = options.keep_every},
+        .http = http_options(options),
         .replay = {},
         .first_world = std::move(create),
         .first_world_asked = !options.experiment_file.empty() || options.seed || !options.population_file.empty(),
@@ -190,6 +220,7 @@ int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
                   .token_needed = options.token_needed,
                   .tls = options.tls,
                   .run_files = {},
+                  .http = http_options(options),
                   .replay = std::move(run),
                   .first_world = {},
                   .first_speed = {}});
@@ -201,12 +232,7 @@ int main(int argument_count, char** arguments) {
     ServeOptions options;
     CLI::App app{"An evolution laboratory that runs as a server.", "evod"};
     app.set_version_flag("--version", std::string{"evod "} + EVOD_VERSION);
-    app.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
-        ->capture_default_str();
-    app.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
-    app.add_option("--threads", options.threads, "Threads that simulate")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
+    add_common_options(app, options);
     app.add_option("--experiment", options.experiment_file, "JSON file with the parameters of the first world");
     app.add_option("--seed", options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance")
         ->check(whole_number);
@@ -222,7 +248,6 @@ int main(int argument_count, char** arguments) {
     CLI::Option* data = app.add_option("--data", options.data_folder,
                                        "Folder where runs are kept, a file each; worlds found there go on. Otherwise "
                                        "$XDG_STATE_HOME/evod, or ~/.local/state/evod");
-    add_access_options(app, options);
     app.add_flag("--keep-nothing", options.keep_nothing, "Keep no files: runs end with the server")->excludes(data);
     app.add_option(
            "--durability", options.durability,
@@ -283,14 +308,8 @@ int main(int argument_count, char** arguments) {
     replay_run.add_option("run", replay_options.path, "Run file, NAME.evod; the run need not be over")->required();
     replay_run.add_option("--generation", replay_options.generation, "Begins there; otherwise with the first")
         ->check(whole_number);
-    replay_run.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
-        ->capture_default_str();
-    replay_run.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
-    replay_run.add_option("--threads", options.threads, "Threads that simulate")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
     replay_run.add_option("--data", options.data_folder, "Folder whose tokens let others in");
-    add_access_options(replay_run, options);
+    add_common_options(replay_run, options);
     replay_run.footer("Watch it with evoview, go elsewhere in it with evoctl seek, run and pause it as any world.");
 
     console::VerifyOptions verify_options;

@@ -140,13 +140,15 @@ void refuse(v1::Response& response, const base::Refusal& refused) {
 } // namespace
 
 Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-                       LimitCounters& limit_counters, std::function<void()> shut_down)
+                       LimitCounters& limit_counters, std::function<void()> shut_down,
+                       std::function<v1::Metrics()> metrics)
     : mailbox_{mailbox}
     , outbox_{outbox}
     , demand_{demand}
     , streams_{streams}
     , limit_counters_{limit_counters}
     , shut_down_{std::move(shut_down)}
+    , metrics_{std::move(metrics)}
     , exports_{outbox, limit_counters}
     , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max},
                [&limit_counters] { limit_counters.met(Limit::ClientKeys); }} {}
@@ -161,15 +163,22 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         session.send_unasked(protocol::refusing(request.request_id(), refused));
     };
     if (going_away_)
-        return refuse_it(refusal(base::RefusalCode::Unavailable, "the server is going away"));
+        return refuse_it(
+            refusal(base::RefusalCode::Unavailable, "the server is going away: send it again when it is back"));
     const auto kind = protocol::kind_of(request);
+    if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace))
+        log::trace({.session = session.number(), .client = session.by()}, "session {}: {} asks {}, request {}",
+                   session.number(), session.by(), name_of(request), request.request_id());
     if (kind == protocol::RequestKind::Unknown)
-        return refuse_it(refusal(base::RefusalCode::Unimplemented, "this server does not know the request"));
+        return refuse_it(refusal(
+            base::RefusalCode::Unimplemented,
+            "this server does not know the request: it may be older than the client; Describe tells what it knows"));
     if (const auto needed = access::role_needed(request.request_case(), is_of_own_past(session, request));
         session.visitor().role < needed)
         return refuse_it(refusal(base::RefusalCode::PermissionDenied,
                                  name_of(request) + " needs the role " + access::name_of(needed) +
-                                     "; this session has the role " + access::name_of(session.visitor().role)));
+                                     "; this session has the role " + access::name_of(session.visitor().role) +
+                                     ": come with a token of that role"));
     if (request.request_id() == 0)
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
     if (!session.admit_request())
@@ -188,8 +197,9 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     case protocol::RequestKind::Export:
         return export_text(session, request);
     case protocol::RequestKind::Server:
-        log::info("session {}: {} shuts the server down", session.number(), session.by());
-        session.answer(encode_response(response_to(request.request_id())));
+        log::info({.session = session.number(), .client = session.by()}, "session {}: {} shuts the server down",
+                  session.number(), session.by());
+        session.answer(response_to(request.request_id()));
         return shut_down_();
     case protocol::RequestKind::Unknown:
         break;
@@ -204,7 +214,7 @@ void Dispatcher::restore(const std::vector<storage::JournalEntry>& answers) {
 
 void Dispatcher::command(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
-    const auto refused = [id](const base::Refusal& why) { return encode_response(protocol::refusing(id, why)); };
+    const auto refused = [id](const base::Refusal& why) { return protocol::refusing(id, why); };
 
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
@@ -230,17 +240,19 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
                     "the request is older than those whose answers are kept, so it may have been run: it is not run "
-                    "again")));
+                    "again; see what holds now, and ask anew with a higher request_id")));
     case Retries::Verdict::New:
         break;
     }
 
     // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
     // the command cannot be lost any more.
-    auto reply = [this, request, by = session.by()](const simulation::Laboratory& laboratory,
-                                                    const simulation::Command& applied_command,
-                                                    const base::Result<simulation::Applied>& applied) {
-        const SharedBytes frame = encode_response(response_to(request, laboratory, applied));
+    auto reply = [this, request, by = session.by(), number = session.number()](
+                     const simulation::Laboratory& laboratory, const simulation::Command& applied_command,
+                     const base::Result<simulation::Applied>& applied) {
+        v1::Response response = response_to(request, laboratory, applied);
+        log_refusal(number, by, response);
+        const SharedBytes frame = encode_response(std::move(response));
         if (!applied && applied.error().code == base::RefusalCode::ResourceExhausted)
             limit_counters_.met(Limit::Worlds); // nothing else that commands make is bounded there
         std::optional<v1::Event> event;
@@ -260,7 +272,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     };
     storage::Origin origin{.client = session.by(), .client_key = key, .request_id = id, .request = bytes_of(request)};
     if (!mailbox_.try_push(runtime::CommandMail{*std::move(command), std::move(origin), std::move(reply)}))
-        retries_.forget(key, id, refused(busy()));
+        retries_.forget(key, id, encode_response(refused(busy())));
 }
 
 void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) {
@@ -277,20 +289,20 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, 
         outbox_.answer([weak, then, response = std::move(response)]() mutable {
             if (const auto asking = weak.lock()) {
                 then(*asking, response);
-                asking->answer(encode_response(std::move(response)));
+                asking->answer(std::move(response));
             }
         });
     };
     if (mailbox_.try_push(runtime::QueryMail{std::move(ask)}))
         return true;
-    session.answer(encode_response(protocol::refusing(request_id, busy())));
+    session.answer(protocol::refusing(request_id, busy()));
     return false;
 }
 
 void Dispatcher::query(Session& session, v1::Request request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty())
-        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+        return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     const std::string name = name_of(request);
     const auto put = [name]<class Message>(base::Result<Message> result, v1::Response& response,
                                            Message* (v1::Response::*field)()) {
@@ -344,31 +356,34 @@ void Dispatcher::query(Session& session, v1::Request request) {
             session.expect(bytes);
         return;
     }
+    case v1::Request::kGetMetrics: {
+        v1::Response response = response_to(id);
+        *response.mutable_metrics() = metrics_();
+        return session.answer(std::move(response));
+    }
     default: {
         v1::Response response = response_to(id);
         *response.mutable_description() = description();
         *response.mutable_description()->mutable_limits() = session.limits();
-        return session.answer(encode_response(std::move(response)));
+        return session.answer(std::move(response));
     }
     }
 }
 
 void Dispatcher::subscription(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
-    const auto refuse_it = [&](const base::Refusal& refused) {
-        session.answer(encode_response(protocol::refusing(id, refused)));
-    };
+    const auto refuse_it = [&](const base::Refusal& refused) { session.answer(protocol::refusing(id, refused)); };
     if (request.has_unsubscribe()) {
         const std::uint32_t subscription_id = request.unsubscribe().subscription_id();
         if (!streams_.unsubscribe(session, subscription_id))
             return refuse_it(no_such_subscription("unsubscribe.subscription_id", subscription_id));
-        return session.answer(encode_response(response_to(id)));
+        return session.answer(response_to(id));
     }
     if (request.has_request_keyframe()) {
         const std::uint32_t subscription_id = request.request_keyframe().subscription_id();
         if (!streams_.send_keyframes(session, subscription_id))
             return refuse_it(no_such_subscription("request_keyframe.subscription_id", subscription_id));
-        return session.answer(encode_response(response_to(id)));
+        return session.answer(response_to(id));
     }
     if (auto faults = protocol::faults_of(request); !faults.empty())
         return refuse_it(protocol::invalid(std::move(faults)));
@@ -380,8 +395,9 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             limit_counters_.met(Limit::Subscriptions);
         return is;
     };
-    const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
-                                  "this session has " + std::to_string(subscriptions_max) + " subscriptions already");
+    const auto too_many =
+        refusal(base::RefusalCode::ResourceExhausted, "this session has " + std::to_string(subscriptions_max) +
+                                                          " subscriptions already: unsubscribe from one first");
     const std::string name = name_of(request);
     if (request.has_subscribe_snapshots()) {
         auto wanted = std::make_shared<SnapshotSubscription>();
@@ -438,7 +454,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
 void Dispatcher::past(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty())
-        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+        return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     auto reply = [this, id, name = name_of(request), opens = request.has_open_past(), closes = request.has_close_past(),
                   weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
                                                    const base::Result<std::string>& world) {
@@ -457,17 +473,17 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
                 asking->pasts.insert(*world);
             if (world && closes)
                 asking->pasts.erase(*world);
-            asking->answer(encode_response(std::move(response)));
+            asking->answer(std::move(response));
         });
     };
     if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply))))
-        session.answer(encode_response(protocol::refusing(id, busy())));
+        session.answer(protocol::refusing(id, busy()));
 }
 
 void Dispatcher::export_text(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty())
-        return session.answer(encode_response(protocol::refusing(id, protocol::invalid(std::move(faults)))));
+        return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     if (request.has_continue_export())
         return exports_.go_on(session, id, request.continue_export());
     auto found = [this, id, request, weak = session.weak_from_this()](const base::Result<storage::Past>& run) {
@@ -478,12 +494,11 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
             if (run)
                 exports_.begin(*asking, id, *run, wanted(request.export_run()));
             else
-                asking->answer(
-                    encode_response(protocol::refusing(id, protocol::with_paths(run.error(), "export_run"))));
+                asking->answer(protocol::refusing(id, protocol::with_paths(run.error(), "export_run")));
         });
     };
     if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(request.export_run().world()), std::move(found)}))
-        session.answer(encode_response(protocol::refusing(id, busy())));
+        session.answer(protocol::refusing(id, busy()));
 }
 
 void Dispatcher::forget(const Session& session) {

@@ -20,8 +20,9 @@ class Dispatcher {
   public:
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
     /// shut_down  ends the server.
+    /// metrics    what it counts.
     Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-               LimitCounters& limit_counters, std::function<void()> shut_down);
+               LimitCounters& limit_counters, std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
 
@@ -57,6 +58,7 @@ class Dispatcher {
     Streams& streams_;
     LimitCounters& limit_counters_;
     std::function<void()> shut_down_;
+    std::function<v1::Metrics()> metrics_;
     Exports exports_;
     Retries retries_;
     bool going_away_ = false;

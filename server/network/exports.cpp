@@ -10,8 +10,8 @@ namespace {
 
 using base::RefusalCode;
 
-SharedBytes refused(std::uint64_t request_id, const base::Refusal& why) {
-    return encode_response(protocol::refusing(request_id, why));
+v1::Response refused(std::uint64_t request_id, const base::Refusal& why) {
+    return protocol::refusing(request_id, why);
 }
 
 } // namespace
@@ -42,12 +42,12 @@ void Exports::go_on(Session& session, std::uint64_t request_id, const v1::Contin
     if (found == exports_.end() || found->second.id != request.export_id())
         return session.answer(
             refused(request_id, {.code = RefusalCode::NotFound,
-                                 .message = "this session has no such export under way",
+                                 .message = "this session has no such export under way: begin one",
                                  .violations = {{"continue_export.export_id", "the id of the export under way",
                                                  std::to_string(request.export_id())}}}));
     if (found->second.asked)
-        return session.answer(
-            refused(request_id, refusal(RefusalCode::FailedPrecondition, "the part before has not been answered yet")));
+        return session.answer(refused(request_id, refusal(RefusalCode::FailedPrecondition,
+                                                          "the part before has not been answered yet: wait for it")));
     ask(session, request_id, found->second);
 }
 
@@ -72,7 +72,7 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
             answer.set_text(std::move(part->text));
             answer.set_last(part->last);
             answer.set_generations_left_out(part->generations_left_out);
-            asking->answer(encode_response(std::move(response)));
+            asking->answer(std::move(response));
         });
     });
 }

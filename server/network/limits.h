@@ -118,4 +118,11 @@ constexpr std::chrono::milliseconds look_every{500};   // for a token file that 
 constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
 constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
 
+// Of HTTP.
+constexpr std::size_t http_connections_max = 16;         // more: told so with 503; as many again: closed
+constexpr std::size_t http_header_bytes_max = 8 << 10;   // of a request; more: 431
+constexpr std::chrono::seconds http_request_timeout{5};  // for a request to come whole; then it is closed
+constexpr std::chrono::seconds http_farewell_timeout{1}; // for the last bytes of a connection that ends
+constexpr std::chrono::seconds simulation_patience{3};   // for the simulation thread to answer; then 503
+
 } // namespace evod::network

@@ -15,7 +15,8 @@ namespace evod::network {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-base::Result<Listener> Listener::open(asio::io_context& context, const std::string& address, std::uint16_t port) {
+base::Result<Listener> Listener::open(asio::io_context& context, const std::string& address, std::uint16_t port,
+                                      const Names& names) {
     const std::string where = address + ":" + std::to_string(port);
     const auto refused = [&](const std::string& why) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
@@ -25,9 +26,8 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     boost::system::error_code error;
     const auto ip = asio::ip::make_address(address, error);
     if (error)
-        return refused("'" + address +
-                       "' is not an IP address; give --bind the address of an interface, such as "
-                       "127.0.0.1, or 0.0.0.0 for all of them");
+        return refused("'" + address + "' is not an IP address; give " + names.address +
+                       " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
     tcp::acceptor acceptor{context};
     const tcp::endpoint endpoint{ip, port};
     acceptor.open(endpoint.protocol(), error);
@@ -39,9 +39,10 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     if (!error)
         acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (error == asio::error::address_in_use)
-        return refused("the port is taken, perhaps by another evod; stop that, or choose another with --port");
+        return refused(std::string{"the port is taken, perhaps by another evod; stop that, or choose another with "} +
+                       names.port);
     if (error == asio::error::access_denied)
-        return refused("ports below 1024 need privileges; choose another with --port");
+        return refused(std::string{"ports below 1024 need privileges; choose another with "} + names.port);
     if (error)
         return refused(error.message());
     return Listener{std::move(acceptor)};

@@ -19,13 +19,21 @@ class Listener {
     ///
     /// address   of an interface: "127.0.0.1", "0.0.0.0", "::1".
     /// port      0: any that is free.
-    /// accepted  called for each connection.
+    /// names     the options by which a person chooses these.
+    struct Names {
+        const char* address = "--bind";
+        const char* port = "--port";
+    };
+    static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address, std::uint16_t port,
+                                       const Names& names);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address,
-                                       std::uint16_t port);
+                                       std::uint16_t port) {
+        return open(context, address, port, Names{});
+    }
 
     boost::asio::ip::tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
 
-    /// Accepts until close().
+    /// Accepts until close(). accepted: called for each connection.
     boost::asio::awaitable<void> accept(std::function<void(boost::asio::ip::tcp::socket)> accepted);
 
     void close();

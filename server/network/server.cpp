@@ -49,6 +49,8 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (!listener)
         return listener.error();
     server->listener_ = *std::move(listener);
+    if (auto opened = server->open_http(); !opened)
+        return opened.error();
     std::signal(SIGPIPE, SIG_IGN); // whoever read the log may go; the server stays
     // From now on: whoever reads that the server listens may send them.
     server->signals_.add(SIGINT);
@@ -62,7 +64,8 @@ Server::Server(ServerOptions options)
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
-    , dispatcher_{mailbox_, outbox_, demand_, streams_, limit_counters_, [this] { stop(); }} {
+    , dispatcher_{
+          mailbox_, outbox_, demand_, streams_, limit_counters_, [this] { stop(); }, [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
     host_.instance_id = to_text(draw_run_id());
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
@@ -209,7 +212,8 @@ void Server::run() {
                         host_.storage = event.storage_changed().storage();
                         streams_.tell(event);
                     });
-                }},
+                },
+            .counted = &worlds_counted_},
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
     signals_.async_wait([this](boost::system::error_code error, int signal) {
@@ -221,6 +225,8 @@ void Server::run() {
     look_around();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
                    asio::detached);
+    if (http_)
+        http_->start();
     context_.run();
 }
 
@@ -272,21 +278,23 @@ void Server::relieve() {
 void Server::accepted(tcp::socket socket) {
     const auto session = std::make_shared<Session>(std::move(socket), host_, ++session_number_);
     ++connections_;
+    host_.traffic.connections.add();
     if (going_away_)
-        return session->start(base::Refusal{
-            .code = base::RefusalCode::Unavailable, .message = "the server is going away", .violations = {}});
+        return session->start(
+            refusal(base::RefusalCode::Unavailable, "the server is going away: connect again when it is back"));
     const SessionBounds& bounds = options_.session_bounds;
     const auto full = [&](Limit limit, const std::string& why) {
         limit_counters_.met(limit);
         session->start(refusal(base::RefusalCode::ResourceExhausted, why));
     };
     if (sessions_.size() >= bounds.sessions_max)
-        return full(Limit::Sessions, "the server has " + std::to_string(bounds.sessions_max) + " sessions already");
+        return full(Limit::Sessions, "the server has " + std::to_string(bounds.sessions_max) +
+                                         " sessions already: try again when one has ended");
     const auto neighbours = std::ranges::count_if(
         sessions_, [&](const auto& other) { return other.second->neighbourhood() == session->neighbourhood(); });
     if (neighbours >= bounds.sessions_per_address_max)
         return full(Limit::SessionsPerAddress, "there are " + std::to_string(bounds.sessions_per_address_max) +
-                                                   " sessions from this address already");
+                                                   " sessions from this address already: end one of them first");
     sessions_.emplace(session->number(), session);
     session->start();
 }
@@ -310,6 +318,9 @@ void Server::go_away() {
     signals_.cancel();
     look_timer_.cancel();
     listener_->close();
+    pulse_.stop();
+    if (http_)
+        http_->close();
     dispatcher_.refuse_all();
     // What was admitted is still answered.
     simulation_->stop();

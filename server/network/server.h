@@ -5,7 +5,9 @@
 
 #include "server/access/tls.h"
 #include "server/network/dispatcher.h"
+#include "server/network/http.h"
 #include "server/network/listener.h"
+#include "server/network/pulse.h"
 #include "server/runtime/simulation_thread.h"
 #include "server/storage/archive.h"
 
@@ -34,7 +36,12 @@ struct ServerOptions {
         std::string path;
         std::optional<std::uint64_t> generation; // nullopt: the first
     };
-    std::optional<Replay> replay; // instead of worlds that live, and of the data folder, the run of a file
+    struct HttpOptions {
+        std::string bind_address = "127.0.0.1";
+        std::uint16_t port = 0; // 0: any that is free
+    };
+    std::optional<HttpOptions> http; // nullopt: no metrics over HTTP
+    std::optional<Replay> replay;    // instead of worlds that live, and of the data folder, the run of a file
 
     simulation::CreateWorld first_world; // made if there is none of its name
     bool first_world_asked = false;      // otherwise it is made only if there is no world at all
@@ -56,6 +63,11 @@ class Server {
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_->endpoint(); }
 
+    /// Of the metrics; nullopt: nowhere.
+    std::optional<boost::asio::ip::tcp::endpoint> http_endpoint() const {
+        return http_ ? std::optional{http_->endpoint()} : std::nullopt;
+    }
+
     /// Serves until SIGINT, SIGTERM or stop(): then says goodbye to every session, and returns.
     void run();
 
@@ -65,6 +77,7 @@ class Server {
   private:
     explicit Server(ServerOptions options);
     base::Result<void> open_archive();
+    base::Result<void> open_http();
     /// The commands that options ask for.
     bool creates_first_world() const;
     void begin_first_world();
@@ -77,6 +90,10 @@ class Server {
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
     void go_away();
+    /// What it counts and measures.
+    v1::Metrics metrics();
+    /// 200 while the simulation answers and runs can be written down, else 503 and why.
+    asio::awaitable<Http::Page> health();
 
     ServerOptions options_;
     LimitCounters limit_counters_;
@@ -84,6 +101,7 @@ class Server {
     boost::asio::io_context context_{1};
     boost::asio::signal_set signals_{context_};
     std::optional<Listener> listener_;
+    std::unique_ptr<Http> http_; // nullptr: not wanted
 
     std::unique_ptr<asio::ssl::context> tls_; // nullptr: in the clear
     std::optional<access::Gate> gate_;
@@ -96,6 +114,8 @@ class Server {
     runtime::Mailbox mailbox_;
     runtime::Demand demand_;
     runtime::Outbox outbox_;
+    metrics::Worlds worlds_counted_;
+    Pulse pulse_{mailbox_, outbox_};
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;

@@ -58,6 +58,14 @@ v1::Role to_proto(access::Role role) {
 
 } // namespace
 
+void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response) {
+    if (response.status().code() == v1::CODE_OK)
+        return;
+    const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
+    log::debug({.session = session, .client = by, .code = code}, "session {}: {} is refused request {}: {}: {}",
+               session, by, response.request_id(), code, response.status().message());
+}
+
 SharedBytes encode_control(const v1::ServerMessage& message) {
     return std::make_shared<const std::string>(wire::encode_frame(wire::Channel::Control, message));
 }
@@ -116,8 +124,9 @@ void Session::start(const std::optional<base::Refusal>& refused) {
     hello_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
         if (const auto self = weak.lock(); self && !error && !self->greeted_) {
             self->host_.limit_counters.met(Limit::HelloTimeout);
-            self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "no hello came within " + std::to_string(hello_timeout.count()) + " s"));
+            self->fail(refusal(base::RefusalCode::FailedPrecondition, "no hello came within " +
+                                                                          std::to_string(hello_timeout.count()) +
+                                                                          " s: connect again, and send one first"));
         }
     });
 }
@@ -134,7 +143,8 @@ asio::awaitable<void> Session::read() {
         fail(refusal(base::RefusalCode::FailedPrecondition,
                      "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls"));
     else if (error) {
-        log::info("session {}: {} is closed: TLS: {}", number_, to_text(peer_), error.message());
+        log::info({.session = number_, .client = to_text(peer_)}, "session {}: {} is closed: TLS: {}", number_,
+                  to_text(peer_), error.message());
         close();
     }
     begun_ = true;
@@ -151,6 +161,7 @@ asio::awaitable<void> Session::read() {
         }
         if (error || ended_)
             break;
+        host_.traffic.received_bytes.add(count);
         reader_.feed({bytes.data(), count});
         reader_bytes_.set(reader_.capacity_bytes());
         bool one_came = false;
@@ -195,7 +206,8 @@ void Session::mind_frame(bool one_came) {
         if (const auto self = weak.lock(); self && !error) {
             self->host_.limit_counters.met(Limit::FrameTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
-                               "a frame did not come whole within " + std::to_string(frame_timeout.count()) + " s"));
+                               "a frame did not come whole within " + std::to_string(frame_timeout.count()) +
+                                   " s: connect again, and send each in one go"));
         }
     });
 }
@@ -238,18 +250,20 @@ void Session::on_frame(const wire::Frame& frame) {
         return send_unasked(protocol::refusing(0, refusal(base::RefusalCode::InvalidArgument, message.error().what)));
     switch (message->message_case()) {
     case v1::ClientMessage::kRequest:
+        host_.traffic.requests.add();
         host_.handle(*this, std::move(*message->mutable_request()));
         break;
     case v1::ClientMessage::kAcknowledgePicture:
         on_acknowledgement(message->acknowledge_picture());
         break;
     case v1::ClientMessage::kHello:
-        send_unasked(protocol::refusing(
-            0, refusal(base::RefusalCode::FailedPrecondition, "this session has had its hello already")));
+        send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
+                                                   "this session has had its hello already: send requests")));
         break;
     case v1::ClientMessage::MESSAGE_NOT_SET:
-        send_unasked(
-            protocol::refusing(0, refusal(base::RefusalCode::Unimplemented, "this server does not know the message")));
+        send_unasked(protocol::refusing(0, refusal(base::RefusalCode::Unimplemented,
+                                                   "this server does not know the message: it may be older than "
+                                                   "the client; Describe tells what it knows")));
         break;
     }
 }
@@ -267,7 +281,7 @@ void Session::on_hello(const v1::Hello& hello) {
         return fail(protocol::invalid(std::move(violations)));
     if (hello.protocol_version() != wire::protocol_version)
         return fail({.code = base::RefusalCode::FailedPrecondition,
-                     .message = "this server speaks another version of the protocol",
+                     .message = "this server speaks another version of the protocol: use a client of that version",
                      .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
                                      std::to_string(hello.protocol_version())}}});
     auto visitor = host_.admit(hello.token(), neighbourhood_);
@@ -278,7 +292,8 @@ void Session::on_hello(const v1::Hello& hello) {
     hello_timer_.cancel();
     reader_.set_limits(wire::server_limits);
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
-    log::info("session {}: {} connected as {}, version {}", number_, by(), access::name_of(visitor_.role),
+    log::info({.session = number_, .client = by()}, "session {}: {} connected as {}, version {}", number_, by(),
+              access::name_of(visitor_.role),
               hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
 
     v1::ServerMessage message;
@@ -300,7 +315,9 @@ void Session::on_hello(const v1::Hello& hello) {
 void Session::fail(const base::Refusal& refused) {
     if (finishing_ || ended_)
         return;
-    log::info("session {}: {} is closed: {}", number_, greeted_ ? by() : to_text(peer_), refused.message);
+    const std::string who = greeted_ ? by() : to_text(peer_);
+    log::info({.session = number_, .client = who, .code = name_of(refused.code)}, "session {}: {} is closed: {}",
+              number_, who, refused.message);
     send_unasked(protocol::refusing(0, refused));
     finish();
 }
@@ -325,7 +342,14 @@ void Session::answer(SharedBytes frame) {
     enqueue(std::move(frame), Kind::Answer);
 }
 
+void Session::answer(v1::Response response) {
+    log_refusal(number_, by(), response);
+    answer(encode_response(std::move(response)));
+}
+
 void Session::send_unasked(const v1::Response& response) {
+    if (greeted_)
+        log_refusal(number_, by(), response);
     enqueue(encode_response(response), Kind::Unasked);
 }
 
@@ -339,7 +363,13 @@ void Session::event(const SharedBytes& frame) {
 
 void Session::count_dropped_events(std::uint64_t count) {
     dropped_events_ += count;
+    host_.traffic.events_dropped.add(count);
     wake_writer();
+}
+
+void Session::count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count) {
+    of.dropped_count += count;
+    host_.traffic.pictures_dropped.add(count);
 }
 
 void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture) {
@@ -348,7 +378,7 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
         return;
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     if (of.waiting)
-        ++subscription->second.dropped_count;
+        count_dropped_pictures(subscription->second, 1);
     else
         turns_.push_back({subscription_id, island});
     of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
@@ -415,7 +445,8 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
     queue_.push_back({{host_.buffers, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
         host_.limit_counters.met(Limit::QueuedResponseBytes);
-        log::warn("session {}: {} is closed: it does not read its answers", number_, by());
+        log::warn({.session = number_, .client = by()}, "session {}: {} is closed: it does not read its answers",
+                  number_, by());
         close();
         return;
     }
@@ -453,6 +484,7 @@ asio::awaitable<void> Session::write() {
                 buffers.push_back(asio::buffer(*sending_.back().bytes));
             }
             const auto [error, count] = co_await line_.write(buffers);
+            host_.traffic.sent_control_bytes.add(count);
             if (error)
                 break;
             for (const Queued& sent : sending_)
@@ -474,9 +506,11 @@ asio::awaitable<void> Session::write() {
             buffers = {asio::buffer(header), asio::buffer(*picture->fields), asio::buffer(picture->tail)};
             sending_.push_back({{host_.buffers, picture->fields}, Kind::Picture});
             const auto [error, count] = co_await line_.write(buffers);
+            host_.traffic.sent_stream_bytes.add(count);
             if (error)
                 break;
             sending_.clear();
+            host_.traffic.pictures_sent.add();
         } else if (finishing_) {
             break;
         } else {
@@ -561,7 +595,7 @@ void Session::end() {
     if (--coroutines_ > 0)
         return;
     if (greeted_)
-        log::info("session {}: {} disconnected", number_, by());
+        log::info({.session = number_, .client = by()}, "session {}: {} disconnected", number_, by());
     host_.ended(*this);
 }
 

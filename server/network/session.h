@@ -12,6 +12,7 @@
 #include "proto/wire/framing.h"
 #include "server/access/gate.h"
 #include "server/base/result.h"
+#include "server/metrics/traffic.h"
 #include "server/network/buffers.h"
 #include "server/network/chains.h"
 #include "server/network/limits.h"
@@ -43,6 +44,7 @@ struct SessionHost {
     v1::Durability durability = v1::DURABILITY_NONE;
     std::optional<v1::Storage> storage = {}; // as it stands now; nothing: runs are not kept
     asio::ssl::context* tls = nullptr;       // nullptr: in the clear
+    metrics::Traffic traffic = {};
     /// Who comes with a token, from an address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
     std::function<void(Session&, v1::Request)> handle = {};
@@ -102,14 +104,21 @@ class Session : public std::enable_shared_from_this<Session> {
     void expect(std::ptrdiff_t bytes);
     /// The answer to an admitted request.
     void answer(SharedBytes frame);
+    /// The same; a refusal is logged.
+    void answer(v1::Response response);
     /// A response to something that was not admitted.
     void send_unasked(const v1::Response& response);
     void event(const SharedBytes& frame);
     void count_dropped_events(std::uint64_t count);
+    /// Pictures of one of its subscriptions that were replaced by newer ones.
+    void count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count);
     /// Takes a picture for a subscription in the place of one that has not been sent.
     void picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture);
     /// What this subscription is sent next of an island is a keyframe: one that waits, or else `picture`.
     void keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& picture);
+
+    /// What waits to be sent, but for pictures.
+    std::size_t queued_bytes() const { return response_bytes_ + event_bytes_; }
 
     /// Says what was wrong, and ends the session.
     void fail(const base::Refusal& refusal);
@@ -189,6 +198,9 @@ class Session : public std::enable_shared_from_this<Session> {
     std::deque<Turn> turns_; // of the pictures that wait in `snapshots`
     std::uint32_t subscription_id_ = 0;
 };
+
+/// At Level::Debug, if it says no. by: whom.
+void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response);
 
 SharedBytes encode_control(const v1::ServerMessage& message);
 SharedBytes encode_response(v1::Response response);

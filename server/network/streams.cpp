@@ -235,7 +235,7 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
             Group* const group = chained ? &groups_.at(group_of(subscription)) : nullptr;
             if (chained ? !shown.contains(group) : !pace.takes(picture, now))
                 continue;
-            subscription.dropped_count += picture.replaced_count;
+            session->count_dropped_pictures(subscription, picture.replaced_count);
             for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
                 const std::uint32_t island = snapshot.islands[i].island;
                 if (subscription.island && *subscription.island != island)

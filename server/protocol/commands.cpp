@@ -191,6 +191,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kGetHistory:
     case RequestCase::kGetOrganism:
     case RequestCase::kDescribe:
+    case RequestCase::kGetMetrics:
         return RequestKind::Query;
     case RequestCase::kSubscribeSnapshots:
     case RequestCase::kSubscribeEvents:
@@ -208,7 +209,6 @@ RequestKind kind_of(const v1::Request& request) {
         return RequestKind::Server;
     case RequestCase::kReleaseLease:
     case RequestCase::kRenewLease:
-    case RequestCase::kGetMetrics:
     case RequestCase::kSetView:
     case RequestCase::REQUEST_NOT_SET:
         break;

@@ -41,6 +41,11 @@ std::vector<Mail> Mailbox::drain(std::vector<Mail> emptied) {
     return emptied;
 }
 
+Mailbox::Fill Mailbox::fill() const {
+    const std::lock_guard lock{mutex_};
+    return {.waiting = waiting_.size(), .capacity = capacity_};
+}
+
 void Mailbox::wait(std::optional<Clock::time_point> until) {
     std::unique_lock lock{mutex_};
     const auto wanted = [this] { return pending_.load(std::memory_order_relaxed); };

@@ -98,6 +98,11 @@ class Mailbox {
     /// Everything that waits, oldest first. `emptied` lends its memory.
     std::vector<Mail> drain(std::vector<Mail> emptied = {});
 
+    struct Fill {
+        std::size_t waiting = 0, capacity = 0;
+    };
+    Fill fill() const;
+
     /// Returns when there is mail, after a wake(), or at `until`; nullopt is never.
     void wait(std::optional<Clock::time_point> until);
 
@@ -106,7 +111,7 @@ class Mailbox {
 
     const std::size_t capacity_;
     std::atomic<bool> pending_ = false;
-    std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::vector<Mail> waiting_;
 };

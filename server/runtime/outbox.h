@@ -42,12 +42,17 @@ class Outbox {
     };
     Taken take();
 
+    struct Fill {
+        std::size_t deliveries = 0, events = 0, events_max = 0; // events are among the deliveries
+    };
+    Fill fill() const;
+
   private:
     void added(std::unique_lock<std::mutex> lock);
 
     const std::function<void()> wake_;
     const std::size_t events_max_;
-    std::mutex mutex_; // guards what follows
+    mutable std::mutex mutex_; // guards what follows
     Taken waiting_;
     std::size_t events_waiting_ = 0;
     bool woken_ = false;

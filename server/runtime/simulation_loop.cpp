@@ -99,6 +99,8 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         Track& track = tracks_.find(entry->name)->second;
         measure(*entry, track, now);
         show(*entry, track, now);
+        if (track.counted)
+            track.counted->ticks_per_s.set(entry->ticks_per_s);
     }
     return next;
 }
@@ -303,6 +305,8 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         found = tracks_.emplace(entry.name, Track{}).first;
         if (const auto watch = watches_.find(entry.name); watch != watches_.end())
             found->second.watch = &watch->second;
+        if (outputs_.counted != nullptr && !entry.is_look_back())
+            found->second.counted = outputs_.counted->add(entry.name);
     }
     Track& track = found->second;
     if (recorder_)
@@ -354,7 +358,10 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             track.due = std::max(track.due + period(entry), now - catch_up_max);
         measure(entry, track, now);
         show(entry, track, now);
-        mind_checkpoint(entry, track, now - std::exchange(before, now));
+        const auto spent = now - std::exchange(before, now);
+        if (track.counted)
+            track.counted->tick_time.add(spent);
+        mind_checkpoint(entry, track, spent);
         if (stopped || now >= end || (paced && track.due > now))
             return;
     } while (!mailbox_.pending() && !demand_.changed());

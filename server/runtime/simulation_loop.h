@@ -14,6 +14,7 @@
 #pragma once
 
 #include "server/base/executor.h"
+#include "server/metrics/worlds.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
@@ -24,6 +25,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -35,6 +37,8 @@ struct LoopOutputs {
     std::function<void(SnapshotPtr)> picture;
     /// It stands otherwise with writing down what worlds do.
     std::function<void(const simulation::Storage&)> storage = [](const simulation::Storage&) {};
+    /// What is counted of each world, but of those that look back; outlives the loop. nullptr: nothing is.
+    metrics::Worlds* counted = nullptr;
 };
 
 class SimulationLoop {
@@ -67,6 +71,7 @@ class SimulationLoop {
     /// What is known of a world here; by name, and forgotten when the run id is another.
     struct Track {
         storage::RunRecorder* recorder = nullptr;
+        std::shared_ptr<metrics::World> counted; // nullptr: nothing is
         simulation::RunId run_id;
         simulation::Speed speed;
         double tick_s = 0;

@@ -4,6 +4,8 @@
 
 #include "server/runtime/simulation_loop.h"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <thread>
 
@@ -19,6 +21,9 @@ class SimulationThread {
 
     /// Minds the mail that waits and ends; returns when it has.
     void stop();
+
+    /// To ask the system about it; not after stop().
+    pthread_t handle() { return thread_.native_handle(); }
 
   private:
     Mailbox& mailbox_;

@@ -102,8 +102,9 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
         return recovered.error();
     const EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
-    log::info("world \"{}\" goes on from generation {}, tick {}{}", identity.name, recovered->world.moment().generation,
-              recovered->world.moment().tick, was_closed ? "" : ", where its file was left without being closed");
+    log::info({.world = identity.name}, "world \"{}\" goes on from generation {}, tick {}{}", identity.name,
+              recovered->world.moment().generation, recovered->world.moment().tick,
+              was_closed ? "" : ", where its file was left without being closed");
     const auto name = std::filesystem::path{path}.stem().string();
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});

@@ -31,6 +31,8 @@ class Archive {
     /// Commands that were applied, with their answers, oldest first within a run; once.
     std::vector<JournalEntry> take_answers() { return std::move(answers_); }
 
+    /// nullptr once it is closed.
+    StorageThread* thread() { return thread_.get(); }
     Recorder& recorder() { return *recorder_; }
     /// Writes what waits, as far as that can be done now; once the recorder is used no more.
     void close() { thread_.reset(); }

@@ -144,9 +144,16 @@ bool StorageThread::wait_in_line(RunNumber run, std::vector<Item> items) {
     urgent_ |= items.back().done != nullptr;
     // Somebody who waits, and the first of what is gathered.
     const bool wake = urgent_ || handed_over_.empty();
+    if (handed_over_.empty())
+        handed_over_since_ = std::chrono::steady_clock::now();
     std::vector<Item>& waiting = handed_over_[run];
     waiting.insert(waiting.end(), std::make_move_iterator(items.begin()), std::make_move_iterator(items.end()));
     return wake;
+}
+
+std::optional<std::chrono::steady_clock::time_point> StorageThread::waiting_since() const {
+    const std::lock_guard lock{mutex_};
+    return taken_since_ ? taken_since_ : handed_over_since_;
 }
 
 std::optional<std::string> StorageThread::trouble() const {
@@ -187,6 +194,9 @@ void StorageThread::work() {
             }
             urgent_ = false;
             stopping = stopping_;
+            if (!taken_since_)
+                taken_since_ = handed_over_since_;
+            handed_over_since_.reset();
             runs_.merge(new_runs_);
             new_runs_.clear();
             for (auto& [number, items] : std::exchange(handed_over_, {})) {
@@ -201,8 +211,13 @@ void StorageThread::work() {
         for (auto& [number, run] : runs_)
             (void)write_out(run);
         std::erase_if(runs_, [](const auto& item) { return item.second.closing && item.second.closing->finished; });
-        if (!failed_)
+        if (!failed_) {
+            {
+                const std::lock_guard lock{mutex_};
+                taken_since_.reset();
+            }
             set_trouble({});
+        }
     }
 }
 

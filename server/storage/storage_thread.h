@@ -20,6 +20,8 @@
 
 #include "server/storage/run_file.h"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -82,6 +84,12 @@ class StorageThread {
     bool idle() const {
         return waiting_bytes_.load(std::memory_order_acquire) == 0 && waiting_checkpoints_.load() == 0;
     }
+    /// What waits to be written, but for checkpoints.
+    std::size_t waiting_bytes() const { return waiting_bytes_.load(std::memory_order_relaxed); }
+    /// Since when the oldest of what waits has; nullopt: nothing waits.
+    std::optional<std::chrono::steady_clock::time_point> waiting_since() const;
+    /// To ask the system about it.
+    pthread_t handle() { return thread_.native_handle(); }
     bool has_room() const { return waiting_bytes_.load(std::memory_order_relaxed) < waiting_bytes_max; }
     /// Why nothing gets onto the disk at present; nothing if it does.
     std::optional<std::string> trouble() const;
@@ -139,6 +147,8 @@ class StorageThread {
     mutable std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::map<RunNumber, std::vector<Item>> handed_over_;
+    // The oldest of handed_over_; of what the storage thread has taken and not written yet.
+    std::optional<std::chrono::steady_clock::time_point> handed_over_since_, taken_since_;
     std::map<RunNumber, Run> new_runs_;
     std::map<RunNumber, Closing> closing_;
     RunNumber last_number_ = 0;

@@ -39,7 +39,8 @@ class Loop : public testing::Test {
                     [this](const Laboratory&, std::vector<simulation::Event> told) {
                         events.insert(events.end(), told.begin(), told.end());
                     },
-                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); }}} {}
+                .picture = [this](SnapshotPtr picture) { pictures.push_back(std::move(picture)); },
+                .counted = &counted}} {}
 
     void send(simulation::Command command) {
         mailbox.try_push(CommandMail{std::move(command),
@@ -71,6 +72,7 @@ class Loop : public testing::Test {
     std::vector<simulation::Event> events;
     std::vector<SnapshotPtr> pictures;
     std::optional<simulation::Command> last_applied;
+    metrics::Worlds counted;
     SimulationLoop loop;
 };
 
@@ -189,6 +191,26 @@ TEST_F(Loop, MeasuresTicksPerSecond) {
     send(simulation::Pause{"w"});
     loop.pass();
     EXPECT_EQ(world().ticks_per_s, 0);
+}
+
+TEST_F(Loop, CountsTheTicksOfEachWorldWhileItIsThere) {
+    send(create("a"));
+    send(create("b", 2));
+    send(simulation::Run{"a", {}});
+    loop.pass();
+    live_through(1000ms);
+    ASSERT_EQ(counted.list().size(), 2u);
+    EXPECT_EQ(counted.list()[0]->name, "a");
+    EXPECT_EQ(counted.list()[0]->tick_time.count(), tick("a"));
+    EXPECT_EQ(counted.list()[0]->ticks_per_s.value(), world("a").ticks_per_s);
+    EXPECT_EQ(counted.list()[1]->tick_time.count(), 0u);
+    send(simulation::Pause{"a"});
+    loop.pass();
+    EXPECT_EQ(counted.list()[0]->ticks_per_s.value(), 0);
+    send(simulation::DeleteWorld{"a"});
+    loop.pass();
+    ASSERT_EQ(counted.list().size(), 1u);
+    EXPECT_EQ(counted.list()[0]->name, "b");
 }
 
 TEST_F(Loop, CommandsNameTheirWorldWhenTheyAreApplied) {

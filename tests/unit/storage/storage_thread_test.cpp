@@ -58,6 +58,35 @@ TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
     EXPECT_EQ((*present)->identity().seed.value, 2u);
 }
 
+TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
+    fail_operation(1, Failure::Full);
+    {
+        StorageThread thread{{.vfs = failing_disk()}, 1h};
+        RecordedRun run{data, thread};
+        while (!thread.trouble())
+            std::this_thread::yield();
+        const auto since = thread.waiting_since();
+        ASSERT_TRUE(since);
+        EXPECT_LE(*since, std::chrono::steady_clock::now());
+        const std::size_t bytes = thread.waiting_bytes();
+        run.command(set_parameter("food_health", 1.0));
+        EXPECT_EQ(thread.waiting_since(), since);
+        EXPECT_GT(thread.waiting_bytes(), bytes);
+    }
+    fail_operation(0, Failure::Full);
+}
+
+TEST_F(StorageThreadTest, NothingWaitsOnceAllIsWritten) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    std::promise<void> told;
+    run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
+    told.get_future().wait();
+    while (thread.waiting_since())
+        std::this_thread::yield();
+    EXPECT_EQ(thread.waiting_bytes(), 0u);
+}
+
 TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};

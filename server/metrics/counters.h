@@ -1,0 +1,98 @@
+// Counters: numbers that one thread writes and any may read, at the price of a plain store.
+//
+// Threads      each is written by one thread, ever; read by any. What a reader gets of two of them need not be of the
+//              same instant.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+namespace evod::metrics {
+
+/// Rises from 0.
+class Counter {
+  public:
+    // One writes, so that no other store can come between: a locked instruction would cost more than what is counted.
+    void add(std::uint64_t count = 1) { value_.store(value() + count, std::memory_order_relaxed); }
+    std::uint64_t value() const { return value_.load(std::memory_order_relaxed); }
+
+  private:
+    std::atomic<std::uint64_t> value_ = 0;
+};
+
+/// What holds now.
+class Gauge {
+  public:
+    void set(double value) { value_.store(value, std::memory_order_relaxed); }
+    double value() const { return value_.load(std::memory_order_relaxed); }
+
+  private:
+    std::atomic<double> value_ = 0;
+};
+
+/// How often something took how long.
+class TimeHistogram {
+  public:
+    using duration = std::chrono::nanoseconds;
+
+    /// Upper bounds, each within its bucket: 1, 2 and 5 of every decade from 0.1 µs to 1 s. One more bucket has no
+    /// bound.
+    static constexpr std::array<duration, 22> bounds = [] {
+        std::array<duration, 22> made{};
+        duration decade{100};
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            made[i] = decade * std::array{1, 2, 5}[i % 3];
+            if (i % 3 == 2)
+                decade *= 10;
+        }
+        return made;
+    }();
+
+    void add(duration took) {
+        const auto ns = static_cast<std::uint64_t>(std::max(took, duration{0}).count());
+        counts_[bucket_of(ns)].add();
+        sum_ns_.add(ns);
+    }
+
+    /// Of a bucket, 0 to bounds.size().
+    std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
+    std::uint64_t count() const {
+        std::uint64_t all = 0;
+        for (const Counter& of_bucket : counts_)
+            all += of_bucket.value();
+        return all;
+    }
+    double sum_s() const { return static_cast<double>(sum_ns_.value()) * 1e-9; }
+
+  private:
+    /// Without a branch, for which bucket is next is unpredictable. Of numbers that are as many bits wide, which are
+    /// less than a factor of 2 apart, one bound at most lies among them.
+    static std::size_t bucket_of(std::uint64_t ns) {
+        const std::size_t bucket = first_bucket[static_cast<std::size_t>(std::bit_width(ns))];
+        return bucket + (ns > bounds_ns[bucket] ? 1 : 0);
+    }
+    static constexpr std::array<std::uint64_t, bounds.size() + 1> bounds_ns = [] {
+        std::array<std::uint64_t, bounds.size() + 1> made{};
+        std::ranges::transform(bounds, made.begin(), [](duration bound) { return bound.count(); });
+        made.back() = ~std::uint64_t{0};
+        return made;
+    }();
+    /// By width in bits: the bucket of the least number of that width.
+    static constexpr std::array<std::size_t, 65> first_bucket = [] {
+        std::array<std::size_t, 65> made{};
+        for (std::size_t width = 1; width < made.size(); ++width)
+            made[width] = static_cast<std::size_t>(
+                std::ranges::lower_bound(bounds_ns, std::uint64_t{1} << (width - 1)) - bounds_ns.begin());
+        return made;
+    }();
+
+    std::array<Counter, bounds.size() + 1> counts_;
+    Counter sum_ns_;
+};
+
+} // namespace evod::metrics

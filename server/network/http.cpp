@@ -1,0 +1,149 @@
+#include "server/network/http.h"
+
+#include "server/network/limits.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/error.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/serializer.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+
+#include <array>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace evod::network {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+
+namespace {
+
+constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
+using Parser = http::request_parser<http::empty_body>;
+
+/// What is wrong with a request, before anybody looks at its path; nothing if it is good.
+std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
+    if (error == http::error::header_limit || error == http::error::buffer_overflow)
+        return Http::Page{.status = http::status::request_header_fields_too_large,
+                          .text = "the header is larger than " + std::to_string(http_header_bytes_max) +
+                                  " bytes: send fewer or shorter fields\n"};
+    if (error)
+        return Http::Page{.status = http::status::bad_request,
+                          .text = "this is no request of HTTP/1.1: " + error.message() + "\n"};
+    if (request.get().method() != http::verb::get && request.get().method() != http::verb::head)
+        return Http::Page{.status = http::status::method_not_allowed,
+                          .text = "pages can only be read here: use GET or HEAD\n"};
+    if (!request.is_done())
+        return Http::Page{.status = http::status::bad_request, .text = "send the request without a body\n"};
+    return std::nullopt;
+}
+
+http::response<http::string_body> response_of(Http::Page page, unsigned version, bool keep_alive) {
+    http::response<http::string_body> response{page.status, version};
+    response.set(http::field::content_type, page.type);
+    response.set(http::field::cache_control, "no-store");
+    if (page.status == http::status::method_not_allowed)
+        response.set(http::field::allow, "GET, HEAD");
+    response.body() = std::move(page.text);
+    response.keep_alive(keep_alive);
+    response.prepare_payload();
+    return response;
+}
+
+/// What the client still sends is read away for a while, for closing with bytes unread would take the answer from it.
+asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
+    boost::system::error_code ignored; // it may be gone already
+    stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream.expires_after(http_farewell_timeout);
+    std::array<char, 4096> bytes;
+    for (;;) {
+        const auto [error, count] = co_await stream.async_read_some(asio::buffer(bytes), no_throw);
+        if (error)
+            co_return;
+    }
+}
+
+} // namespace
+
+base::Result<std::unique_ptr<Http>> Http::open(asio::io_context& context, const std::string& address,
+                                               std::uint16_t port, Pages pages) {
+    auto listener = Listener::open(context, address, port, {.address = "--http-bind", .port = "--http-port"});
+    if (!listener)
+        return listener.error();
+    return std::unique_ptr<Http>{new Http{context, *std::move(listener), std::move(pages)}};
+}
+
+void Http::start() {
+    const auto accepted = [this](tcp::socket socket) {
+        if (closed_ || connections_.size() >= 2 * http_connections_max)
+            return;
+        const bool full = connections_.size() >= http_connections_max;
+        asio::co_spawn(context_, serve(std::move(socket), full), asio::detached);
+    };
+    asio::co_spawn(context_, listener_.accept(accepted), asio::detached);
+}
+
+void Http::close() {
+    closed_ = true;
+    listener_.close();
+    for (boost::beast::tcp_stream* connection : connections_)
+        connection->close();
+}
+
+asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
+    boost::beast::tcp_stream stream{std::move(socket)};
+    connections_.insert(&stream);
+    boost::beast::flat_buffer buffer{2 * http_header_bytes_max}; // what comes next may have come with a request
+    for (bool goes_on = true; goes_on && !closed_;) {
+        Parser request;
+        request.header_limit(http_header_bytes_max);
+        stream.expires_after(http_request_timeout);
+        const auto [error, count] = co_await http::async_read_header(stream, buffer, request, no_throw);
+        if (closed_ || (error && error.category() != make_error_code(http::error::bad_method).category()) ||
+            error == http::error::end_of_stream)
+            break; // gone, or too slow
+        auto answer = fault_of(error, request);
+        goes_on = !answer && !full && request.get().keep_alive();
+        if (full)
+            answer = Page{.status = http::status::service_unavailable,
+                          .text = std::to_string(http_connections_max) +
+                                  " connections are open already: close one, or try again in a few seconds\n"};
+        if (!answer)
+            answer = co_await page(std::string{request.get().target()});
+        const auto response = response_of(*std::move(answer), request.get().version() == 10 ? 10 : 11, goes_on);
+        http::response_serializer<http::string_body> serializer{response};
+        stream.expires_after(http_request_timeout);
+        boost::system::error_code unsent;
+        if (request.get().method() == http::verb::head)
+            std::tie(unsent, std::ignore) = co_await http::async_write_header(stream, serializer, no_throw);
+        else
+            std::tie(unsent, std::ignore) = co_await http::async_write(stream, serializer, no_throw);
+        if (unsent)
+            break;
+        if (!goes_on)
+            co_await say_goodbye(stream);
+    }
+    connections_.erase(&stream);
+}
+
+asio::awaitable<Http::Page> Http::page(std::string target) {
+    const auto found = pages_.find(target.substr(0, target.find('?')));
+    if (found != pages_.end())
+        co_return co_await found->second();
+    std::string known;
+    for (const auto& [path, make] : pages_)
+        known += (known.empty() ? "" : " and ") + path;
+    co_return Page{.status = http::status::not_found, .text = "there is no such page: there are " + known + "\n"};
+}
+
+} // namespace evod::network

@@ -1,0 +1,59 @@
+// HTTP: a few pages to be fetched, for what watches over the server. Whoever reaches the port may read them; nothing
+// can be changed through it.
+//
+// Owner        the server; on the network thread, a coroutine for each connection.
+// Full         see limits.h: connections, the header of a request, and the time for it.
+// Source       RFC 9110 and 9112; parsed and written by Boost.Beast.
+#pragma once
+
+#include "server/network/listener.h"
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/status.hpp>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace evod::network {
+
+class Http {
+  public:
+    struct Page {
+        boost::beast::http::status status = boost::beast::http::status::ok;
+        std::string text;
+        std::string type = "text/plain; charset=utf-8";
+    };
+    /// By path: "/metrics".
+    using Pages = std::map<std::string, std::function<boost::asio::awaitable<Page>()>, std::less<>>;
+
+    /// Takes the port; port 0 is any that is free.
+    static base::Result<std::unique_ptr<Http>> open(boost::asio::io_context& context, const std::string& address,
+                                                    std::uint16_t port, Pages pages);
+
+    boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
+
+    /// Serves until close().
+    void start();
+    void close();
+
+  private:
+    Http(boost::asio::io_context& context, Listener listener, Pages pages)
+        : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)} {}
+
+    /// full: it is only told so.
+    boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
+    boost::asio::awaitable<Page> page(std::string target);
+
+    boost::asio::io_context& context_;
+    Listener listener_;
+    Pages pages_;
+    std::set<boost::beast::tcp_stream*> connections_;
+    bool closed_ = false;
+};
+
+} // namespace evod::network

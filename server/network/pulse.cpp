@@ -1,0 +1,38 @@
+#include "server/network/pulse.h"
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include <utility>
+
+namespace evod::network {
+
+namespace asio = boost::asio;
+
+asio::awaitable<bool> Pulse::beats(std::chrono::milliseconds patience) {
+    if (stopped_)
+        co_return false;
+    asio::steady_timer timer{co_await asio::this_coro::executor, patience};
+    waiting_.insert(&timer);
+    // However full the mailbox is: this is one.
+    if (!std::exchange(asked_, true))
+        mailbox_.push(
+            runtime::QueryMail{[this](const simulation::Laboratory&) { outbox_.answer([this] { answered(); }); }});
+    const auto [cancelled] = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    waiting_.erase(&timer);
+    co_return cancelled && !stopped_;
+}
+
+void Pulse::answered() {
+    asked_ = false;
+    for (asio::steady_timer* timer : waiting_)
+        timer->cancel();
+}
+
+void Pulse::stop() {
+    stopped_ = true;
+    answered();
+}
+
+} // namespace evod::network

@@ -1,0 +1,179 @@
+// What the server tells of itself: its metrics, and whether it is well.
+#include "server/metrics/exposition.h"
+#include "server/metrics/families.h"
+#include "server/metrics/process.h"
+#include "server/network/limits.h"
+#include "server/network/server.h"
+#include "server/protocol/refusals.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <map>
+
+namespace evod::network {
+namespace {
+
+using metrics::add_counter;
+using metrics::add_gauge;
+using metrics::add_histogram;
+
+double number(std::uint64_t count) {
+    return static_cast<double>(count);
+}
+
+constexpr std::array storage_states{
+    std::pair{v1::STORAGE_STATE_KEEPS_UP, "keeps_up"}, std::pair{v1::STORAGE_STATE_BEHIND, "behind"},
+    std::pair{v1::STORAGE_STATE_FAILING, "failing"}, std::pair{v1::STORAGE_STATE_STALLED, "stalled"}};
+
+void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
+    const auto worlds = counted.list();
+    add_gauge(to, "evod_worlds", "Worlds there are").add(number(worlds.size()));
+    auto ticks = add_counter(to, "evod_ticks_total", "Ticks that were simulated");
+    auto rate = add_gauge(to, "evod_ticks_per_second", "Ticks in the last second or so; 0 while a world stands");
+    auto tick_time = add_histogram(to, "evod_tick_seconds",
+                                   "Time of a tick; at full speed with what is written down and shown between two");
+    for (const auto& world : worlds) {
+        ticks.add(number(world->tick_time.count()), {{"world", world->name}});
+        rate.add(world->ticks_per_s.value(), {{"world", world->name}});
+        tick_time.add(world->tick_time, {{"world", world->name}});
+    }
+}
+
+void add_queues(v1::Metrics& to, const runtime::Mailbox::Fill& mailbox, const runtime::Outbox::Fill& outbox) {
+    add_gauge(to, "evod_mailbox_requests", "Requests that wait for the simulation").add(number(mailbox.waiting));
+    add_gauge(to, "evod_mailbox_requests_max", "So many may wait; more are refused").add(number(mailbox.capacity));
+    add_gauge(to, "evod_outbox_deliveries", "Answers and events on their way from the simulation to the network")
+        .add(number(outbox.deliveries));
+    add_gauge(to, "evod_outbox_events", "Those of them that are events").add(number(outbox.events));
+    add_gauge(to, "evod_outbox_events_max", "So many events may wait there; more are dropped")
+        .add(number(outbox.events_max));
+}
+
+void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max) {
+    std::map<std::string, std::uint64_t> by_role{{"admin", 0}, {"controller", 0}, {"viewer", 0}, {"none", 0}};
+    std::uint64_t pictures = 0, events = 0, queued_bytes = 0;
+    for (const auto& [session_number, session] : all) {
+        ++by_role[session->greeted() ? access::name_of(session->visitor().role) : "none"];
+        pictures += session->snapshots.size();
+        events += session->events.size();
+        queued_bytes += session->queued_bytes();
+    }
+    auto sessions = add_gauge(to, "evod_sessions", "Connected clients; none: those that have not said hello yet");
+    for (const auto& [role, count] : by_role)
+        sessions.add(number(count), {{"role", role}});
+    add_gauge(to, "evod_sessions_max", "So many may be connected; more are refused").add(number(sessions_max));
+    add_gauge(to, "evod_subscriptions", "Subscriptions of all clients")
+        .add(number(pictures), {{"to", "pictures"}})
+        .add(number(events), {{"to", "events"}});
+    add_gauge(to, "evod_send_queue_bytes", "Answers and events that wait to be sent, of all clients")
+        .add(number(queued_bytes));
+}
+
+void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
+    add_counter(to, "evod_connections_total", "Connections that came").add(number(traffic.connections.value()));
+    add_counter(to, "evod_requests_total", "Requests, those refused too").add(number(traffic.requests.value()));
+    add_counter(to, "evod_received_bytes_total", "Bytes from clients, without what TLS adds")
+        .add(number(traffic.received_bytes.value()));
+    add_counter(to, "evod_sent_bytes_total",
+                "Bytes to clients, without what TLS adds; control: answers and events, stream: pictures")
+        .add(number(traffic.sent_control_bytes.value()), {{"channel", "control"}})
+        .add(number(traffic.sent_stream_bytes.value()), {{"channel", "stream"}});
+    add_counter(to, "evod_pictures_sent_total", "Pictures that were sent, of one island to one subscription")
+        .add(number(traffic.pictures_sent.value()));
+    add_counter(to, "evod_pictures_dropped_total", "Pictures that newer ones replaced before they were sent")
+        .add(number(traffic.pictures_dropped.value()));
+    add_counter(to, "evod_events_dropped_total", "Events that a client was not told, since it was too slow")
+        .add(number(traffic.events_dropped.value()));
+}
+
+void add_limits(v1::Metrics& to, const LimitCounters& counters) {
+    auto reached = add_counter(to, "evod_limit_reached_total", "How often each limit was met");
+    for (const LimitRow& row : limit_table())
+        reached.add(number(counters.count(row.limit)), {{"limit", std::string{row.name}}});
+}
+
+void add_storage(v1::Metrics& to, storage::StorageThread& thread, const v1::Storage& storage) {
+    auto state = add_gauge(to, "evod_storage_state", "How it stands with the disk: 1 of the state that holds");
+    for (const auto& [value, name] : storage_states)
+        state.add(storage.state() == value, {{"state", name}});
+    const auto since = thread.waiting_since();
+    const std::chrono::duration<double> lag =
+        since ? std::chrono::steady_clock::now() - *since : std::chrono::steady_clock::duration{0};
+    add_gauge(to, "evod_journal_waiting_bytes", "What waits to be written to run files")
+        .add(number(thread.waiting_bytes()));
+    add_gauge(to, "evod_journal_waiting_bytes_max", "From here on worlds wait for the disk")
+        .add(number(storage::StorageThread::waiting_bytes_max));
+    add_gauge(to, "evod_journal_lag_seconds", "For how long the oldest of it has waited; 0.2 s is usual")
+        .add(std::max(lag.count(), 0.0));
+}
+
+} // namespace
+
+v1::Metrics Server::metrics() {
+    v1::Metrics told;
+    add_gauge(told, "evod_build_info", "1, of the version that runs").add(1, {{"version", EVOD_VERSION}});
+    add_worlds(told, worlds_counted_);
+    add_queues(told, mailbox_.fill(), outbox_.fill());
+    add_sessions(told, sessions_, options_.session_bounds.sessions_max);
+    add_counter(told, "evod_logins_failed_total", "Logins with a token that the server does not know")
+        .add(number(gate_->failed_login_count()));
+    add_traffic(told, host_.traffic);
+    add_limits(told, limit_counters_);
+    if (archive_ && archive_->thread() != nullptr && host_.storage)
+        add_storage(told, *archive_->thread(), *host_.storage);
+
+    const metrics::Process process = metrics::look_at_process();
+    add_gauge(told, "process_start_time_seconds", "When the server started, in seconds since 1970")
+        .add(process.start_time_s);
+    add_counter(told, "process_cpu_seconds_total", "Processor time of all threads").add(process.cpu_s);
+    auto threads = add_counter(told, "evod_thread_cpu_seconds_total",
+                               "Processor time by thread; the rest is that of the threads that simulate");
+    const auto add_thread = [&](const char* name, pthread_t thread) {
+        if (const auto cpu_s = metrics::cpu_s_of(thread))
+            threads.add(*cpu_s, {{"thread", name}});
+    };
+    add_thread("network", pthread_self());
+    if (simulation_ && !going_away_)
+        add_thread("simulation", simulation_->handle());
+    if (archive_ && archive_->thread() != nullptr)
+        add_thread("storage", archive_->thread()->handle());
+    add_gauge(told, "process_resident_memory_bytes", "Memory in use").add(number(process.resident_bytes));
+    add_gauge(told, "process_virtual_memory_bytes", "Addresses in use").add(number(process.virtual_bytes));
+    add_gauge(told, "process_open_fds", "Open files and connections").add(number(process.open_files));
+    add_gauge(told, "process_max_fds", "So many may be open").add(number(process.open_files_max));
+    return told;
+}
+
+asio::awaitable<Http::Page> Server::health() {
+    const auto ill = [](const std::string& why) {
+        return Http::Page{.status = boost::beast::http::status::service_unavailable,
+                          .text = protocol::quotable(why, 1000) + '\n'};
+    };
+    const bool answers = co_await pulse_.beats(simulation_patience);
+    if (going_away_)
+        co_return ill("the server is going away");
+    if (!answers)
+        co_return ill("the simulation has not answered for " + std::to_string(simulation_patience.count()) + " s");
+    const auto state = host_.storage ? host_.storage->state() : v1::STORAGE_STATE_KEEPS_UP;
+    if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED)
+        co_return ill("runs cannot be written down: " + host_.storage->reason());
+    co_return Http::Page{.text = "ok\n"};
+}
+
+base::Result<void> Server::open_http() {
+    if (!options_.http)
+        return {};
+    Http::Pages pages;
+    pages["/metrics"] = [this]() -> asio::awaitable<Http::Page> {
+        co_return Http::Page{.text = metrics::to_prometheus(metrics()), .type = metrics::prometheus_content_type};
+    };
+    pages["/healthz"] = [this] { return health(); };
+    auto http = Http::open(context_, options_.http->bind_address, options_.http->port, std::move(pages));
+    if (!http)
+        return http.error();
+    http_ = *std::move(http);
+    return {};
+}
+
+} // namespace evod::network
