@@ -106,6 +106,7 @@ void add_parameter_commands(CLI::App& app, const Common& common, Selected& selec
 void add_run_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_export_command(CLI::App& app, const Common& common, Selected& selected);
 void add_watch_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_top_command(CLI::App& app, const Common& common, Selected& selected);
 void add_complete_command(CLI::App& app, Selected& selected);
 
 /// Prints what may come next after `words`, the last of which is being typed; nothing where no server is needed and

@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
     add_look_commands(app, common, selected);
     add_export_command(app, common, selected);
     add_watch_commands(app, common, selected);
+    add_top_command(app, common, selected);
     add_complete_command(app, selected);
 
     if (argc > 2 && std::strcmp(argv[1], "complete") == 0 && std::strcmp(argv[2], "--") == 0) {

@@ -91,6 +91,26 @@ std::string duration(double seconds) {
     return std::to_string(whole / 3600) + ":" + two_digits(whole / 60 % 60) + ":" + two_digits(whole % 60) + " h";
 }
 
+std::string short_time(double seconds) {
+    const auto told = [](double value, const char* unit) { return fixed(value, value < 9.95 ? 1 : 0) + unit; };
+    return seconds < 0.9995e-3 ? told(seconds * 1e6, " µs")
+           : seconds < 0.9995  ? told(seconds * 1e3, " ms")
+                               : told(seconds, " s");
+}
+
+std::string short_bytes(double bytes) {
+    if (bytes < 1023.5) {
+        return fixed(bytes, 0) + " B";
+    }
+    for (const char* unit : {" KiB", " MiB", " GiB"}) {
+        bytes /= 1024;
+        if (bytes < 1023.5) {
+            return fixed(bytes, bytes < 9.95 ? 1 : 0) + unit;
+        }
+    }
+    return fixed(bytes / 1024, 1) + " TiB";
+}
+
 std::size_t width_of(std::string_view utf8) {
     return static_cast<std::size_t>(
         std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));

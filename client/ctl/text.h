@@ -39,6 +39,10 @@ std::string exact(double value);
 std::string fixed(double value, int decimals);
 /// "12.3 s", "4:05 min", "2:00:00 h": simulated time.
 std::string duration(double seconds);
+/// "12 µs", "3.4 ms", "1.2 s".
+std::string short_time(double seconds);
+/// "512 B", "1.5 KiB", "12 MiB".
+std::string short_bytes(double bytes);
 /// Characters (code points), not bytes.
 std::size_t width_of(std::string_view utf8);
 

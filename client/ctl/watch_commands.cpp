@@ -1,10 +1,9 @@
 // What follows a world: watch, events.
 #include "client/ctl/caller.h"
+#include "client/ctl/screen.h"
 #include "client/ctl/text.h"
 
 #include <CLI/CLI.hpp>
-
-#include <sys/ioctl.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -49,11 +48,6 @@ std::string text_of(const GenerationLine& line) {
            std::to_string(line.starved_count) + ", poisoned " + std::to_string(line.poisoned_count);
 }
 
-std::size_t terminal_width() {
-    winsize size{};
-    return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 // ---- watch -----------------------------------------------------------------------------------------------------
 
 class Watch {
@@ -84,7 +78,7 @@ class Watch {
             if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
                 take(*event);
             }
-            report_connection();
+            news_.tell(caller_.connection());
         }
         if (redraw_ && !ended_) {
             draw();
@@ -180,18 +174,6 @@ class Watch {
         }
     }
 
-    void report_connection() {
-        const auto status = caller_.connection().status();
-        if (status.state == link::State::Failed) {
-            throw Stop{ExitCode::NoConnection, status.reason};
-        }
-        const bool lost = status.state != link::State::Connected;
-        if (lost && !lost_) {
-            std::cerr << status.reason << "; trying again\n";
-        }
-        lost_ = lost;
-    }
-
     void draw() {
         std::string text = sentence(world_) + ", " + fixed(world_.ticks_per_s(), 0) + " ticks/s\n";
         const std::string trouble = trouble_of(world_.storage());
@@ -227,11 +209,7 @@ class Watch {
             }
         }
         text += "\nCtrl-C ends the watching, not the run\n";
-        text = clip_lines(text, terminal_width());
-        // Up over the last drawing, and everything below goes.
-        std::cout << (drawn_lines_ > 0 ? "\033[" + std::to_string(drawn_lines_) + "A" : "") << "\r\033[J" << text
-                  << std::flush;
-        drawn_lines_ = std::ranges::count(text, '\n');
+        drawing_.draw(text);
     }
 
     std::string genes(const v1::GenerationStatistics& island) const {
@@ -254,10 +232,11 @@ class Watch {
     v1::Statistics statistics_;
     std::deque<GenerationLine> lines_; // the newest `width`
     std::uint64_t seen_ = 0;           // generations that ended while watching
-    std::ptrdiff_t drawn_lines_ = 0;
+    Drawing drawing_;
+    ConnectionNews news_;
     std::string trouble_; // of the disk, as it was last said
     Clock::time_point draw_at_{};
-    bool ended_ = false, lost_ = false;
+    bool ended_ = false;
 };
 
 // ---- events ----------------------------------------------------------------------------------------------------
@@ -338,20 +317,13 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
         std::cerr << trouble << '\n'; // began before
     }
-    bool lost = false;
+    ConnectionNews news;
     for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
             std::cout << (common.json ? to_json(*event, false) : text_of(*event) + "\n") << std::flush;
             ++seen;
         }
-        const auto status = caller.connection().status();
-        if (status.state == link::State::Failed) {
-            throw Stop{ExitCode::NoConnection, status.reason};
-        }
-        if (status.state != link::State::Connected && !lost) {
-            std::cerr << status.reason << "; trying again\n";
-        }
-        lost = status.state != link::State::Connected;
+        news.tell(caller.connection());
     }
 }
 

@@ -56,6 +56,25 @@ TEST(Durations, AreToldInTheirUnit) {
     EXPECT_EQ(duration(std::nan("")), "nan s");
 }
 
+TEST(ShortTime, HasTwoOrThreeDigits) {
+    EXPECT_EQ(short_time(0), "0.0 µs");
+    EXPECT_EQ(short_time(2.34e-6), "2.3 µs");
+    EXPECT_EQ(short_time(999.4e-6), "999 µs");
+    EXPECT_EQ(short_time(999.6e-6), "1.0 ms");
+    EXPECT_EQ(short_time(0.0123), "12 ms");
+    EXPECT_EQ(short_time(0.9996), "1.0 s");
+    EXPECT_EQ(short_time(75), "75 s");
+}
+
+TEST(ShortBytes, HasTwoToFourDigits) {
+    EXPECT_EQ(short_bytes(0), "0 B");
+    EXPECT_EQ(short_bytes(1023), "1023 B");
+    EXPECT_EQ(short_bytes(1024), "1.0 KiB");
+    EXPECT_EQ(short_bytes(20'000), "20 KiB");
+    EXPECT_EQ(short_bytes(1.5 * 1024 * 1024), "1.5 MiB");
+    EXPECT_EQ(short_bytes(3e12), "2.7 TiB");
+}
+
 TEST(ClipLines, CutsEachLineAtACharacter) {
     EXPECT_EQ(clip_lines("größe\nab\n\n12345", 3), "grö\nab\n\n123");
     EXPECT_EQ(clip_lines("ab\n", 0), "\n");

@@ -1,0 +1,220 @@
+#include "client/ctl/top.h"
+
+#include "client/ctl/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace evod::ctl {
+
+namespace {
+
+const v1::MetricFamily* family_in(const v1::Metrics& metrics, std::string_view name) {
+    const auto found = std::ranges::find(metrics.families(), name, &v1::MetricFamily::name);
+    return found == metrics.families().end() ? nullptr : &*found;
+}
+
+/// The sample with that value of its only label; that without labels for an empty one.
+const v1::MetricSample* sample_in(const v1::Metrics& metrics, std::string_view name, std::string_view label) {
+    const auto* family = family_in(metrics, name);
+    if (family == nullptr) {
+        return nullptr;
+    }
+    const auto found = std::ranges::find_if(family->samples(), [&](const v1::MetricSample& sample) {
+        return sample.labels().empty() ? label.empty() : sample.labels(0).value() == label;
+    });
+    return found == family->samples().end() ? nullptr : &*found;
+}
+
+/// Time of ticks between two looks.
+struct TickTimes {
+    std::vector<double> bounds;
+    std::vector<std::uint64_t> counts;
+    std::uint64_t count = 0;
+    double sum = 0;
+
+    /// Estimated within a bucket, as if what is in it were spread evenly; `count` is not 0.
+    std::string quantile(double share) const {
+        const double wanted = share * static_cast<double>(count);
+        double so_far = 0;
+        for (std::size_t i = 0; i < bounds.size(); ++i) {
+            const auto here = static_cast<double>(counts[i]);
+            if (here > 0 && so_far + here >= wanted) {
+                const double lower = i == 0 ? 0 : bounds[i - 1];
+                return short_time(lower + (bounds[i] - lower) * (wanted - so_far) / here);
+            }
+            so_far += here;
+        }
+        return "> " + short_time(bounds.empty() ? 0 : bounds.back());
+    }
+};
+
+class Page {
+  public:
+    explicit Page(const TwoLooks& looks) : looks_{looks} {}
+
+    double now(std::string_view name, std::string_view label = {}) const {
+        const auto* sample = sample_in(looks_.after, name, label);
+        return sample == nullptr ? 0 : sample->value();
+    }
+    /// How much it has risen; a server that began anew meanwhile has nothing to say.
+    double risen(std::string_view name, std::string_view label = {}) const {
+        const auto* sample = sample_in(looks_.before, name, label);
+        return std::max(0.0, now(name, label) - (sample == nullptr ? 0 : sample->value()));
+    }
+    std::string count(std::string_view name, std::string_view label = {}) const { return fixed(now(name, label), 0); }
+    std::string per_s(std::string_view name, std::string_view label = {}) const {
+        return fixed(risen(name, label) / looks_.between_s, 0) + "/s";
+    }
+    std::string bytes_per_s(std::string_view name, std::string_view label = {}) const {
+        return short_bytes(risen(name, label) / looks_.between_s) + "/s";
+    }
+    std::string cpu(std::string_view name, std::string_view label = {}) const {
+        return fixed(100 * risen(name, label) / looks_.between_s, 0) + " %";
+    }
+    bool tells(std::string_view name) const { return family_in(looks_.after, name) != nullptr; }
+
+    TickTimes tick_times(std::string_view world) const {
+        const auto* after = sample_in(looks_.after, "evod_tick_seconds", world);
+        const auto* before = sample_in(looks_.before, "evod_tick_seconds", world);
+        TickTimes times;
+        if (after == nullptr) {
+            return times;
+        }
+        const v1::MetricHistogram& last = after->histogram();
+        // Another of the same name, that has begun since, has fewer.
+        const bool goes_on = before != nullptr && before->histogram().counts_size() == last.counts_size() &&
+                             std::ranges::equal(before->histogram().counts(), last.counts(), std::less_equal{});
+        times.bounds.assign(last.bounds().begin(), last.bounds().end());
+        for (int i = 0; i < last.counts_size(); ++i) {
+            times.counts.push_back(last.counts(i) - (goes_on ? before->histogram().counts(i) : 0));
+            times.count += times.counts.back();
+        }
+        times.sum = last.sum() - (goes_on ? before->histogram().sum() : 0);
+        return times;
+    }
+
+    std::string processor() const {
+        std::string text = cpu("process_cpu_seconds_total");
+        if (const auto* threads = family_in(looks_.after, "evod_thread_cpu_seconds_total")) {
+            for (const auto& sample : threads->samples()) {
+                const std::string& thread = sample.labels(0).value();
+                text += (&sample == &threads->samples(0) ? ": " : ", ") + thread + " " +
+                        cpu("evod_thread_cpu_seconds_total", thread);
+            }
+        }
+        return text;
+    }
+
+    std::string clients() const {
+        double all = 0;
+        std::string roles;
+        for (const char* role : {"admin", "controller", "viewer", "none"}) {
+            const double here = now("evod_sessions", role);
+            all += here;
+            if (here > 0) {
+                roles += (roles.empty() ? ": " : ", ") + fixed(here, 0) + " " +
+                         (std::string_view{role} == "none" ? "without a role" : role);
+            }
+        }
+        return fixed(all, 0) + roles;
+    }
+
+    std::string disk() const {
+        if (!tells("evod_storage_state")) {
+            return "nothing is kept";
+        }
+        std::string state = "keeps up";
+        for (const char* other : {"behind", "failing", "stalled"}) {
+            if (now("evod_storage_state", other) > 0) {
+                state = other;
+            }
+        }
+        return state + "; " + short_bytes(now("evod_journal_waiting_bytes")) + " wait, the oldest for " +
+               fixed(now("evod_journal_lag_seconds"), 1) + " s";
+    }
+
+    /// "requests 12, sessions 3"; empty if none was reached, or the server does not count it.
+    std::string limits() const {
+        std::string text;
+        if (const auto* family = family_in(looks_.after, "evod_limit_reached_total")) {
+            for (const auto& sample : family->samples()) {
+                if (sample.value() > 0) {
+                    text += (text.empty() ? "" : ", ") + sample.labels(0).value() + " " + fixed(sample.value(), 0);
+                }
+            }
+        }
+        return text;
+    }
+
+    std::string worlds(std::size_t lines_max) const {
+        const auto* family = family_in(looks_.after, "evod_ticks_per_second");
+        if (family == nullptr || family->samples().empty()) {
+            return "there is no world\n";
+        }
+        std::vector<v1::MetricSample> all{family->samples().begin(), family->samples().end()};
+        std::ranges::stable_sort(all, std::ranges::greater{}, &v1::MetricSample::value);
+        const std::size_t room = std::max<std::size_t>(lines_max, 2) - 1; // below the titles
+        const std::size_t shown = all.size() <= room ? all.size() : room - 1;
+        Table table{{{"world"},
+                     {"ticks/s", Table::Align::Right},
+                     {"a tick takes", Table::Align::Right},
+                     {"half of them", Table::Align::Right},
+                     {"99 %", Table::Align::Right}}};
+        for (std::size_t i = 0; i < shown; ++i) {
+            const std::string& world = all[i].labels(0).value();
+            const TickTimes times = tick_times(world);
+            const bool any = times.count > 0;
+            table.add({world, fixed(all[i].value(), 0),
+                       any ? short_time(times.sum / static_cast<double>(times.count)) : "-",
+                       any ? times.quantile(0.5) : "-", any ? times.quantile(0.99) : "-"});
+        }
+        return table.to_text() + (shown < all.size() ? "and " + std::to_string(all.size() - shown) + " more\n" : "");
+    }
+
+  private:
+    const TwoLooks& looks_;
+};
+
+} // namespace
+
+std::string top_text(const TwoLooks& looks, const std::string& server, double now_s, std::size_t lines_max) {
+    const Page page{looks};
+    const auto* build = family_in(looks.after, "evod_build_info");
+    const std::string version = build != nullptr && !build->samples().empty() && !build->samples(0).labels().empty()
+                                    ? " " + build->samples(0).labels(0).value()
+                                    : "";
+    std::string text = "evod" + version + " at " + server + ", up " +
+                       duration(std::max(0.0, now_s - page.now("process_start_time_seconds"))) + "\n\n";
+    std::size_t lines = 2;
+    const auto line = [&](std::string_view title, const std::string& told) {
+        text += std::string{title} + std::string(11 - title.size(), ' ') + told + "\n";
+        ++lines;
+    };
+    line("memory", short_bytes(page.now("process_resident_memory_bytes")));
+    line("processor", page.processor());
+    line("clients", page.clients());
+    line("they see", page.count("evod_subscriptions", "pictures") + " streams of pictures, " +
+                         page.count("evod_subscriptions", "events") + " of events");
+    line("logins", page.count("evod_logins_failed_total") + " failed");
+    line("requests", page.per_s("evod_requests_total") + "; " + page.count("evod_mailbox_requests") + " of " +
+                         page.count("evod_mailbox_requests_max") + " wait");
+    line("received", page.bytes_per_s("evod_received_bytes_total"));
+    line("sent", page.bytes_per_s("evod_sent_bytes_total", "stream") + " of pictures, " +
+                     page.bytes_per_s("evod_sent_bytes_total", "control") + " of answers and events; " +
+                     short_bytes(page.now("evod_send_queue_bytes")) + " wait");
+    line("pictures", page.per_s("evod_pictures_sent_total") + ", dropped " + page.per_s("evod_pictures_dropped_total"));
+    line("events", page.count("evod_events_dropped_total") + " dropped");
+    line("disk", page.disk());
+    if (const std::string limits = page.limits(); !limits.empty()) {
+        line("limits", limits);
+    }
+    text += "\n";
+    return text + page.worlds(lines_max > lines + 1 ? lines_max - lines - 1 : 2);
+}
+
+} // namespace evod::ctl

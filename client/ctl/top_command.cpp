@@ -1,0 +1,139 @@
+// What a server tells of itself: top.
+#include "client/ctl/caller.h"
+#include "client/ctl/screen.h"
+#include "client/ctl/top.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace evod::ctl {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+    double interval_s = 1;
+    bool once = false;
+};
+
+class Top {
+  public:
+    Top(const Common& common, const Options& options)
+        : common_{common}
+        , options_{options}
+        , caller_{common}
+        , redraw_{on_terminal() && !common.json && !options.once} {}
+
+    void run() {
+        catch_interrupts();
+        look();
+        if (common_.json && options_.once) {
+            std::cout << to_json(last_->metrics);
+            return;
+        }
+        while (!interrupted()) {
+            wait();
+            if (!interrupted() && look()) {
+                tell();
+                if (options_.once) {
+                    return;
+                }
+            }
+        }
+    }
+
+  private:
+    struct Look {
+        v1::Metrics metrics;
+        Clock::time_point at;
+    };
+
+    /// Whether there was an answer; none is no error while the connection is being made again.
+    bool look() {
+        v1::Request request;
+        request.mutable_get_metrics();
+        if (options_.once || !last_) {
+            note(caller_.call(std::move(request)));
+            return true;
+        }
+        const auto response = caller_.connection().request(std::move(request), caller_.timeout());
+        news_.tell(caller_.connection());
+        if (!response) {
+            return false;
+        }
+        if (!link::accepted(*response)) {
+            throw Stop{ExitCode::Refused, link::to_text(response->status())};
+        }
+        note(*response);
+        return true;
+    }
+
+    void note(const v1::Response& response) { before_ = std::exchange(last_, Look{response.metrics(), Clock::now()}); }
+
+    void wait() {
+        const auto until = Clock::now() + std::chrono::duration<double>{options_.interval_s};
+        while (!interrupted() && Clock::now() < until) {
+            // Ctrl-C is minded within a tenth of a second.
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+            caller_.connection().wait_event(
+                std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
+            news_.tell(caller_.connection());
+        }
+    }
+
+    void tell() {
+        if (common_.json) {
+            std::cout << to_json(last_->metrics, false) << std::flush;
+            return;
+        }
+        const std::chrono::duration<double> between = last_->at - before_->at;
+        const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+        const std::string farewell = redraw_ ? "\nCtrl-C ends the looking, not the server\n" : "";
+        const std::size_t lines = redraw_ ? terminal_size().lines : all_lines;
+        const std::string text =
+            top_text({before_->metrics, last_->metrics, std::max(between.count(), 1e-3)}, common_.server, now.count(),
+                     lines - std::min<std::size_t>(lines, 3)) + // the farewell, and where the cursor waits
+            farewell;
+        if (redraw_) {
+            drawing_.draw(text);
+        } else {
+            std::cout << (std::exchange(told_, true) ? "\n" : "") << text << std::flush;
+        }
+    }
+
+    static constexpr std::size_t all_lines = 10'000;
+
+    const Common& common_;
+    const Options options_;
+    Caller caller_;
+    const bool redraw_;
+    std::optional<Look> before_, last_;
+    Drawing drawing_;
+    ConnectionNews news_;
+    bool told_ = false;
+};
+
+} // namespace
+
+void add_top_command(CLI::App& app, const Common& common, Selected& selected) {
+    auto* top = app.add_subcommand("top", "What the server counts and measures: ticks, clients, bytes, disk, memory")
+                    ->group("Follow");
+    auto options = std::make_shared<Options>();
+    top->add_option("--interval", options->interval_s, "Seconds between two looks")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->capture_default_str();
+    top->add_flag("--once", options->once, "Look twice, print that as one page, and end");
+    top->footer("Rates are those since the look before. With --json every look is a line; with --once as well, the\n"
+                "first look is printed at once.\n\n"
+                "Examples:\n  evoctl top\n  evoctl top --once\n  evoctl --json top --interval 60 >> metrics.jsonl");
+    top->callback([&, options] { selected = [&, options] { Top{common, *options}.run(); }; });
+}
+
+} // namespace evod::ctl
