@@ -23,9 +23,9 @@ def at(**moment):
 
 
 class Server(plain.Server):
-    def __init__(self, *words):
+    def __init__(self, *words, **popen):
         self.log = tempfile.TemporaryFile()
-        self.process = subprocess.Popen([EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log)
+        self.process = subprocess.Popen([EVOD, *words, "--port", "0"], stdout=self.log, stderr=self.log, **popen)
         line = plain.until(lambda: self.process.poll() is not None or
                            re.search(r"listening on 127\.0\.0\.1:(\d+)", self.output()), "ready")
         if line is True:
@@ -49,8 +49,8 @@ class Case(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
 
-    def server(self, *options):
-        server = Server(*options)
+    def server(self, *options, **popen):
+        server = Server(*options, **popen)
         self.addCleanup(server.log.close)
         self.addCleanup(server.kill)
         return server
