@@ -98,7 +98,7 @@ std::string json_line(std::chrono::system_clock::time_point time, Level level, c
     if (fields.session)
         line += fmt::format(R"(,"session":{})", *fields.session);
     for (const auto& [name, value] :
-         {std::pair{"client", &fields.client}, {"world", &fields.world}, {"code", &fields.code}})
+         {std::pair{"client", &fields.client}, std::pair{"world", &fields.world}, std::pair{"code", &fields.code}})
         if (!value->empty())
             line += fmt::format(R"(,"{}":{})", name, json_text(*value));
     return line + '}';
