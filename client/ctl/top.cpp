@@ -206,7 +206,7 @@ std::string top_text(const TwoLooks& looks, const std::string& server, double no
     line("received", page.bytes_per_s("evod_received_bytes_total"));
     line("sent", page.bytes_per_s("evod_sent_bytes_total", "stream") + " of pictures, " +
                      page.bytes_per_s("evod_sent_bytes_total", "control") + " of answers and events; " +
-                     short_bytes(page.now("evod_send_queue_bytes")) + " wait");
+                     short_bytes(page.now("evod_client_buffer_bytes")) + " wait");
     line("pictures", page.per_s("evod_pictures_sent_total") + ", dropped " + page.per_s("evod_pictures_dropped_total"));
     line("events", page.count("evod_events_dropped_total") + " dropped");
     line("disk", page.disk());

@@ -256,7 +256,8 @@ void Server::mind_tokens() {
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
     for (const auto& [number, session] : sessions)
         if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
-            session->fail(refusal(base::RefusalCode::Unauthenticated, "the token has been revoked"));
+            session->fail(refusal(base::RefusalCode::Unauthenticated,
+                                  "the token has been revoked: ask whoever runs the server for another"));
 }
 
 void Server::relieve() {

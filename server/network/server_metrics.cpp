@@ -52,12 +52,11 @@ void add_queues(v1::Metrics& to, const runtime::Mailbox::Fill& mailbox, const ru
 
 void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max) {
     std::map<std::string, std::uint64_t> by_role{{"admin", 0}, {"controller", 0}, {"viewer", 0}, {"none", 0}};
-    std::uint64_t pictures = 0, events = 0, queued_bytes = 0;
+    std::uint64_t pictures = 0, events = 0;
     for (const auto& [session_number, session] : all) {
         ++by_role[session->greeted() ? access::name_of(session->visitor().role) : "none"];
         pictures += session->snapshots.size();
         events += session->events.size();
-        queued_bytes += session->queued_bytes();
     }
     auto sessions = add_gauge(to, "evod_sessions", "Connected clients; none: those that have not said hello yet");
     for (const auto& [role, count] : by_role)
@@ -66,8 +65,6 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
     add_gauge(to, "evod_subscriptions", "Subscriptions of all clients")
         .add(number(pictures), {{"to", "pictures"}})
         .add(number(events), {{"to", "events"}});
-    add_gauge(to, "evod_send_queue_bytes", "Answers and events that wait to be sent, of all clients")
-        .add(number(queued_bytes));
 }
 
 void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
@@ -118,6 +115,10 @@ v1::Metrics Server::metrics() {
     add_sessions(told, sessions_, options_.session_bounds.sessions_max);
     add_counter(told, "evod_logins_failed_total", "Logins with a token that the server does not know")
         .add(number(gate_->failed_login_count()));
+    add_gauge(told, "evod_client_buffer_bytes", "What waits for all clients together, to be sent or to come whole")
+        .add(number(buffers_.bytes()));
+    add_gauge(told, "evod_client_buffer_bytes_max", "So much may wait; then those with the most are closed")
+        .add(number(client_buffer_bytes_max));
     add_traffic(told, host_.traffic);
     add_limits(told, limit_counters_);
     if (archive_ && archive_->thread() != nullptr && host_.storage)

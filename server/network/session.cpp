@@ -534,8 +534,9 @@ void Session::mind_progress(runtime::Clock::time_point now) {
         progressed_ = now;
     } else if (now - progressed_ >= stalled_timeout) {
         host_.limit_counters.met(Limit::StalledTimeout);
-        log::warn("session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
-                     stalled_timeout.count());
+        log::warn({.session = number_, .client = by()},
+                  "session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
+                  stalled_timeout.count());
         close();
     }
 }
@@ -554,8 +555,9 @@ std::size_t Session::held_bytes() const {
 
 void Session::make_room() {
     host_.limit_counters.met(Limit::ClientBufferBytes);
-    log::warn("session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_,
-                 by(), client_buffer_bytes_max >> 20, held_bytes() >> 10);
+    log::warn({.session = number_, .client = by()},
+              "session {}: {} is closed: more than {} MiB wait for all clients, of which {} KiB for it", number_, by(),
+              client_buffer_bytes_max >> 20, held_bytes() >> 10);
     close();
 }
 

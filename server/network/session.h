@@ -117,9 +117,6 @@ class Session : public std::enable_shared_from_this<Session> {
     /// What this subscription is sent next of an island is a keyframe: one that waits, or else `picture`.
     void keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& picture);
 
-    /// What waits to be sent, but for pictures.
-    std::size_t queued_bytes() const { return response_bytes_ + event_bytes_; }
-
     /// Says what was wrong, and ends the session.
     void fail(const base::Refusal& refusal);
     /// Writes what is waiting, then closes; no more requests are read.

@@ -194,7 +194,7 @@ class Counts(Case):
             sleeps.ask(run=c.Run(world="events"))
             dropped = self.wait(server, lambda m: m("evod_pictures_dropped_total") > 100 and
                                 m("evod_events_dropped_total") > 0, "drops")
-            self.assertGreater(dropped("evod_send_queue_bytes"), 0)
+            self.assertGreater(dropped("evod_client_buffer_bytes"), 0)
             self.assertEqual(dropped("evod_subscriptions", to="events"), 1)
 
     def test_the_disk(self):
