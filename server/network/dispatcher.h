@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/network/exports.h"
+#include "server/network/leases.h"
 #include "server/network/retries.h"
 #include "server/network/session.h"
 #include "server/network/streams.h"
@@ -19,10 +20,15 @@ class Dispatcher {
   public:
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
     /// shut_down  ends the server.
-    Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-               std::function<void()> shut_down);
+    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand,
+               Streams& streams, std::function<void()> shut_down);
 
     void handle(Session& session, v1::Request request);
+
+    /// A command of the server itself. A refusal is logged; one for want of room in the mailbox comes to nothing.
+    void handle_own(v1::Request request);
+    /// A world that was lent before this server started: it goes on, unless its lease is renewed.
+    void lend_again(const std::string& world) { leases_.begin(world, {}); }
 
     /// Answers that were given before this server started.
     void restore(const std::vector<storage::JournalEntry>& answers);
@@ -31,7 +37,10 @@ class Dispatcher {
     void forget(const Session& session);
 
     /// From now on every request is refused: the server is going away.
-    void refuse_all() { going_away_ = true; }
+    void refuse_all() {
+        going_away_ = true;
+        leases_.end_all();
+    }
 
   private:
     void command(Session& session, const v1::Request& request);
@@ -39,6 +48,12 @@ class Dispatcher {
     void subscription(Session& session, const v1::Request& request);
     void past(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
+    void renew_lease(Session& session, const v1::Request& request);
+
+    /// The encoded response to a command, here, once it cannot be lost any more. refused: nullptr if it was applied.
+    using Answered = std::function<void(const SharedBytes& frame, const base::Refusal* refused)>;
+    /// Hands a command to the simulation, and tells everybody of it. false: the mailbox is full.
+    bool carry_out(simulation::Command command, const v1::Request& request, const std::string& by, Answered answered);
 
     /// Asks the simulation; `answer` runs there and fills in the response.
     using Answer = std::function<void(const simulation::Laboratory&, v1::Response&)>;
@@ -53,7 +68,10 @@ class Dispatcher {
     Streams& streams_;
     std::function<void()> shut_down_;
     Exports exports_;
+    Leases leases_;
     Retries retries_;
+    const std::string own_key_; // client_key of the server's own commands
+    std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };
 

@@ -29,6 +29,7 @@ constexpr std::uint32_t client_keys_max = 256;    // the longest unused is forgo
 constexpr std::uint32_t exports_max = 8;          // of all sessions; more: refused
 constexpr std::chrono::seconds hello_timeout{5};  // then the session is closed
 constexpr std::chrono::seconds frame_timeout{10}; // from its first byte to its last; then the same
+constexpr std::chrono::seconds lease_time{5};     // of a world that is lent; then it goes on
 
 // Of a session's send queue.
 constexpr std::size_t queued_event_bytes_max = 1 << 20;     // more: events are dropped and counted
@@ -58,6 +59,7 @@ inline v1::Limits limits_message() {
     limits.set_sessions_max(sessions_max);
     limits.set_worlds_max(simulation::worlds_max);
     limits.set_sessions_per_address_max(sessions_per_address_max);
+    limits.set_lease_s(static_cast<std::uint32_t>(lease_time.count()));
     limits.set_frame_timeout_s(static_cast<std::uint32_t>(frame_timeout.count()));
     limits.set_snapshot_rate_hz_max(snapshot_rate_hz_max);
     limits.set_history_generations_kept(simulation::World::history_generations_kept);

@@ -67,7 +67,6 @@ class Server {
     /// The commands that options ask for.
     bool creates_first_world() const;
     void begin_first_world();
-    void command_of_own(v1::Request request);
     void watch_tokens();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
@@ -97,7 +96,6 @@ class Server {
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses
-    std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };
 
