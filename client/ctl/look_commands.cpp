@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <google/protobuf/text_format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -287,12 +289,11 @@ void describe(const Common& common) {
                 std::to_string(description.file_descriptor_set().size()) + " bytes, in --json\n\n";
         Table limits{{{"LIMIT"}, {"VALUE", Align::Right}}};
         const auto* descriptor = v1::Limits::descriptor();
-        const auto* reflection = v1::Limits::GetReflection();
         for (int i = 0; i < descriptor->field_count(); ++i) {
             const auto* field = descriptor->field(i);
-            const bool real = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE;
-            limits.add({field->name(), real ? exact(reflection->GetDouble(description.limits(), field))
-                                            : std::to_string(reflection->GetUInt32(description.limits(), field))});
+            std::string value;
+            google::protobuf::TextFormat::PrintFieldValueToString(description.limits(), field, -1, &value);
+            limits.add({field->name(), value});
         }
         return text + limits.to_text();
     });
