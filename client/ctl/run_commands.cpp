@@ -287,6 +287,13 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
 }
 
+/// Pauses the world, so that it is not only lent for the step that follows.
+v1::WorldInfo stand(const Common& common, Caller& caller) {
+    v1::Request request;
+    request.mutable_pause()->set_world(common.world);
+    return caller.call(std::move(request)).world();
+}
+
 void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) {
     v1::Request request;
     request.mutable_run_until_tick()->set_world(common.world);
@@ -308,7 +315,7 @@ void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) 
 void step(const Common& common, std::uint64_t ticks, bool wait) {
     Caller caller{common};
     // The goal is a tick, so that a step repeated after a lost connection is not taken twice.
-    until(common, caller, caller.world(common.world).tick() + ticks, wait);
+    until(common, caller, stand(common, caller).tick() + ticks, wait);
 }
 
 void pause(const Common& common) {
@@ -450,6 +457,7 @@ void add_run_commands(CLI::App& app, const Common& common, Selected& selected) {
     until_command->callback([&, tick, until_wait] {
         selected = [&, tick, until_wait] {
             Caller caller{common};
+            stand(common, caller);
             until(common, caller, *tick, *until_wait);
         };
     });

@@ -82,6 +82,11 @@ std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
         held_step_ += ticks; // only the answer knows the tick at which the world stopped
         return std::nullopt;
     }
+    if (state_ == evod::v1::RUN_STATE_RUNNING && step_target_ <= tick_) {
+        auto pause = pause_or_resume(); // or else the world would only be lent for the step
+        held_step_ = ticks;
+        return pause;
+    }
     step_target_ = std::max(step_target_, tick_) + ticks;
     evod::v1::Request request;
     request.mutable_run_until_tick()->set_world(world_);

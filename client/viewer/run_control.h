@@ -27,8 +27,8 @@ class RunControl {
     /// Running: pause; paused: go on; waiting: run until paused. Nullopt when the run has ended, or nothing is known
     /// yet.
     std::optional<evod::v1::Request> pause_or_resume();
-    /// So many ticks more than there are, or than an unfinished step has asked for. Nullopt as above, and while a pause
-    /// is unanswered: answered() then returns the step.
+    /// So many ticks more than there are, or than an unfinished step has asked for. A world that runs is paused first.
+    /// Nullopt as above, and while a pause is unanswered: answered() then returns the step.
     std::optional<evod::v1::Request> step(std::uint64_t ticks);
     /// Twice or half the speed; down from the highest is the speed before.
     std::optional<evod::v1::Request> faster();

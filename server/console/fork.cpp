@@ -20,6 +20,8 @@ int fork(const ForkOptions& options) {
     const auto origin = storage::RunFile::open_read_only(options.run_file);
     if (!origin)
         return fail(to_text(origin.error()));
+    if (const auto held = (*origin)->hold_still(); !held) // what is thinned meanwhile is still there
+        return fail(to_text(held.error()));
     const auto folder = storage::DataFolder::open(options.data_folder);
     if (!folder)
         return fail(to_text(folder.error()));

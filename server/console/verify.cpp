@@ -60,11 +60,11 @@ int verify(const VerifyOptions& options) {
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     const double factor = verified->simulated_s / seconds;
-    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes compared in %.2f s, %.*f × real "
-                "time\n",
+    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes, %llu checkpoints compared in %.2f s, "
+                "%.*f × real time\n",
                 options.run.c_str(), static_cast<unsigned long long>(verified->generations),
                 static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
-                seconds, factor < 10 ? 1 : 0, factor);
+                static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
     return 0;
 }
 

@@ -1,6 +1,7 @@
 #include "server/network/dispatcher.h"
 
 #include "server/access/role.h"
+#include "server/base/assert.h"
 #include "server/log/log.h"
 #include "server/network/description.h"
 #include "server/network/random_ids.h"
@@ -139,9 +140,9 @@ void refuse(v1::Response& response, const base::Refusal& refused) {
 
 } // namespace
 
-Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-                       LimitCounters& limit_counters, std::function<void()> shut_down,
-                       std::function<v1::Metrics()> metrics)
+Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
+                       runtime::Demand& demand, Streams& streams, LimitCounters& limit_counters,
+                       std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : mailbox_{mailbox}
     , outbox_{outbox}
     , demand_{demand}
@@ -150,8 +151,16 @@ Dispatcher::Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runti
     , shut_down_{std::move(shut_down)}
     , metrics_{std::move(metrics)}
     , exports_{outbox, limit_counters}
+    , leases_{context,
+              [this](const std::string& world) {
+                  limit_counters_.met(Limit::Lease);
+                  v1::Request request;
+                  request.mutable_release_lease()->set_world(world);
+                  handle_own(std::move(request));
+              }}
     , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max},
-               [&limit_counters] { limit_counters.met(Limit::ClientKeys); }} {}
+               [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
+    , own_key_{"evod " + to_text(draw_run_id())} {}
 
 base::Refusal Dispatcher::busy() {
     limit_counters_.met(Limit::MailboxCommands);
@@ -196,6 +205,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         return past(session, request);
     case protocol::RequestKind::Export:
         return export_text(session, request);
+    case protocol::RequestKind::Lease:
+        return renew_lease(session, request);
     case protocol::RequestKind::Server:
         log::info({.session = session.number(), .client = session.by()}, "session {}: {} shuts the server down",
                   session.number(), session.by());
@@ -245,34 +256,76 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         break;
     }
 
+    auto answered = [this, key, id](const SharedBytes& frame, const base::Refusal* why) {
+        // What cannot be taken now leaves no trace: sent again, it may be.
+        if (why != nullptr && why->code == base::RefusalCode::Unavailable)
+            retries_.forget(key, id, frame);
+        else
+            retries_.finish(key, id, frame);
+    };
+    if (!carry_out(*std::move(command), request, {session.number(), session.by()}, std::move(answered)))
+        retries_.forget(key, id, encode_response(refused(busy())));
+}
+
+void Dispatcher::handle_own(v1::Request request) {
+    request.set_client_key(own_key_);
+    request.set_request_id(++own_request_id_);
+    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
+    EVOD_ASSERT(command.has_value());
+    carry_out(*std::move(command), request, {0, "evod"},
+              [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
+                  if (refused != nullptr)
+                      log::error("{} of the server itself is refused: {}", name, to_text(*refused));
+              });
+}
+
+bool Dispatcher::carry_out(simulation::Command command, const v1::Request& request, const From& from,
+                           Answered answered) {
     // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
     // the command cannot be lost any more.
-    auto reply = [this, request, by = session.by(), number = session.number()](
+    auto reply = [this, request, from, answered = std::move(answered)](
                      const simulation::Laboratory& laboratory, const simulation::Command& applied_command,
                      const base::Result<simulation::Applied>& applied) {
+        struct Told {
+            SharedBytes frame;
+            std::optional<base::Refusal> refused;
+            std::optional<v1::Event> event;
+            bool leased = false; // its world, now
+        };
+        const auto told = std::make_shared<Told>();
         v1::Response response = response_to(request, laboratory, applied);
-        log_refusal(number, by, response);
-        const SharedBytes frame = encode_response(std::move(response));
-        if (!applied && applied.error().code == base::RefusalCode::ResourceExhausted)
-            limit_counters_.met(Limit::Worlds); // nothing else that commands make is bounded there
-        std::optional<v1::Event> event;
-        if (applied && demand_.events_wanted())
-            event = protocol::event_of(applied_command, *applied, by, laboratory);
-        // What cannot be taken now leaves no trace: sent again, it may be.
-        const bool later = !applied && applied.error().code == base::RefusalCode::Unavailable;
-        return runtime::CommandAnswer{
-            *frame, [this, key = request.client_key(), request_id = request.request_id(), frame, event, later] {
-                // At once: who subscribes after the answer hears of what comes after it.
-                outbox_.answer([this, key, request_id, frame, event, later] {
-                    later ? retries_.forget(key, request_id, frame) : retries_.finish(key, request_id, frame);
-                    if (event)
-                        streams_.tell(*event);
-                });
-            }};
+        log_refusal(from.session, from.by, response);
+        told->frame = encode_response(std::move(response));
+        if (!applied) {
+            told->refused = applied.error();
+            if (applied.error().code == base::RefusalCode::ResourceExhausted)
+                limit_counters_.met(Limit::Worlds); // nothing else that commands make is bounded there
+        } else if (demand_.events_wanted()) {
+            told->event = protocol::event_of(applied_command, *applied, from.by, laboratory);
+        }
+        if (applied)
+            if (const auto entry = laboratory.find(applied->world))
+                told->leased = (*entry)->control.leased;
+        auto give = [this, told, answered, key = request.client_key(), steps = request.has_run_until_tick(),
+                     world = applied ? applied->world : ""] {
+            answered(told->frame, told->refused ? &*told->refused : nullptr);
+            if (told->event)
+                streams_.tell(*told->event);
+            if (!told->leased)
+                leases_.end(world);
+            else if (steps && !going_away_)
+                leases_.begin(world, key);
+        };
+        // At once: who subscribes after the answer hears of what comes after it.
+        return runtime::CommandAnswer{*told->frame,
+                                      [this, give = std::move(give)]() mutable { outbox_.answer(std::move(give)); }};
     };
-    storage::Origin origin{.client = session.by(), .client_key = key, .request_id = id, .request = bytes_of(request)};
-    if (!mailbox_.try_push(runtime::CommandMail{*std::move(command), std::move(origin), std::move(reply)}))
-        retries_.forget(key, id, encode_response(refused(busy())));
+    return mailbox_.try_push(runtime::CommandMail{std::move(command),
+                                                  {.client = from.by,
+                                                   .client_key = request.client_key(),
+                                                   .request_id = request.request_id(),
+                                                   .request = bytes_of(request)},
+                                                  std::move(reply)});
 }
 
 void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) {
@@ -499,6 +552,26 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
     };
     if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(request.export_run().world()), std::move(found)}))
         session.answer(protocol::refusing(id, busy()));
+}
+
+void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
+    // An empty name has a meaning to the simulation only.
+    const auto world = std::make_shared<std::string>();
+    ask(
+        session, request.request_id(),
+        [request, world](const simulation::Laboratory& laboratory, v1::Response& response) {
+            if (const auto entry = laboratory.find(protocol::lookup_name(request.renew_lease().world())))
+                *world = (*entry)->name;
+            else
+                refuse(response, protocol::with_paths(entry.error(), name_of(request)));
+        },
+        [this, world, key = request.client_key()](Session&, v1::Response& response) {
+            if (response.status().code() == v1::CODE_OK && !leases_.renew(*world, key))
+                refuse(response, {.code = base::RefusalCode::FailedPrecondition,
+                                  .message = "this client_key has no lease of that world: it gets one by "
+                                             "run_until_tick, if the world runs",
+                                  .violations = {{"client_key", "that of the run_until_tick", key}}});
+        });
 }
 
 void Dispatcher::forget(const Session& session) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/network/exports.h"
+#include "server/network/leases.h"
 #include "server/network/limits.h"
 #include "server/network/retries.h"
 #include "server/network/session.h"
@@ -21,10 +22,16 @@ class Dispatcher {
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
     /// shut_down  ends the server.
     /// metrics    what it counts.
-    Dispatcher(runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand, Streams& streams,
-               LimitCounters& limit_counters, std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
+    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand,
+               Streams& streams, LimitCounters& limit_counters, std::function<void()> shut_down,
+               std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
+
+    /// A command of the server itself. A refusal is logged; one for want of room in the mailbox comes to nothing.
+    void handle_own(v1::Request request);
+    /// A world that was lent before this server started: it goes on, unless its lease is renewed.
+    void lend_again(const std::string& world) { leases_.begin(world, {}); }
 
     /// Answers that were given before this server started.
     void restore(const std::vector<storage::JournalEntry>& answers);
@@ -33,7 +40,10 @@ class Dispatcher {
     void forget(const Session& session);
 
     /// From now on every request is refused: the server is going away.
-    void refuse_all() { going_away_ = true; }
+    void refuse_all() {
+        going_away_ = true;
+        leases_.end_all();
+    }
 
   private:
     void command(Session& session, const v1::Request& request);
@@ -41,6 +51,16 @@ class Dispatcher {
     void subscription(Session& session, const v1::Request& request);
     void past(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
+    void renew_lease(Session& session, const v1::Request& request);
+
+    /// The encoded response to a command, here, once it cannot be lost any more. refused: nullptr if it was applied.
+    using Answered = std::function<void(const SharedBytes& frame, const base::Refusal* refused)>;
+    struct From {
+        std::uint64_t session; // number; 0: the server itself
+        std::string by;
+    };
+    /// Hands a command to the simulation, and tells everybody of it. false: the mailbox is full.
+    bool carry_out(simulation::Command command, const v1::Request& request, const From& from, Answered answered);
 
     /// The mailbox is full.
     base::Refusal busy();
@@ -60,7 +80,10 @@ class Dispatcher {
     std::function<void()> shut_down_;
     std::function<v1::Metrics()> metrics_;
     Exports exports_;
+    Leases leases_;
     Retries retries_;
+    const std::string own_key_; // client_key of the server's own commands
+    std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };
 

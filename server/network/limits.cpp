@@ -33,6 +33,8 @@ constexpr LimitRow table[] = {
      "told, and closed"},
     {Limit::StalledTimeout, "stalled_timeout_s", seconds(stalled_timeout),
      "a client's machine takes nothing of what waits for it", "closed"},
+    {Limit::Lease, "lease_s", seconds(lease_time), "a world that ran is lent to who steps it, and not stepped on",
+     "it goes on"},
     {Limit::Sessions, "sessions_max", SessionBounds{}.sessions_max, "sessions; `--sessions-max`",
      "a new one is told, and closed"},
     {Limit::SessionsPerAddress, "sessions_per_address_max", SessionBounds{}.sessions_per_address_max,

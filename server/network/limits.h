@@ -26,6 +26,7 @@ constexpr std::uint32_t exports_max = 8;
 constexpr std::chrono::seconds hello_timeout{5};
 constexpr std::chrono::seconds frame_timeout{10};
 constexpr std::chrono::seconds stalled_timeout{10};
+constexpr std::chrono::seconds lease_time{5};
 constexpr std::uint32_t requests_per_s_max = 50'000; // more than one client asks for that waits for each answer
 constexpr std::uint32_t request_burst_max = 5'000;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
@@ -45,6 +46,7 @@ enum class Limit : std::uint8_t {
     HelloTimeout,
     FrameTimeout,
     StalledTimeout,
+    Lease,
     Sessions,
     SessionsPerAddress,
     RequestsPerSecond,

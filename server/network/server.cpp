@@ -1,6 +1,5 @@
 #include "server/network/server.h"
 
-#include "server/base/assert.h"
 #include "server/log/log.h"
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
@@ -64,8 +63,14 @@ Server::Server(ServerOptions options)
     , executor_{runtime::make_executor(options_.threads)}
     , outbox_{[this] { asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
-    , dispatcher_{
-          mailbox_, outbox_, demand_, streams_, limit_counters_, [this] { stop(); }, [this] { return metrics(); }} {
+    , dispatcher_{context_,
+                  mailbox_,
+                  outbox_,
+                  demand_,
+                  streams_,
+                  limit_counters_,
+                  [this] { stop(); },
+                  [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
     host_.instance_id = to_text(draw_run_id());
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
@@ -149,7 +154,7 @@ void Server::begin_first_world() {
             *assignment.mutable_value() = protocol::to_proto(value);
         }
         protocol::add_population(create, world.first_population);
-        command_of_own(std::move(request));
+        dispatcher_.handle_own(std::move(request));
     }
     if (options_.first_speed) {
         v1::Request request;
@@ -158,31 +163,13 @@ void Server::begin_first_world() {
             request.mutable_set_speed()->mutable_speed()->set_real_time_factor(**options_.first_speed);
         else
             request.mutable_set_speed()->mutable_speed()->set_max(true);
-        command_of_own(std::move(request));
+        dispatcher_.handle_own(std::move(request));
     }
     if (options_.first_run) {
         v1::Request request;
         request.mutable_run()->set_world(world.name);
-        command_of_own(std::move(request));
+        dispatcher_.handle_own(std::move(request));
     }
-}
-
-void Server::command_of_own(v1::Request request) {
-    request.set_client_key("evod " + host_.instance_id);
-    request.set_request_id(++own_request_id_);
-    auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
-    EVOD_ASSERT(command.has_value());
-    mailbox_.try_push(runtime::CommandMail{*std::move(command),
-                                           {.client = "evod",
-                                            .client_key = request.client_key(),
-                                            .request_id = request.request_id(),
-                                            .request = request.SerializeAsString()},
-                                           [](const simulation::Laboratory&, const simulation::Command&,
-                                              const base::Result<simulation::Applied>& applied) {
-                                               if (!applied)
-                                                   log::error("cannot begin as asked: {}", to_text(applied.error()));
-                                               return runtime::CommandAnswer{};
-                                           }});
 }
 
 void Server::run() {
@@ -190,6 +177,9 @@ void Server::run() {
     if (archive_) {
         dispatcher_.restore(archive_->take_answers());
         worlds = archive_->take_laboratory();
+        for (const auto& entry : worlds.entries())
+            if (entry->control.leased)
+                dispatcher_.lend_again(entry->name);
     }
     begin_first_world();
     simulation_ = std::make_unique<runtime::SimulationThread>(

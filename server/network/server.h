@@ -81,7 +81,6 @@ class Server {
     /// The commands that options ask for.
     bool creates_first_world() const;
     void begin_first_world();
-    void command_of_own(v1::Request request);
     /// Every now and then: for tokens that are revoked, and for clients that take nothing.
     void look_around();
     void mind_tokens();
@@ -124,7 +123,6 @@ class Server {
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses
-    std::uint64_t own_request_id_ = 0;
     bool going_away_ = false;
 };
 

@@ -65,6 +65,7 @@ v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime
     frame.set_item_radius_px(snapshot.item_radius_px);
     *frame.mutable_live() = protocol::to_proto(island.live, island.island);
     frame.set_ticks_per_s(snapshot.ticks_per_s);
+    frame.set_slowed(snapshot.slowed);
 
     static thread_local PresentItems food, poison; // working memory, kept warm
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();

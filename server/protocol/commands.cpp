@@ -80,6 +80,10 @@ simulation::Command command_of(const v1::Run& request, const Draws&, Violations&
     return command;
 }
 
+simulation::Command command_of(const v1::ReleaseLease& request, const Draws&, Violations&) {
+    return simulation::ReleaseLease{lookup_name(request.world())};
+}
+
 simulation::Command command_of(const v1::RunUntilTick& request, const Draws&, Violations&) {
     return simulation::RunUntilTick{.world = lookup_name(request.world()), .tick = request.tick()};
 }
@@ -179,6 +183,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kResetWorld:
     case RequestCase::kRun:
     case RequestCase::kRunUntilTick:
+    case RequestCase::kReleaseLease:
     case RequestCase::kPause:
     case RequestCase::kResume:
     case RequestCase::kSetSpeed:
@@ -205,10 +210,10 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kExportRun:
     case RequestCase::kContinueExport:
         return RequestKind::Export;
+    case RequestCase::kRenewLease:
+        return RequestKind::Lease;
     case RequestCase::kShutDown:
         return RequestKind::Server;
-    case RequestCase::kReleaseLease:
-    case RequestCase::kRenewLease:
     case RequestCase::kSetView:
     case RequestCase::REQUEST_NOT_SET:
         break;
@@ -233,6 +238,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.run(), draws, violations);
         case RequestCase::kRunUntilTick:
             return command_of(request.run_until_tick(), draws, violations);
+        case RequestCase::kReleaseLease:
+            return command_of(request.release_lease(), draws, violations);
         case RequestCase::kPause:
             return command_of(request.pause(), draws, violations);
         case RequestCase::kResume:

@@ -21,7 +21,7 @@ struct Draws {
     simulation::RunId run_id;
 };
 
-enum class RequestKind { Command, Query, Subscription, Past, Export, Server, Unknown };
+enum class RequestKind { Command, Query, Subscription, Past, Export, Lease, Server, Unknown };
 RequestKind kind_of(const v1::Request& request);
 
 /// The command, or everything that is wrong with the request. What depends on the world's state is left to

@@ -82,6 +82,8 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     to.set_parameter_revision(world.parameters().revision);
     if (const auto ended = entry.control.until_generation)
         to.set_run_until_generation(*ended + (*ended < ~std::uint64_t{0} ? 1 : 0)); // the one that begins then
+    to.set_leased(entry.control.leased);
+    to.set_slowed(entry.slowed);
     if (entry.control.until_tick)
         to.set_run_until_tick(*entry.control.until_tick);
     to.set_ticks_per_s(entry.ticks_per_s);

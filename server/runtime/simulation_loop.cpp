@@ -320,9 +320,12 @@ SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
         track.due = clock_.now();
         track.measured_since = track.due;
         track.ticks = 0;
+        track.lost = {};
+        entry.slowed = false;
     }
     if (!wants_tick) {
         entry.ticks_per_s = 0;
+        entry.slowed = false;
         track.changed |= track.running; // as when it is paused
     }
     track.run_id = entry.run_id;
@@ -354,8 +357,11 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         }
         tell_events();
         const auto now = clock_.now();
-        if (paced)
-            track.due = std::max(track.due + period(entry), now - catch_up_max);
+        if (paced) {
+            const auto due = track.due + period(entry);
+            track.due = std::max(due, now - catch_up_max);
+            track.lost += track.due - due;
+        }
         measure(entry, track, now);
         show(entry, track, now);
         const auto spent = now - std::exchange(before, now);
@@ -381,7 +387,11 @@ void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time
     if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time))
         return;
     entry.ticks_per_s = static_cast<double>(track.ticks) / passed.count();
+    const bool slowed = std::chrono::duration<double>{track.lost} > slowed_from * passed;
+    track.changed |= slowed != entry.slowed;
+    entry.slowed = slowed;
     track.ticks = 0;
+    track.lost = {};
     track.measured_since = now;
 }
 

@@ -45,6 +45,8 @@ class SimulationLoop {
   public:
     static constexpr std::chrono::milliseconds slice{5};
     static constexpr std::chrono::milliseconds catch_up_max{50};
+    /// A world whose clock loses more than this part of the time is said to be slowed.
+    static constexpr double slowed_from = 0.02;
     /// Worlds that wait for a disk which does write, as they do now and then, are worth telling of only after this.
     static constexpr std::chrono::seconds slow_disk_patience{1};
 
@@ -80,6 +82,7 @@ class SimulationLoop {
         // Ticks in the second that is being measured.
         Clock::time_point measured_since;
         std::uint64_t ticks = 0;
+        Clock::duration lost{}; // that its clock was slowed by
         // For those who watch.
         const Watch* watch = nullptr;
         std::uint64_t newcomers_served = 0;

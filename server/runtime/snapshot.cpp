@@ -83,6 +83,7 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     taken->speed = entry.control.speed;
     taken->hash = entry.world.hash();
     taken->ticks_per_s = entry.ticks_per_s;
+    taken->slowed = entry.slowed;
     taken->item_radius_px = entry.world.parameters().active.item_radius_px;
     taken->island_count = static_cast<std::uint32_t>(entry.world.islands().size());
     taken->after_change = after_change;

@@ -52,6 +52,7 @@ struct Snapshot {
     simulation::Speed speed;
     base::StateHash hash;
     double ticks_per_s = 0;
+    bool slowed = false;
     double item_radius_px = 0;
     std::uint32_t island_count = 0;
     bool after_change = false; // shows what a command or a reached goal has changed: to be shown whatever the rate

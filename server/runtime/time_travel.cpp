@@ -55,7 +55,7 @@ void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t
     control.endless = control.paused = true;
     looks_.emplace(name, Look{past, rerun.changes(), owner, {}, 0});
     laboratory_.adopt(std::make_unique<simulation::Entry>(
-        simulation::Entry{name, past.run_id(), control, std::move(rerun).take(), 0, recording}));
+        simulation::Entry{name, past.run_id(), control, std::move(rerun).take(), 0, false, recording}));
     (void)entry_of(name)->world.take_events(); // of the way there
 }
 

@@ -50,6 +50,9 @@ struct RunUntilTick {
     std::string world;
     std::uint64_t tick;
 };
+struct ReleaseLease {
+    std::string world;
+};
 struct Pause {
     std::string world;
 };
@@ -76,7 +79,7 @@ struct ForkWorld {
     RunId run_id;
 };
 
-using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, Pause, Resume, SetSpeed,
+using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, SetSpeed,
                              SetParameters, ForkWorld>;
 
 } // namespace evod::simulation

@@ -60,6 +60,12 @@ bool has_goal(const RunControl& control) {
     return control.endless || control.until_generation;
 }
 
+/// Towards its goal, if it has one.
+void go_on(RunControl& control) {
+    control.paused = control.leased = false;
+    control.until_tick.reset();
+}
+
 } // namespace
 
 bool mind_goals(RunControl& control, const World& world) {
@@ -219,8 +225,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
         // More than the counter holds is the same as without end.
         entry.control.until_generation = over + std::min(*command.generations, ~std::uint64_t{0} - over);
     }
-    entry.control.until_tick.reset();
-    entry.control.paused = false;
+    go_on(entry.control);
     return applied_now(entry);
 }
 
@@ -229,6 +234,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
     if (command.tick > now)
         if (auto refused = refusal_if_terminated(entry.world))
             return *refused;
+    // One that shows the past belongs to who opened it.
+    entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.recording;
     entry.control.paused = true;
     entry.control.until_tick.reset();
     if (command.tick > now)
@@ -236,8 +243,15 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
     return applied_now(entry);
 }
 
+Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease&) {
+    if (entry.control.leased)
+        go_on(entry.control);
+    return applied_now(entry);
+}
+
 Result<Applied> Laboratory::carry_out(Entry& entry, const Pause&) {
     entry.control.paused = true;
+    entry.control.leased = false;
     entry.control.until_tick.reset();
     return applied_now(entry);
 }
@@ -248,8 +262,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
     if (!has_goal(entry.control))
         return refusal(RefusalCode::FailedPrecondition,
                        "there is nothing to resume: tell the world how far to run with start or run");
-    entry.control.paused = false;
-    entry.control.until_tick.reset();
+    go_on(entry.control);
     return applied_now(entry);
 }
 

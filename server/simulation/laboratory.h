@@ -29,6 +29,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then be paused
     bool paused = false;
+    bool leased = false; // paused, or stepping, only until the lease is over
     Speed speed = 1.0;
 };
 
@@ -63,7 +64,9 @@ struct Entry {
     RunId run_id;
     RunControl control;
     World world;
-    double ticks_per_s = 0; // measured by whoever drives the laboratory; no part of the state
+    // Measured by whoever drives the laboratory; no part of the state.
+    double ticks_per_s = 0;
+    bool slowed = false;                               // its speed is more than the machine can do
     std::optional<Recording> recording = std::nullopt; // nothing: the world lives. What happens in others is past
     std::optional<Storage> storage = std::nullopt;     // nothing: what it does is not written down
 
@@ -121,6 +124,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const ResetWorld&);
     base::Result<Applied> carry_out(Entry& entry, const Run&);
     base::Result<Applied> carry_out(Entry& entry, const RunUntilTick&);
+    base::Result<Applied> carry_out(Entry& entry, const ReleaseLease&);
     base::Result<Applied> carry_out(Entry& entry, const Pause&);
     base::Result<Applied> carry_out(Entry& entry, const Resume&);
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);

@@ -553,7 +553,9 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uin
         entry.control.endless = reader.integer() != 0;
         entry.control.until_generation = as_read(reader.optional_integer());
         entry.control.until_tick = as_read(reader.optional_integer());
-        entry.control.paused = reader.integer() != 0;
+        const std::int64_t paused = reader.integer();
+        entry.control.paused = paused != 0;
+        entry.control.leased = paused == 2;
         entry.control.speed = reader.optional_real();
         if (!reader.sound() || entry.number != first + entries.size())
             return damaged(row_of("journal", first + entries.size()));
@@ -955,7 +957,7 @@ void RunFile::write(const JournalEntry& entry) {
         .integer(std::int64_t{entry.control.endless})
         .integer(as_stored(entry.control.until_generation))
         .integer(as_stored(entry.control.until_tick))
-        .integer(std::int64_t{entry.control.paused})
+        .integer(std::int64_t{entry.control.paused} + entry.control.leased)
         .real(entry.control.speed)
         .finish();
 }

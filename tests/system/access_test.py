@@ -23,7 +23,7 @@ PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 
 # The least role of every request: a new one has to be given its line here too.
 LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
-    "reset_world": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
+    "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
     "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "seek": CONTROLLER,
     "close_past": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,

@@ -667,6 +667,139 @@ class Commands(WithServer):
         self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED and x.generation == 5, world)
 
 
+class Control(WithServer):
+    """Several who drive one world: nobody keeps it from the others, and everybody sees one order of things."""
+    BY_SERVER = "evod"
+
+    def setUp(self):
+        super().setUp()
+        self.other = self.enterContext(Client(self.server))
+        self.other.call(subscribe_events=c.SubscribeEvents())
+        self.name = self.new_world()
+        self.client.call(set_speed=c.SetSpeed(world=self.name, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=self.name))
+
+    def borrow(self, ticks=100):
+        """Takes the running world so many ticks on; it then stands."""
+        tick = self.client.world(self.name).tick + 100_000 + ticks
+        lent = self.client.call(run_until_tick=c.RunUntilTick(world=self.name, tick=tick)).world
+        self.assertTrue(lent.leased)
+        return tick
+
+    def wait_standing(self, tick):
+        return self.client.wait_world(lambda x: x.tick == tick and x.state == w.RUN_STATE_PAUSED, self.name)
+
+    def next_control(self, by, condition=lambda world: True):
+        event = self.other.next_event("run_control_changed",
+                                      lambda e: e.run_control_changed.by == by and e.world == self.name and
+                                      condition(e.run_control_changed.world))
+        return event.run_control_changed.world
+
+    def renew(self, expected=OK, client=None):
+        return (client or self.client).call(expected, renew_lease=c.RenewLease(world=self.name))
+
+    def test_a_lease_ends_by_itself_and_the_world_goes_on(self):
+        tick = self.borrow()
+        self.assertTrue(self.wait_standing(tick).leased)
+        gone_on = self.next_control(self.BY_SERVER)
+        self.assertEqual((gone_on.leased, gone_on.state), (False, w.RUN_STATE_RUNNING))
+        self.client.wait_world(lambda x: x.tick > tick, self.name)
+        self.assertIn("lease", self.renew(PRECONDITION).status.message)
+
+    def test_a_lease_lasts_as_long_as_it_is_renewed(self):
+        tick = self.borrow()
+        self.wait_standing(tick)
+        begun, lease_s = time.monotonic(), self.client.welcome.limits.lease_s
+        while time.monotonic() - begun < 1.5 * lease_s:
+            self.renew()
+            time.sleep(lease_s / 20)
+        self.assertEqual(self.client.world(self.name).tick, tick)
+
+    def test_a_lease_ends_with_its_client(self):
+        with Client(self.server) as brief:
+            tick = brief.call(run_until_tick=c.RunUntilTick(world=self.name, tick=0)).applied_tick
+        self.next_control(self.BY_SERVER)
+        self.client.wait_world(lambda x: x.tick > tick, self.name)
+
+    def test_a_lease_can_be_given_back(self):
+        tick = self.borrow()
+        self.wait_standing(tick)
+        back = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
+        self.assertEqual((back.leased, back.state, back.tick), (False, w.RUN_STATE_RUNNING, tick))
+        self.renew(PRECONDITION)
+        again = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
+        self.assertEqual(again.state, w.RUN_STATE_RUNNING)
+
+    def test_a_goal_in_generations_is_still_there_after_a_lease(self):
+        self.client.call(run=c.Run(world=self.name, generations=1 << 40))
+        goal = self.client.world(self.name).run_until_generation
+        self.borrow()
+        back = self.client.call(release_lease=c.ReleaseLease(world=self.name)).world
+        self.assertEqual((back.run_until_generation, back.HasField("run_until_tick")), (goal, False))
+
+    def test_what_another_says_holds_and_ends_the_lease(self):
+        for request, state in (({"pause": c.Pause(world=self.name)}, w.RUN_STATE_PAUSED),
+                               ({"resume": c.Resume(world=self.name)}, w.RUN_STATE_RUNNING),
+                               ({"run": c.Run(world=self.name)}, w.RUN_STATE_RUNNING)):
+            self.client.call(run=c.Run(world=self.name))
+            self.borrow()
+            answer = self.other.call(**request).world
+            self.assertEqual((answer.leased, answer.state), (False, state))
+            self.renew(PRECONDITION)
+
+    def test_another_who_steps_takes_the_lease_over(self):
+        self.borrow()
+        self.assertTrue(self.other.call(run_until_tick=c.RunUntilTick(world=self.name, tick=0)).world.leased)
+        self.renew(client=self.other)
+        self.renew(PRECONDITION)
+
+    def test_who_wants_it_to_stand_pauses_it_first(self):
+        paused = self.client.call(pause=c.Pause(world=self.name)).world
+        self.assertFalse(self.client.run_to(paused.tick + 5, self.name).leased)
+        self.renew(PRECONDITION)
+
+    def test_two_controllers_have_one_order_which_all_are_told(self):
+        rounds, clients = 200, [self.client, self.other]
+        listeners = [self.enterContext(Client(self.server)) for _ in range(2)]
+        for listener in listeners:
+            listener.call(subscribe_events=c.SubscribeEvents(world=self.name))
+        first = self.client.world(self.name).parameter_revision
+        asked = [[(client, client.ask(set_parameters=set_parameters(self.name, food_health=float(1 + 2 * i + j))))
+                  for j, client in enumerate(clients)] for i in range(rounds // 20)]
+        answers = [client.response(request) for pairs in asked for client, request in pairs]
+        for i in range(rounds // 20, rounds):
+            asked = [(client, client.ask(set_parameters=set_parameters(self.name, food_health=1 + i / 8 + j / 16)))
+                     for j, client in enumerate(clients)]
+            answers += [client.response(request) for client, request in asked]
+        by_revision = {answer.parameters.revision: answer for answer in answers}
+        self.assertEqual(sorted(by_revision), list(range(first + 1, first + 1 + 2 * rounds)))
+        told = [[listener.next_event("parameters_changed") for _ in range(2 * rounds)] for listener in listeners]
+        self.assertEqual(told[0], told[1])
+        addresses = {f"plain 127.0.0.1:{client.socket.getsockname()[1]}" for client in clients}
+        self.assertEqual({event.parameters_changed.by for event in told[0]}, addresses)
+        for event, revision in zip(told[0], sorted(by_revision)):
+            changed, answer = event.parameters_changed, by_revision[revision]
+            self.assertEqual((changed.revision, event.tick), (revision, answer.applied_tick))
+            self.assertEqual(changed.changed[0].value, as_dict(answer.parameters)["food_health"].value)
+        self.assertEqual([e.tick for e in told[0]], sorted(e.tick for e in told[0]))
+
+    def test_a_world_that_is_asked_too_much_goes_slower_and_says_so(self):
+        world = self.new_world("crowd" + secrets.token_hex(4), population_size=2000, scale_with_population=True)
+        self.client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=10000)))
+        self.client.call(run=c.Run(world=world))
+        self.assertFalse(self.client.next_picture().slowed)
+        slowed = self.client.next_picture(lambda picture: picture.slowed)
+        self.assertTrue(self.client.world(world).slowed)
+        paused = self.client.call(pause=c.Pause(world=world)).world
+        self.assertFalse(self.client.world(world).slowed)
+        self.assertGreater(paused.tick, slowed.tick)
+        # No tick was left out: without haste it comes to the same.
+        twin = self.new_world(population_size=2000, scale_with_population=True)
+        self.client.call(set_speed=c.SetSpeed(world=twin, speed=w.Speed(max=True)))
+        self.assertEqual(self.client.run_to(paused.tick, twin).state_hash, paused.state_hash)
+
+
 class Parameters(WithServer):
     def setUp(self):
         super().setUp()

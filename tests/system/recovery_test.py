@@ -367,6 +367,18 @@ class Recovery(unittest.TestCase):
                     self.assertEqual(getattr(after[name], field), getattr(before[name], field), f"{name}: {field}")
         server.end()
 
+    def test_a_world_that_was_lent_when_the_server_ended_goes_on_by_itself(self):
+        server = self.serve("--seed", "5", "--speed", "max", "--start")
+        with Client(server, "k") as client:
+            lent = client.call(1, run_until_tick=c.RunUntilTick(tick=0))
+            self.assertTrue(lent.world.leased)
+        server.kill()
+        server = self.serve()
+        with Client(server, "k") as client:
+            until(lambda: client.world().tick > lent.applied_tick, "it goes on")
+            self.assertEqual((client.world().leased, client.world().state), (False, w.RUN_STATE_RUNNING))
+        server.end()
+
     def test_reset_and_delete_put_the_run_aside_and_are_done_once(self):
         server = self.serve("--seed", "5", "--speed", "max")
         with Client(server, "k") as client:

@@ -121,6 +121,32 @@ TEST_F(Loop, AWorldThatFellBehindIsGivenBackNoMoreThanTheBound) {
     EXPECT_EQ(tick(), given_back + 10);
 }
 
+TEST_F(Loop, AWorldWhoseClockIsSlowSaysSoAndTakesEveryTick) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    watch("w", 100, 1);
+    const auto slowed = [&] { return (*loop.laboratory().find("w"))->slowed; };
+    const auto passes = [&](Clock::duration each) {
+        for (Clock::duration passed{}; passed < 2s; passed += each) {
+            clock.advance(each);
+            loop.pass();
+        }
+    };
+    passes(1ms);
+    EXPECT_FALSE(slowed());
+    EXPECT_FALSE(pictures.back()->slowed);
+    passes(100ms); // of which no more than 50 are given back
+    EXPECT_TRUE(slowed());
+    EXPECT_TRUE(pictures.back()->slowed);
+    passes(1ms);
+    EXPECT_FALSE(slowed());
+    EXPECT_FALSE(pictures.back()->slowed);
+    passes(100ms);
+    send(simulation::Pause{"w"});
+    loop.pass();
+    EXPECT_FALSE(slowed()) << "it is asked for nothing";
+}
+
 TEST_F(Loop, APauseIsNotMadeUpFor) {
     send(create("w"));
     send(simulation::Run{"w", {}});
@@ -580,6 +606,47 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     // how long either lasts is the disk's affair, and it may be too short to be seen.
     std::erase(told, simulation::StorageState::Failing);
     EXPECT_EQ(told, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
+}
+
+TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
+    ask_create("long");
+    ask_run("long");
+    pass_until([&] { return tick("long") > 300; });
+    v1::Request pause;
+    pause.mutable_pause()->set_world("long");
+    ask(std::move(pause));
+    std::string look;
+    mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
+                          [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+    pass_until([&] { return !look.empty(); });
+    ask_create("paced");
+    ask_run("paced");
+    kept.pass();
+    clock.per_look = 50us;
+    const auto began = clock.now();
+    const std::uint64_t first = tick("paced");
+    int seeks = 0;
+    bool on_the_way = false;
+    while (seeks < 6 || on_the_way) {
+        if (!on_the_way) {
+            on_the_way = true;
+            mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}},
+                                  [&](const Laboratory&, const base::Result<std::string>& there) {
+                                      EXPECT_TRUE(there);
+                                      on_the_way = false;
+                                  }});
+        }
+        kept.pass();
+    }
+    const std::chrono::duration<double> passed = clock.now() - began;
+    EXPECT_GT(passed, 1s);
+    EXPECT_NEAR(static_cast<double>(tick("paced") - first), passed.count() * 60, 3);
+    EXPECT_FALSE(entry("paced").slowed);
+    const simulation::World& lived = entry("paced").world;
+    simulation::World alone{lived.parameters().active, lived.seed()};
+    while (alone.moment().tick < lived.moment().tick)
+        alone.advance_tick(executor);
+    EXPECT_EQ(alone.hash(), lived.hash());
 }
 
 TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {

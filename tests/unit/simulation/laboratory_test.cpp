@@ -128,6 +128,49 @@ TEST_F(OneWorld, KeepsItsGoalWhileItIsStepped) {
     EXPECT_EQ(run_on(), 9u);
 }
 
+TEST_F(OneWorld, IsLentForAStepOnlyIfItRan) {
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 1}).has_value());
+    EXPECT_FALSE(entry().control.leased) << "it waited";
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    ASSERT_TRUE(laboratory.apply(Pause{"w"}).has_value());
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 2}).has_value());
+    EXPECT_FALSE(entry().control.leased) << "it was paused";
+    ASSERT_TRUE(laboratory.apply(ReleaseLease{"w"}).has_value());
+    EXPECT_EQ(run_on(), 2u) << "which nobody gives back";
+    EXPECT_EQ(entry().state(), RunState::Paused);
+}
+
+TEST_F(OneWorld, GoesOnTowardsItsGoalWhenALeaseIsOver) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", 2}).has_value());
+    for (const std::uint64_t tick : {3, 5}) {
+        ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", tick}).has_value());
+        run_on();
+        EXPECT_TRUE(entry().control.leased && entry().state() == RunState::Paused);
+    }
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 1000}).has_value());
+    EXPECT_EQ(run_on(2), 2u);
+    ASSERT_TRUE(laboratory.apply(ReleaseLease{"w"}).has_value()) << "before the step is over";
+    EXPECT_FALSE(entry().control.leased);
+    EXPECT_EQ(run_on(), 5u);
+    EXPECT_EQ(entry().state(), RunState::Waiting);
+}
+
+TEST_F(OneWorld, IsNotLentAnyMoreWhenItIsToldWhatToDo) {
+    for (const Command& command : {Command{simulation::Run{"w", {}}}, Command{Pause{"w"}}, Command{Resume{"w"}},
+                                   Command{ResetWorld{.world = "w", .seed = {}, .run_id = {}}}}) {
+        ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+        ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 0}).has_value());
+        ASSERT_TRUE(entry().control.leased);
+        ASSERT_TRUE(laboratory.apply(SetSpeed{"w", 2.0}).has_value());
+        EXPECT_TRUE(entry().control.leased) << "whatever its speed";
+        ASSERT_TRUE(laboratory.apply(command).has_value());
+        EXPECT_FALSE(entry().control.leased);
+        const RunState told = entry().state();
+        ASSERT_TRUE(laboratory.apply(ReleaseLease{"w"}).has_value());
+        EXPECT_EQ(entry().state(), told);
+    }
+}
+
 TEST_F(OneWorld, ForgetsAStepWhenPausedOrResumed) {
     ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 50}).has_value());
     EXPECT_EQ(run_on(3), 3u);
@@ -297,8 +340,8 @@ TEST(Laboratory, RefusesEveryCommandToAWorldThatIsNotThere) {
     ASSERT_TRUE(laboratory.apply(CreateWorld{"b", {}, base::Seed{1}, {}}).has_value());
     for (const Command& command :
          {Command{DeleteWorld{"x"}}, Command{ResetWorld{"x", {}, {}}}, Command{simulation::Run{"x", 1}},
-          Command{RunUntilTick{"x", 1}}, Command{Pause{"x"}}, Command{Resume{"x"}}, Command{SetSpeed{"x", 1.0}},
-          Command{SetParameters{"x", {}, false, {}}}}) {
+          Command{RunUntilTick{"x", 1}}, Command{ReleaseLease{"x"}}, Command{Pause{"x"}}, Command{Resume{"x"}},
+          Command{SetSpeed{"x", 1.0}}, Command{SetParameters{"x", {}, false, {}}}}) {
         const auto refused = laboratory.apply(command);
         ASSERT_FALSE(refused.has_value());
         EXPECT_EQ(refused.error().code, RefusalCode::NotFound);

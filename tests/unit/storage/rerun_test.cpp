@@ -96,7 +96,8 @@ TEST_F(RerunTest, RunControlIsThatOfTheLastCommandLessTheGoalsReached) {
         const auto file = file_left();
         return recover(*file, executor)->control;
     };
-    v1::Request endless, two_generations, until_tick, pause, speed;
+    v1::Request endless, two_generations, until_tick, release, pause, speed;
+    release.mutable_release_lease();
     endless.mutable_run();
     two_generations.mutable_run()->set_generations(2);
     until_tick.mutable_run_until_tick()->set_tick(120);
@@ -114,7 +115,11 @@ TEST_F(RerunTest, RunControlIsThatOfTheLastCommandLessTheGoalsReached) {
     control = control_after(60, until_tick);
     EXPECT_EQ(control.until_tick, 120u);
     control = control_after(120, until_tick);
-    EXPECT_TRUE(!control.until_tick && control.paused);
+    EXPECT_TRUE(!control.until_tick && control.paused && !control.leased);
+    control = control_after(120, endless, until_tick);
+    EXPECT_TRUE(control.endless && control.paused && control.leased);
+    control = control_after(180, endless, until_tick, release);
+    EXPECT_TRUE(control.endless && !control.paused && !control.leased);
 }
 
 TEST_F(RerunTest, EveryGenerationCanBeBegunAgain) {

@@ -101,6 +101,17 @@ TEST(RunControl, StepsAddUpWhileTheyAreUnderWay) {
     EXPECT_EQ(control.step(1)->run_until_tick().tick(), 162u);
 }
 
+TEST(RunControl, ARunningWorldIsPausedBeforeItIsStepped) {
+    RunControl control;
+    control.see(world(running, 100));
+    EXPECT_TRUE(control.step(1)->has_pause());
+    EXPECT_FALSE(control.step(1)) << "held with the first";
+    const auto response = answer(world(paused, 103));
+    const auto step = control.answered(&response);
+    ASSERT_TRUE(step && step->has_run_until_tick());
+    EXPECT_EQ(step->run_until_tick().tick(), 105u);
+}
+
 TEST(RunControl, AStepAfterAPauseCountsFromWhereItStopped) {
     RunControl control;
     control.see(world(paused, 100));

@@ -143,21 +143,29 @@ TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
     until(watch, [&] { return watch.picture() != nullptr; });
     answer_statistics(session, session.read_request());
     until(watch, [&] { return watch.all_answered(); });
-    watch.step(1);
-    const auto step = session.read_request();
-    EXPECT_EQ(step.run_until_tick().tick(), 51u);
+    watch.step(1); // pauses it first
     evod::v1::ServerMessage answer, event;
-    answer.mutable_response()->set_request_id(step.request_id());
-    *answer.mutable_response()->mutable_world() = info("default", evod::v1::RUN_STATE_RUNNING);
-    answer.mutable_response()->mutable_world()->set_tick(50);
+    const auto answer_with = [&](const evod::v1::Request& request, evod::v1::RunState state) {
+        answer.mutable_response()->set_request_id(request.request_id());
+        *answer.mutable_response()->mutable_world() = info("default", state);
+        answer.mutable_response()->mutable_world()->set_tick(52);
+    };
+    const auto pause = session.read_request();
+    EXPECT_TRUE(pause.has_pause());
+    answer_with(pause, evod::v1::RUN_STATE_PAUSED);
+    session.send(answer);
+    until(watch, [&] { return watch.control().tick() == 52; });
+    const auto step = session.read_request();
+    EXPECT_EQ(step.run_until_tick().tick(), 53u);
+    answer_with(step, evod::v1::RUN_STATE_RUNNING);
     event.mutable_event()->set_world("default");
     auto& ended = *event.mutable_event()->mutable_run_control_changed()->mutable_world();
     ended = info("default", evod::v1::RUN_STATE_PAUSED);
-    ended.set_tick(51);
+    ended.set_tick(53);
     session.send(answer);
     session.send(event);
     std::this_thread::sleep_for(std::chrono::milliseconds{20}); // so that both are most likely taken in together
-    until(watch, [&] { return watch.all_answered() && watch.control().tick() == 51; });
+    until(watch, [&] { return watch.all_answered() && watch.control().tick() == 53; });
     EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_PAUSED);
 }
 

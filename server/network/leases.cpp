@@ -1,0 +1,36 @@
+#include "server/network/leases.h"
+
+#include "server/network/limits.h"
+
+#include <utility>
+
+namespace evod::network {
+
+void Leases::begin(const std::string& world, const std::string& client_key) {
+    const auto lease = leases_.try_emplace(world, Lease{{}, boost::asio::steady_timer{context_}}).first;
+    lease->second.client_key = client_key;
+    await_end(world, lease->second);
+}
+
+bool Leases::renew(const std::string& world, const std::string& client_key) {
+    const auto lease = leases_.find(world);
+    if (lease == leases_.end() || lease->second.client_key != client_key)
+        return false;
+    await_end(world, lease->second);
+    return true;
+}
+
+void Leases::await_end(const std::string& world, Lease& lease) {
+    lease.timer.expires_after(lease_time);
+    lease.timer.async_wait([this, world](boost::system::error_code error) {
+        const auto ended = leases_.find(world);
+        if (error || ended == leases_.end() ||
+            ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now())
+            return; // renewed when it was as good as over
+        ended->second.client_key.clear();
+        await_end(world, ended->second);
+        over_(world);
+    });
+}
+
+} // namespace evod::network
