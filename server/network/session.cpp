@@ -95,7 +95,8 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , frame_timer_{line_.socket().get_executor()}
     , turn_timer_{line_.socket().get_executor()}
     , farewell_timer_{line_.socket().get_executor()}
-    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
+    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()}
+    , progressed_{std::chrono::steady_clock::now()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
     line_.socket().set_option(tcp::no_delay{true}, ignored);
     line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);

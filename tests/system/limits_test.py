@@ -20,6 +20,7 @@ from access_test import c, plain
 
 from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
 
+SANITIZED = b"__asan_init" in pathlib.Path(access.EVOD).read_bytes()  # its memory is not what it would be
 OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 5, 6, 8, 9, 12
 
 
@@ -118,7 +119,8 @@ class Frames(Case):
         for client in clients:
             client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", 1 << 20) + b"x" * 1000)
         other.call(list_worlds=c.ListWorlds())
-        self.assertLess(memory_kib(server) - before, 100 * 64)
+        if not SANITIZED:
+            self.assertLess(memory_kib(server) - before, 100 * 64)
 
     def test_depth(self):
         server = self.serve()
@@ -177,7 +179,8 @@ class Sessions(Case):
         first.call(list_worlds=c.ListWorlds())
         each = (memory_kib(server) - before) / len(idle)
         print(f"{each:.1f} KiB for each session", file=sys.stderr)
-        self.assertLess(each, 32)
+        if not SANITIZED:
+            self.assertLess(each, 32)
 
 
 class Requests(Case):
@@ -228,13 +231,16 @@ class Requests(Case):
         limits = other.welcome.limits
         frames = limits.requests_per_s_max + limits.request_burst_max
         damaged = b"EV\x01\x01\x03\0\0\0\xff\xff\xff"
-        latencies, over = [], threading.Event()
+        latencies, faults, over = [], [], threading.Event()
 
         def go_on():
-            while not over.is_set():
-                began = time.monotonic()
-                other.call(list_worlds=c.ListWorlds())
-                latencies.append(time.monotonic() - began)
+            try:
+                while not over.is_set():
+                    began = time.monotonic()
+                    other.call(list_worlds=c.ListWorlds())
+                    latencies.append(time.monotonic() - began)
+            except BaseException as fault:  # told below, by the thread that unittest listens to
+                faults.append(fault)
         with self.meets(self.come(server), "requests_per_s_max", "request_burst_max"):
             began = time.monotonic()
             sender = threading.Thread(target=flooding.socket.sendall, args=(damaged * frames,))
@@ -252,6 +258,7 @@ class Requests(Case):
                 over.set()
                 sender.join()
                 neighbour.join()
+        self.assertEqual(faults, [])
         self.assertGreater(took, 0.9)
         self.assertLess(sorted(latencies)[len(latencies) // 2], 0.05)
         flooding.call(list_worlds=c.ListWorlds())
@@ -395,7 +402,8 @@ class Unread(Case):
             for _ in range(6):
                 self.small(server).socket.sendall(asking)
             plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
-        self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
+        if not SANITIZED:  # which keep what was freed
+            self.assertLess(memory_kib(server), (limits.client_buffer_bytes_max >> 10) + (100 << 10))
         closed = re.findall(r"closed: more than 256 MiB wait for all clients, of which (\d+) KiB", server.output())
         self.assertLess(len(closed), 10)
         self.assertGreater(min(map(int, closed)), 1024)
@@ -472,7 +480,8 @@ class Times(Case):
             self.assertLess(time.monotonic() - began, limits.stalled_timeout_s + 20)
             time.sleep(0.05)
         self.assertGreater(time.monotonic() - began, limits.stalled_timeout_s)
-        self.assertLess(most, len(deaf) * 2048)
+        if not SANITIZED:
+            self.assertLess(most, len(deaf) * 2048)
 
     def a_slow_one_stays(self, server):
         client = self.small(server)

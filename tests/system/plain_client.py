@@ -1059,15 +1059,6 @@ class Events(WithServer):
         self.watcher.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.watcher.events, [])
 
-    def test_who_reads_too_slowly_is_told_how_much_was_left_out(self):
-        world = self.new_world(fitness="gene_sum", island_count=8)
-        self.subscribe(world)
-        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
-        self.client.call(run=c.Run(world=world))
-        self.client.wait_world(lambda x: x.generation > 15000, world)  # some 60 MB of events
-        self.client.call(pause=c.Pause(world=world))
-        self.assertGreater(self.watcher.next_event("events_dropped").events_dropped.dropped_count, 0)
-
 
 class Pictures(WithServer):
     def setUp(self):
