@@ -220,7 +220,7 @@ class Requests(Case):
             self.assertEqual(admin.response(asked).status.code, OK)
             admin.call(delete_world=c.DeleteWorld(world=name))
             self.assertLessEqual(set(codes), {OK, EXHAUSTED})
-            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max)
+            self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)  # that one may be waiting, too
             return EXHAUSTED in codes
         with self.meets(admin, "mailbox_commands_max"):
             plain.until(crowd, "one too many")
