@@ -1,8 +1,8 @@
 """Every limit of docs/OPERATIONS.md driven to its edge over real sockets: at the limit it works, beyond it what the table
 says happens, and everybody else goes on. EVOD and EVOCTL name the programs, MESSAGES the folder of the message classes.
 
-Two of the table are driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can
-hold the network's thread still; and running out of file descriptors by plain_client.py.
+Driven elsewhere: waiting_events_max by tests/unit/runtime/outbox_test.cpp, for nothing outside can hold the network's
+thread still; lease_s, with all about leases, and running out of file descriptors by plain_client.py.
 """
 import contextlib
 import os
