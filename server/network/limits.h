@@ -3,6 +3,7 @@
 
 #include "evod/v1/commands.pb.h"
 #include "proto/wire/framing.h"
+#include "proto/wire/tiles.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
 #include "server/runtime/export_thread.h"
@@ -71,6 +72,7 @@ inline v1::Limits limits_message() {
     limits.set_client_keys_max(client_keys_max);
     limits.set_hello_timeout_s(static_cast<std::uint32_t>(hello_timeout.count()));
     limits.set_pasts_max(runtime::TimeTravel::pasts_max);
+    limits.set_tiles_max(wire::tiles_max);
     limits.set_exports_max(exports_max);
     limits.set_export_patience_s(static_cast<std::uint32_t>(
         std::chrono::duration_cast<std::chrono::seconds>(runtime::ExportThread::patience).count()));

@@ -61,6 +61,7 @@ Server::Server(ServerOptions options)
     , streams_{sessions_, demand_, mailbox_}
     , dispatcher_{context_, mailbox_, outbox_, demand_, streams_, [this] { stop(); }} {
     host_.instance_id = to_text(draw_run_id());
+    host_.clock = &clock_;
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
         return gate_->admit(token, address, access::Gate::Clock::now());
