@@ -2,7 +2,7 @@
 
 #include "client/link/session.h"
 
-#include "proto/wire/delta_codec.h"
+#include "proto/wire/picture_decoder.h"
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
@@ -116,6 +116,18 @@ class Connection::Io {
         return handle;
     }
 
+    void post_view(SubscriptionHandle handle, evod::v1::View view) {
+        asio::post(context_, [this, handle, view = std::move(view)]() mutable {
+            const auto entry = subscriptions_.find(handle);
+            if (entry == subscriptions_.end() || !entry->second.request.has_subscribe_snapshots()) {
+                return;
+            }
+            *entry->second.request.mutable_subscribe_snapshots()->mutable_view() = std::move(view);
+            entry->second.view_changed = true;
+            send_view(entry->second);
+        });
+    }
+
     void post_unsubscribe(SubscriptionHandle handle) {
         asio::post(context_, [this, handle] { remove_subscription(handle); });
     }
@@ -166,6 +178,7 @@ class Connection::Io {
     struct ActiveSubscription {
         evod::v1::Request request;
         bool asked = false;                     // a request for it is pending
+        bool view_changed = false;              // since that, or since the server was told
         std::optional<std::uint32_t> server_id; // in this session, once accepted
     };
 
@@ -218,7 +231,7 @@ class Connection::Io {
         in_flight_count_ = 0;
         late_.clear();
         handle_of_server_id_.clear();
-        views_.clear();
+        sights_.clear();
         for (auto& [handle, subscription] : subscriptions_) {
             subscription.server_id.reset();
         }
@@ -372,6 +385,7 @@ class Connection::Io {
     void ask_for_subscription(SubscriptionHandle handle, Order order) {
         auto& subscription = subscriptions_[handle];
         subscription.asked = true;
+        subscription.view_changed = false;
         const auto answered = [this, handle](Result<evod::v1::Response> response) {
             const auto entry = subscriptions_.find(handle);
             if (entry != subscriptions_.end()) {
@@ -388,10 +402,24 @@ class Connection::Io {
             if (accepted(*response)) {
                 entry->second.server_id = server_id;
                 handle_of_server_id_[server_id] = handle;
+                send_view(entry->second);
             }
             share([&] { answers_[handle] = *std::move(response); });
         };
         add_request(subscription.request, answered, std::chrono::hours{24 * 365}, Loss::Renewed, order);
+    }
+
+    /// Tells the server of a view that is another one than the subscription was asked for with.
+    void send_view(ActiveSubscription& subscription) {
+        if (!subscription.view_changed || !subscription.server_id || !connected()) {
+            return;
+        }
+        subscription.view_changed = false;
+        evod::v1::Request request;
+        request.mutable_set_view()->set_subscription_id(*subscription.server_id);
+        *request.mutable_set_view()->mutable_view() = subscription.request.subscribe_snapshots().view();
+        add_request(
+            std::move(request), [](const auto&) {}, default_timeout, Loss::Forgotten, Order::First);
     }
 
     void remove_subscription(SubscriptionHandle handle) {
@@ -413,7 +441,7 @@ class Connection::Io {
     void unsubscribe_from(std::uint32_t server_id) {
         if (connected() && server_id > 0) {
             handle_of_server_id_.erase(server_id);
-            views_.erase(server_id);
+            sights_.erase(server_id);
             evod::v1::Request request;
             request.mutable_unsubscribe()->set_subscription_id(server_id);
             add_request(
@@ -445,27 +473,27 @@ class Connection::Io {
         if (subscriptions_.at(handle).request.subscribe_snapshots().has_unacknowledged_max()) {
             acknowledge(frame);
         }
-        View& view = views_[server_id][frame.island()];
+        Sight& sight = sights_[server_id][frame.island()];
         const bool chained = frame.codec() == evod::v1::CODEC_DELTA;
-        if (chained && frame.base_sequence() != 0 && view.decoder.needs_keyframe() && view.keyframe_requests > 0) {
+        if (chained && !wire::is_keyframe(frame) && sight.decoder.needs_keyframe() && sight.keyframe_requests > 0) {
             return; // it was on its way before the keyframe that has been asked for
         }
-        auto decoded = view.decoder.decode(std::move(frame));
+        auto decoded = sight.decoder.decode(std::move(frame));
         if (!decoded) {
             // A server whose keyframes are damaged too is not asked again and again.
-            const bool ask = chained && view.keyframe_requests < keyframe_requests_max;
+            const bool ask = chained && sight.keyframe_requests < keyframe_requests_max;
             share([&] {
                 ++status_.damaged_picture_count;
                 status_.last_damage = decoded.error().what;
                 status_.keyframe_request_count += ask ? 1 : 0;
             });
             if (ask) {
-                ++view.keyframe_requests;
+                ++sight.keyframe_requests;
                 request_keyframe(server_id);
             }
             return;
         }
-        view.keyframe_requests = 0;
+        sight.keyframe_requests = 0;
         share([&] {
             const std::uint32_t island = decoded->about.island();
             pictures_[handle][island] = std::make_shared<const wire::Picture>(*std::move(decoded));
@@ -493,7 +521,7 @@ class Connection::Io {
     }
 
     /// What is seen of one island for one subscription of this session.
-    struct View {
+    struct Sight {
         wire::PictureDecoder decoder;
         int keyframe_requests = 0; // since a picture could be decoded
     };
@@ -519,7 +547,7 @@ class Connection::Io {
     std::set<std::uint64_t> late_;             // of those: nobody waits for the answer any more
     std::map<SubscriptionHandle, ActiveSubscription> subscriptions_;
     std::map<std::uint32_t, SubscriptionHandle> handle_of_server_id_;
-    std::map<std::uint32_t, std::map<std::uint32_t, View>> views_; // by server_id and island
+    std::map<std::uint32_t, std::map<std::uint32_t, Sight>> sights_; // by server_id and island
 
     std::thread thread_; // last: it uses all of the above
 };
@@ -583,6 +611,10 @@ SubscriptionHandle Connection::subscribe(evod::v1::SubscribeEvents subscription)
     evod::v1::Request request;
     *request.mutable_subscribe_events() = std::move(subscription);
     return io_->post_subscription(std::move(request));
+}
+
+void Connection::set_view(SubscriptionHandle handle, evod::v1::View view) {
+    io_->post_view(handle, std::move(view));
 }
 
 void Connection::unsubscribe(SubscriptionHandle handle) {

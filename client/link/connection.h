@@ -165,6 +165,9 @@ class Connection {
     /// codec is chosen come in the fewest bytes that the server has, and are acknowledged as they are decoded.
     SubscriptionHandle subscribe(evod::v1::SubscribeSnapshots subscription);
     SubscriptionHandle subscribe(evod::v1::SubscribeEvents subscription);
+    /// Another view for a subscription to pictures that was made with one, now and after each reconnection. A server
+    /// without the feature "view" sends whole pictures as before.
+    void set_view(SubscriptionHandle handle, evod::v1::View view);
     void unsubscribe(SubscriptionHandle handle);
 
     /// The server's last answer to a subscription (it may be a refusal); nullopt: none has come yet in this session.

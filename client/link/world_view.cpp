@@ -40,6 +40,7 @@ void WorldView::add(std::shared_ptr<const wire::Picture> picture, Clock::time_po
     if (latest_ && follows(picture->about, latest_->about)) {
         glide_ = std::min(std::chrono::duration<double>{arrived - latest_arrived_}, glide_max);
         match_ = match(picture->organisms.id, latest_->organisms.id);
+        crate_match_ = match(picture->crates.id, latest_->crates.id);
         previous_ = std::move(latest_);
     } else {
         previous_ = nullptr;
@@ -83,11 +84,10 @@ const WorldView::Positions& WorldView::crates_at(double blend) {
         const auto& to = latest_->crates;
         crates_.x_px = to.x_px;
         crates_.y_px = to.y_px;
-        // Crates have no ids: within a generation they keep their places in the column.
-        if (previous_ && previous_->crates.x_px.size() == to.x_px.size()) {
-            for (std::size_t i = 0; i < to.x_px.size(); ++i) {
-                crates_.x_px[i] = between(previous_->crates.x_px[i], to.x_px[i], blend);
-                crates_.y_px[i] = between(previous_->crates.y_px[i], to.y_px[i], blend);
+        for (std::size_t i = 0; previous_ && i < to.id.size(); ++i) {
+            if (const std::size_t j = crate_match_[i]; j != nobody) {
+                crates_.x_px[i] = between(previous_->crates.x_px[j], to.x_px[i], blend);
+                crates_.y_px[i] = between(previous_->crates.y_px[j], to.y_px[i], blend);
             }
         }
     }

@@ -44,7 +44,7 @@ class WorldView {
     /// How far between previous() and latest() the moment `now` lies, 0 to 1; 1 if the latest stands alone.
     double blend_at(Clock::time_point now) const;
 
-    /// Where the organisms and crates of latest() are drawn at a blend. An organism that previous() does not have
+    /// Where the organisms and crates of latest() are drawn at a blend. One that previous() does not have
     /// stands where latest() shows it. Valid until the next call of this object.
     const Positions& organisms_at(double blend);
     const Positions& crates_at(double blend);
@@ -53,7 +53,8 @@ class WorldView {
     std::shared_ptr<const wire::Picture> latest_, previous_;
     Clock::time_point latest_arrived_{};
     std::chrono::duration<double> glide_{0}; // how long the way from one to the other takes
-    std::vector<std::size_t> match_;         // by index in latest_: index in previous_, or npos
+    // By index in latest_: index in previous_, or npos.
+    std::vector<std::size_t> match_, crate_match_;
     Positions organisms_, crates_;
 };
 

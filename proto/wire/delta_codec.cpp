@@ -1,46 +1,39 @@
 #include "proto/wire/delta_codec.h"
 
+#include "proto/wire/body.h"
 #include "proto/wire/compression.h"
 #include "proto/wire/framing.h"
-#include "proto/wire/little_endian.h"
+#include "proto/wire/steps.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
-#include <optional>
-#include <span>
-#include <string_view>
 #include <utility>
 
 namespace evod::wire {
 
 namespace {
 
-using Column = std::vector<std::uint32_t>; // of numbers with or without a sign; arithmetic is modulo 2^32
-using Numbers = std::span<const std::uint32_t>;
-
 constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // in a section's parts
-constexpr std::uint8_t with_exceptions = 128;                 // in a column's width
-constexpr std::uint64_t exception_bytes = 8;
-constexpr std::uint32_t size_bytes = 2; // of a radius, health, half width or half height
-
-constexpr float steps_per_px = 16;
+constexpr std::uint32_t size_bytes = 2;                       // of a radius, health, half width or half height
 
 /// What entities of a kind have, and what of it can change.
 struct Kind {
     const char* name;
     Entities Scene::*entities;
+    EntitiesView SceneView::*seen;
     Footing::Displacements Footing::*displacements; // of those that move
-    std::uint32_t (evod::v1::SnapshotFrame::*count)() const;
-    bool ids, sizes, health;
+    FootingView::Displacements FootingView::*seen_displacements;
+    bool ids; // on a whole island; in a tile every kind has ids
+    bool sizes, health;
 };
 
 const std::array<Kind, 5> kinds{{
-    {"organisms", &Scene::organisms, &Footing::organisms, &evod::v1::SnapshotFrame::organism_count, true, true, true},
-    {"food", &Scene::food, nullptr, &evod::v1::SnapshotFrame::food_count, true, false, false},
-    {"poison", &Scene::poison, nullptr, &evod::v1::SnapshotFrame::poison_count, true, false, false},
-    {"crates", &Scene::crates, &Footing::crates, &evod::v1::SnapshotFrame::crate_count, false, true, false},
-    {"obstacles", &Scene::obstacles, nullptr, &evod::v1::SnapshotFrame::obstacle_count, false, true, false},
+    {"organisms", &Scene::organisms, &SceneView::organisms, &Footing::organisms, &FootingView::organisms, true, true,
+     true},
+    {"food", &Scene::food, &SceneView::food, nullptr, nullptr, true, false, false},
+    {"poison", &Scene::poison, &SceneView::poison, nullptr, nullptr, true, false, false},
+    {"crates", &Scene::crates, &SceneView::crates, &Footing::crates, &FootingView::crates, false, true, false},
+    {"obstacles", &Scene::obstacles, &SceneView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
 /// How far something moves in `ticks` that moved by `displacement` in base_ticks, if it goes on as it did.
@@ -69,8 +62,12 @@ struct Pairing {
     Column come; // indices in the next picture, rising
 };
 
+bool have_ids(const Kind& kind, bool of_tile) {
+    return kind.ids || of_tile;
+}
+
 template <class Same>
-Pairing pair_by_id(const Entities& base, const Entities& next, const Same& same) {
+Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     Pairing pairing;
     std::uint32_t i = 0, j = 0;
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
@@ -92,16 +89,23 @@ Pairing pair_by_id(const Entities& base, const Entities& next, const Same& same)
     return pairing;
 }
 
-/// An organism stays the same while it has its id and its radius, an item while it lies where it lay. Boxes are the
-/// same where follows() holds.
-Pairing pair(const Kind& kind, const Entities& base, const Entities& next) {
-    if (!kind.ids) {
+/// An organism stays the same while it has its id and its radius, an item while it lies where it lay, a crate while it
+/// has its size. Of a whole island boxes are the same where follows() holds.
+Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
+    if (!have_ids(kind, of_tile)) {
         return {};
     }
+    const auto same_size = [&](auto i, auto j) {
+        return base.width[i] == next.width[j] && (kind.health || base.height[i] == next.height[j]);
+    };
+    const auto same_place = [&](auto i, auto j) { return base.x[i] == next.x[j] && base.y[i] == next.y[j]; };
     if (kind.displacements) {
-        return pair_by_id(base, next, [&](auto i, auto j) { return base.width[i] == next.width[j]; });
+        return pair_by_id(base, next, same_size);
     }
-    return pair_by_id(base, next, [&](auto i, auto j) { return base.x[i] == next.x[j] && base.y[i] == next.y[j]; });
+    if (kind.sizes) {
+        return pair_by_id(base, next, [&](auto i, auto j) { return same_place(i, j) && same_size(i, j); });
+    }
+    return pair_by_id(base, next, same_place);
 }
 
 /// Calls stayed(base index, next index) for those that are in both, in their order.
@@ -130,114 +134,9 @@ Column at(Numbers column, Numbers indices) {
 
 // ---- encoding --------------------------------------------------------------------------------------------------
 
-class BodyWriter {
-  public:
-    template <std::unsigned_integral Number>
-    void number(Number value) {
-        store(value, grow(sizeof value));
-    }
-
-    /// Whole numbers of sizeof(Number) bytes.
-    template <std::unsigned_integral Number>
-    void plain(Numbers values) {
-        char* const to = grow(values.size() * sizeof(Number));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            store(static_cast<Number>(values[i]), to + i * sizeof(Number));
-        }
-    }
-
-    /// The lowest byte of each, then the next of each: those that are all but the same stand together.
-    void planes(Numbers values, std::uint32_t bytes) {
-        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
-            char* const to = grow(values.size());
-            for (std::size_t i = 0; i < values.size(); ++i) {
-                to[i] = static_cast<char>(values[i] >> (8 * plane));
-            }
-        }
-    }
-
-    /// Signed numbers, in the width that takes the fewest bytes.
-    void column(Numbers values) {
-        // How many need more than 0, 1, 2 bytes.
-        std::uint64_t not_zero = 0, above_8_bits = 0, above_16_bits = 0;
-        for (const std::uint32_t value : values) {
-            not_zero += value != 0;
-            above_8_bits += value + 0x80U > 0xffU;
-            above_16_bits += value + 0x8000U > 0xffffU;
-        }
-        struct Form {
-            std::uint64_t width, exceptions;
-            std::uint64_t bytes(std::uint64_t count) const {
-                return count * width + (exceptions > 0 ? 4 + exceptions * exception_bytes : 0);
-            }
-        };
-        const std::array<Form, 4> forms{{{0, not_zero}, {1, above_8_bits}, {2, above_16_bits}, {4, 0}}};
-        const Form form = *std::min_element(forms.begin(), forms.end(), [&](const Form& a, const Form& b) {
-            return a.bytes(values.size()) < b.bytes(values.size());
-        });
-        number(static_cast<std::uint8_t>(form.width | (form.exceptions > 0 ? with_exceptions : 0)));
-        if (form.width == 0) {
-            exceptions(values, form.exceptions, [](std::uint32_t value) { return value != 0; });
-        } else if (form.width == 1) {
-            const auto fits_not = [](std::uint32_t value) { return value + 0x80U > 0xffU; };
-            exceptions(values, form.exceptions, fits_not);
-            fitting<std::uint8_t>(values, fits_not);
-        } else if (form.width == 2) {
-            const auto fits_not = [](std::uint32_t value) { return value + 0x8000U > 0xffffU; };
-            exceptions(values, form.exceptions, fits_not);
-            fitting<std::uint16_t>(values, fits_not);
-        } else {
-            plain<std::uint32_t>(values);
-        }
-    }
-
-    void rising_column(Numbers values) {
-        Column steps(values.size());
-        std::uint32_t before = std::numeric_limits<std::uint32_t>::max(); // -1
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            steps[i] = values[i] - before - 1;
-            before = values[i];
-        }
-        column(steps);
-    }
-
-    std::string take() { return std::move(body_); }
-
-  private:
-    template <class Condition>
-    void exceptions(Numbers values, std::uint64_t count, const Condition& is_exception) {
-        if (count == 0) {
-            return;
-        }
-        number(static_cast<std::uint32_t>(count));
-        Column indices, exceptional;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (is_exception(values[i])) {
-                indices.push_back(static_cast<std::uint32_t>(i));
-                exceptional.push_back(values[i]);
-            }
-        }
-        plain<std::uint32_t>(indices);
-        plain<std::uint32_t>(exceptional);
-    }
-    template <std::unsigned_integral Number, class Condition>
-    void fitting(Numbers values, const Condition& is_exception) {
-        char* const to = grow(values.size() * sizeof(Number));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            store(is_exception(values[i]) ? Number{0} : static_cast<Number>(values[i]), to + i * sizeof(Number));
-        }
-    }
-    char* grow(std::size_t bytes) {
-        body_.resize(body_.size() + bytes);
-        return body_.data() + body_.size() - bytes;
-    }
-
-    std::string body_;
-};
-
 /// gone  indices in the base; come: indices in `entities`; displacements: of `entities`, null: those that come stand.
-void write_parts(BodyWriter& writer, const Kind& kind, const Entities& entities, std::uint32_t position_bytes,
-                 const Pairing& pairing, const Footing::Displacements* displacements) {
+void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
+                 const Pairing& pairing, const FootingView::Displacements* displacements) {
     const Column& come = pairing.come;
     writer.number(
         static_cast<std::uint8_t>((pairing.gone.empty() ? 0 : some_are_gone) | (come.empty() ? 0 : some_have_come)));
@@ -249,7 +148,7 @@ void write_parts(BodyWriter& writer, const Kind& kind, const Entities& entities,
         return;
     }
     writer.number(static_cast<std::uint32_t>(come.size()));
-    if (kind.ids) {
+    if (!entities.id.empty()) {
         writer.rising_column(at(entities.id, come));
     }
     writer.planes(at(entities.x, come), position_bytes);
@@ -266,128 +165,6 @@ void write_parts(BodyWriter& writer, const Kind& kind, const Entities& entities,
 }
 
 // ---- decoding --------------------------------------------------------------------------------------------------
-
-/// Reads what a body should hold. After the first thing that is wrong everything is empty or 0.
-class BodyReader {
-  public:
-    explicit BodyReader(std::string_view body) : rest_{body} {}
-
-    const std::optional<Damage>& damage() const { return damage_; }
-    std::size_t rest_bytes() const { return rest_.size(); }
-
-    void refuse(const std::string& why) {
-        if (!damage_) {
-            damage_ = Damage{"a snapshot's body " + why};
-        }
-    }
-
-    template <std::unsigned_integral Number>
-    Number number() {
-        return take(sizeof(Number)) ? load<Number>(taken_) : Number{0};
-    }
-
-    template <std::unsigned_integral Number>
-    Column plain(std::size_t count) {
-        return numbers<Number>(count, [](Number value) { return std::uint32_t{value}; });
-    }
-
-    Column positions(std::size_t count, std::uint32_t position_bytes) {
-        return position_bytes == 2 ? plain<std::uint16_t>(count) : plain<std::uint32_t>(count);
-    }
-
-    Column planes(std::size_t count, std::uint32_t bytes) {
-        if (!take(count * bytes)) {
-            return {};
-        }
-        Column values(count);
-        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
-            const char* const from = taken_ + plane * count;
-            for (std::size_t i = 0; i < count; ++i) {
-                values[i] |= std::uint32_t{static_cast<unsigned char>(from[i])} << (8 * plane);
-            }
-        }
-        return values;
-    }
-
-    /// The caller sees to it that there is memory for `count` numbers.
-    Column column(std::size_t count) {
-        const auto width = number<std::uint8_t>();
-        Column indices, values;
-        if (width & with_exceptions) {
-            const auto exception_count = number<std::uint32_t>();
-            indices = plain<std::uint32_t>(exception_count);
-            values = plain<std::uint32_t>(exception_count);
-        }
-        Column result;
-        switch (width & ~with_exceptions) {
-        case 0:
-            result.resize(damage_ ? 0 : count);
-            break;
-        case 1:
-            result = numbers<std::uint8_t>(count, [](std::uint8_t value) { return widened(std::int8_t(value)); });
-            break;
-        case 2:
-            result = numbers<std::uint16_t>(count, [](std::uint16_t value) { return widened(std::int16_t(value)); });
-            break;
-        case 4:
-            result = plain<std::uint32_t>(count);
-            break;
-        default:
-            refuse("has a column of width " + std::to_string(width & ~with_exceptions) + ", not 0, 1, 2 or 4");
-        }
-        for (std::size_t i = 0; i < indices.size() && !damage_; ++i) {
-            if (indices[i] >= count) {
-                refuse("has an exception for number " + std::to_string(indices[i]) + " of " + std::to_string(count));
-            } else {
-                result[indices[i]] = values[i];
-            }
-        }
-        return damage_ ? Column{} : result;
-    }
-
-    /// Numbers below `end`.
-    Column rising_column(std::size_t count, std::uint64_t end) {
-        Column steps = column(count);
-        std::uint64_t next = 0;
-        for (std::uint32_t& value : steps) {
-            next += value;
-            if (next >= end) {
-                refuse("has an id or index that is too large");
-                return {};
-            }
-            value = static_cast<std::uint32_t>(next++);
-        }
-        return steps;
-    }
-
-  private:
-    static std::uint32_t widened(std::int32_t value) { return static_cast<std::uint32_t>(value); }
-
-    bool take(std::size_t bytes) {
-        if (damage_ || rest_.size() < bytes) {
-            refuse("ends too early");
-            return false;
-        }
-        taken_ = rest_.data();
-        rest_.remove_prefix(bytes);
-        return true;
-    }
-    template <std::unsigned_integral Number, class Convert>
-    Column numbers(std::size_t count, const Convert& convert) {
-        if (!take(count * sizeof(Number))) {
-            return {};
-        }
-        Column values(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            values[i] = convert(load<Number>(taken_ + i * sizeof(Number)));
-        }
-        return values;
-    }
-
-    std::string_view rest_;
-    const char* taken_ = nullptr;
-    std::optional<Damage> damage_;
-};
 
 /// `column` without what stands at the rising `indices`.
 Column without(Column column, Numbers indices) {
@@ -424,10 +201,10 @@ std::array<Column*, 7> columns_of(Section& section) {
 }
 
 /// Puts `come` among `stayed`, by id or at the end.
-void merge(const Kind& kind, BodyReader& reader, Section& stayed, Section& come) {
+void merge(BodyReader& reader, Section& stayed, Section& come) {
     const std::size_t stayed_count = stayed.entities.x.size(), come_count = come.entities.x.size();
     Column order;
-    if (kind.ids && stayed_count > 0) {
+    if (!come.entities.id.empty() && stayed_count > 0) {
         order.reserve(stayed_count + come_count);
         const Column &a = stayed.entities.id, &b = come.entities.id;
         for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
@@ -452,6 +229,7 @@ void merge(const Kind& kind, BodyReader& reader, Section& stayed, Section& come)
 struct Step {
     std::uint16_t ticks, base_ticks;
     std::uint32_t position_bytes;
+    bool of_tile;
 };
 
 /// base  what the section is told from; count: of the picture.
@@ -482,7 +260,7 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
             reader.refuse("lets more come than there are");
             return {};
         }
-        if (kind.ids) {
+        if (have_ids(kind, step.of_tile)) {
             come.entities.id = reader.rising_column(come_count, std::uint64_t{1} << 32);
         }
         come.entities.x = reader.planes(come_count, step.position_bytes);
@@ -532,60 +310,58 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
         reader.refuse("takes a number out of its column's range");
     }
     if (!reader.damage() && !come.entities.x.empty()) {
-        merge(kind, reader, section, come);
+        merge(reader, section, come);
     }
     return section;
 }
 
-std::vector<float> in_px(const Column& steps) {
-    std::vector<float> values(steps.size());
-    std::transform(steps.begin(), steps.end(), values.begin(),
-                   [](std::uint32_t step) { return static_cast<float>(step) * (1 / steps_per_px); });
-    return values;
+} // namespace
+
+Counts counts_of(const Scene& scene) {
+    Counts counts{};
+    std::transform(kinds.begin(), kinds.end(), counts.begin(),
+                   [&](const Kind& kind) { return static_cast<std::uint32_t>((scene.*kind.entities).x.size()); });
+    return counts;
 }
 
-void draw(const Scene& scene, Picture& picture) {
-    picture.organisms = {scene.organisms.id, in_px(scene.organisms.x), in_px(scene.organisms.y),
-                         in_px(scene.organisms.width), in_px(scene.organisms.height)};
-    picture.food = {scene.food.id, in_px(scene.food.x), in_px(scene.food.y)};
-    picture.poison = {scene.poison.id, in_px(scene.poison.x), in_px(scene.poison.y)};
-    picture.crates = {in_px(scene.crates.x), in_px(scene.crates.y), in_px(scene.crates.width),
-                      in_px(scene.crates.height)};
-    picture.obstacles = {in_px(scene.obstacles.x), in_px(scene.obstacles.y), in_px(scene.obstacles.width),
-                         in_px(scene.obstacles.height)};
-}
+namespace {
 
-/// The longest body that a picture of these counts can have, told from `base`; null: a keyframe.
-std::uint64_t body_bytes_max(const evod::v1::SnapshotFrame& frame, const Scene* base) {
-    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // somewhat more than any can take
-    std::uint64_t bytes = sizeof(std::uint16_t);
-    for (const Kind& kind : kinds) {
-        const std::uint64_t base_count = base ? (base->*kind.entities).x.size() : 0;
-        bytes += section_bytes_max + row_bytes_max * (base_count + (frame.*kind.count)());
-    }
-    return std::min<std::uint64_t>(bytes, *client_limits.stream_bytes_max);
+template <class Value, class Convert>
+Column converted(std::span<const Value> values, const Convert& convert) {
+    Column column(values.size());
+    std::transform(values.begin(), values.end(), column.begin(), convert);
+    return column;
 }
 
 } // namespace
 
-Scene scene_of(const evod::v1::SnapshotFrame& frame) {
-    Scene scene;
-    scene.position_bytes = frame.position_bytes();
-    BodyReader reader{frame.body()};
-    for (const Kind& kind : kinds) {
-        Entities& entities = scene.*kind.entities;
-        const std::size_t count = (frame.*kind.count)();
-        if (kind.ids) {
-            entities.id = reader.plain<std::uint32_t>(count);
-        }
-        entities.x = reader.positions(count, scene.position_bytes);
-        entities.y = reader.positions(count, scene.position_bytes);
-        if (kind.sizes) {
-            entities.width = reader.plain<std::uint16_t>(count);
-            entities.height = reader.plain<std::uint16_t>(count);
-        }
-    }
-    return scene;
+Scene scene_of(const IslandColumns& island) {
+    const std::uint32_t position_bytes = position_bytes_of(island.width_px, island.height_px);
+    const PositionInSteps in_steps{island.position_fraction_bits, position_bytes};
+    const auto boxes = [&](const BoxColumns& of) {
+        return Entities{.id = {},
+                        .x = converted(of.x, in_steps),
+                        .y = converted(of.y, in_steps),
+                        .width = converted(of.half_width_px, size_in_steps),
+                        .height = converted(of.half_height_px, size_in_steps)};
+    };
+    const auto items = [&](const ItemColumns& of) {
+        return Entities{.id = {of.id.begin(), of.id.end()},
+                        .x = converted(of.x, in_steps),
+                        .y = converted(of.y, in_steps),
+                        .width = {},
+                        .height = {}};
+    };
+    return {.position_bytes = position_bytes,
+            .organisms = {.id = {island.organisms.id.begin(), island.organisms.id.end()},
+                          .x = converted(island.organisms.x, in_steps),
+                          .y = converted(island.organisms.y, in_steps),
+                          .width = converted(island.organisms.radius_px, size_in_steps),
+                          .height = converted(island.organisms.health, size_in_steps)},
+            .food = items(island.food),
+            .poison = items(island.poison),
+            .crates = boxes(island.crates),
+            .obstacles = boxes(island.obstacles)};
 }
 
 Footing standing(std::shared_ptr<const Scene> scene) {
@@ -601,63 +377,103 @@ Footing standing(std::shared_ptr<const Scene> scene) {
     return footing;
 }
 
-bool follows(const Scene& next, const Scene& base) {
-    return next.position_bytes == base.position_bytes && next.obstacles == base.obstacles &&
-           next.crates.width == base.crates.width && next.crates.height == base.crates.height;
+SceneView::SceneView(const Scene& scene) : position_bytes{scene.position_bytes}, of_tile{scene.of_tile} {
+    for (const Kind& kind : kinds) {
+        const Entities& entities = scene.*kind.entities;
+        this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height};
+    }
+}
+
+FootingView::FootingView(const Footing& footing)
+    : scene{*footing.scene}
+    , organisms{footing.organisms.x, footing.organisms.y}
+    , crates{footing.crates.x, footing.crates.y}
+    , ticks{footing.ticks} {}
+
+bool follows(const SceneView& next, const SceneView& base) {
+    const auto same = [](Numbers a, Numbers b) { return std::ranges::equal(a, b); };
+    const auto same_sizes = [&](const EntitiesView& a, const EntitiesView& b) {
+        return same(a.width, b.width) && same(a.height, b.height);
+    };
+    return next.position_bytes == base.position_bytes && next.of_tile == base.of_tile &&
+           (next.of_tile || (same_sizes(next.crates, base.crates) && same_sizes(next.obstacles, base.obstacles) &&
+                             same(next.obstacles.x, base.obstacles.x) && same(next.obstacles.y, base.obstacles.y)));
+}
+
+namespace {
+
+/// Where those of a kind that move write how they came to be where they are.
+const MovedOn::Displacements& of_kind(const MovedOn& to, const Kind& kind) {
+    return kind.health ? to.organisms : to.crates;
+}
+
+} // namespace
+
+void move_on(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn& moved) {
+    for (const Kind& kind : kinds) {
+        if (!kind.seen_displacements) {
+            continue;
+        }
+        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const FootingView::Displacements& before = base.*kind.seen_displacements;
+        const MovedOn::Displacements& now = of_kind(moved, kind);
+        each_that_stayed(pair(kind, from, to, next.of_tile), from.x.size(), [&](std::size_t i, std::size_t j) {
+            now.x[j] = ticks > 0 ? to.x[j] - from.x[i] : before.x[i];
+            now.y[j] = ticks > 0 ? to.y[j] - from.y[i] : before.y[i];
+        });
+    }
 }
 
 Footing moved_on(const Footing& base, std::shared_ptr<const Scene> next, std::uint16_t ticks) {
     Footing footing = standing(std::move(next));
     footing.ticks = ticks > 0 ? ticks : base.ticks;
-    for (const Kind& kind : kinds) {
-        if (!kind.displacements) {
-            continue;
-        }
-        const Entities &from = (*base.scene).*kind.entities, &to = (*footing.scene).*kind.entities;
-        const Footing::Displacements& before = base.*kind.displacements;
-        Footing::Displacements& displacements = footing.*kind.displacements;
-        each_that_stayed(pair(kind, from, to), from.x.size(), [&](std::size_t i, std::size_t j) {
-            displacements.x[j] = ticks > 0 ? to.x[j] - from.x[i] : before.x[i];
-            displacements.y[j] = ticks > 0 ? to.y[j] - from.y[i] : before.y[i];
-        });
-    }
+    move_on(base, *footing.scene, ticks,
+            {.organisms = {footing.organisms.x, footing.organisms.y}, .crates = {footing.crates.x, footing.crates.y}});
     return footing;
 }
 
-std::string encode_keyframe(const Footing& footing) {
+std::string encode_keyframe(const FootingView& footing) {
     BodyWriter writer;
     writer.number(footing.ticks);
     for (const Kind& kind : kinds) {
-        const Entities& entities = (*footing.scene).*kind.entities;
+        const EntitiesView& entities = footing.scene.*kind.seen;
         Pairing everyone;
         everyone.come.resize(entities.x.size());
         std::iota(everyone.come.begin(), everyone.come.end(), 0U);
-        write_parts(writer, kind, entities, footing.scene->position_bytes, everyone,
-                    kind.displacements ? &(footing.*kind.displacements) : nullptr);
+        write_parts(writer, kind, entities, footing.scene.position_bytes, everyone,
+                    kind.seen_displacements ? &(footing.*kind.seen_displacements) : nullptr);
     }
     return writer.take();
 }
 
-std::string encode_delta(const Footing& base, const Scene& next, std::uint16_t ticks) {
+std::string encode_delta(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn* moved) {
     BodyWriter writer;
     writer.number(ticks);
     const Foretold foretold{ticks, base.ticks};
     for (const Kind& kind : kinds) {
-        const Entities &from = (*base.scene).*kind.entities, &to = next.*kind.entities;
-        const Pairing pairing = pair(kind, from, to);
+        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const Pairing pairing = pair(kind, from, to, next.of_tile);
         write_parts(writer, kind, to, next.position_bytes, pairing, nullptr);
         const std::size_t stayed_count = from.x.size() - pairing.gone.size();
-        if (stayed_count == 0 || !kind.displacements) {
+        if (stayed_count == 0 || !kind.seen_displacements) {
             continue;
         }
-        Column x(stayed_count), y(stayed_count), health(kind.health ? stayed_count : 0);
-        const Footing::Displacements& displacements = base.*kind.displacements;
+        Column columns((kind.health ? 3 : 2) * stayed_count);
+        const std::span x{columns.data(), stayed_count}, y{x.data() + stayed_count, stayed_count};
+        const std::span health{y.data() + stayed_count, kind.health ? stayed_count : 0};
+        const FootingView::Displacements& displacements = base.*kind.seen_displacements;
+        const MovedOn::Displacements* const now = moved ? &of_kind(*moved, kind) : nullptr;
         std::size_t k = 0;
         each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j) {
-            x[k] = to.x[j] - from.x[i] - foretold(displacements.x[i]);
-            y[k] = to.y[j] - from.y[i] - foretold(displacements.y[i]);
+            const std::uint32_t way_x = to.x[j] - from.x[i], way_y = to.y[j] - from.y[i];
+            x[k] = way_x - foretold(displacements.x[i]);
+            y[k] = way_y - foretold(displacements.y[i]);
             if (kind.health) {
                 health[k] = to.height[j] - from.height[i];
+            }
+            if (now) {
+                now->x[j] = ticks > 0 ? way_x : displacements.x[i];
+                now->y[j] = ticks > 0 ? way_y : displacements.y[i];
             }
             ++k;
         });
@@ -670,17 +486,73 @@ std::string encode_delta(const Footing& base, const Scene& next, std::uint16_t t
     return writer.take();
 }
 
-std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body) {
-    std::array<char, 2 * 8 + 6 * 4> about;
-    store(std::uint64_t{frame.sequence()}, &about[0]);
-    store(std::uint64_t{frame.base_sequence()}, &about[8]);
-    std::size_t to = 16;
-    for (const Kind& kind : kinds) {
-        store(std::uint32_t{(frame.*kind.count)()}, &about[to]);
-        to += 4;
+Result<Footing> decode_body(std::string_view body, const BodyShape& shape, const Footing* base) {
+    if (base && base->scene->position_bytes != shape.position_bytes) {
+        return Damage{"a snapshot's position_bytes differ from those of its base"};
     }
-    store(std::uint32_t{frame.position_bytes()}, &about[to]);
-    return crc32(body, crc32({about.data(), about.size()}));
+    BodyReader reader{body};
+    const auto ticks = reader.number<std::uint16_t>();
+    const Step step{.ticks = ticks,
+                    .base_ticks = base ? base->ticks : std::uint16_t{0},
+                    .position_bytes = shape.position_bytes,
+                    .of_tile = shape.of_tile};
+    auto scene = std::make_shared<Scene>();
+    scene->position_bytes = shape.position_bytes;
+    scene->of_tile = shape.of_tile;
+    Footing footing;
+    footing.ticks = !base || ticks > 0 ? ticks : base->ticks;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const Kind& kind = kinds[k];
+        Section from;
+        if (base) {
+            from.entities = (*base->scene).*kind.entities;
+            if (kind.displacements) {
+                from.displacements = base->*kind.displacements;
+            }
+        }
+        Section section = read_section(kind, reader, std::move(from), shape.counts[k], step);
+        (*scene).*kind.entities = std::move(section.entities);
+        if (kind.displacements) {
+            footing.*kind.displacements = std::move(section.displacements);
+        }
+    }
+    if (reader.rest_bytes() > 0) {
+        reader.refuse("has bytes at its end that mean nothing");
+    }
+    if (reader.damage()) {
+        return *reader.damage();
+    }
+    footing.scene = std::move(scene);
+    return footing;
+}
+
+std::uint64_t body_bytes_max(const Counts& counts, const Scene* base) {
+    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // somewhat more than any can take
+    const Counts base_counts = base ? counts_of(*base) : Counts{};
+    std::uint64_t bytes = sizeof(std::uint16_t);
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        bytes += section_bytes_max + row_bytes_max * (std::uint64_t{base_counts[k]} + counts[k]);
+    }
+    return std::min<std::uint64_t>(bytes, *client_limits.stream_bytes_max);
+}
+
+std::uint32_t checksum_of(const Told& told, std::string_view body, std::uint32_t before) {
+    std::array<char, 2 * 8 + 6 * 4> about;
+    store(told.sequence, &about[0]);
+    store(told.base_sequence, &about[8]);
+    for (std::size_t k = 0; k < told.counts.size(); ++k) {
+        store(told.counts[k], &about[16 + 4 * k]);
+    }
+    store(told.position_bytes, &about[36]);
+    return crc32(body, crc32({about.data(), about.size()}, before));
+}
+
+std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body) {
+    return checksum_of({.sequence = frame.sequence(),
+                        .base_sequence = frame.base_sequence(),
+                        .counts = counts_of(frame),
+                        .position_bytes = frame.position_bytes()},
+                       body);
 }
 
 void leave_out_unchanging(evod::v1::SnapshotFrame& frame) {
@@ -695,95 +567,6 @@ void leave_out_unchanging(evod::v1::SnapshotFrame& frame) {
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b) {
     return a.world() == b.world() && a.run_id() == b.run_id() && a.island_count() == b.island_count() &&
            a.width_px() == b.width_px() && a.height_px() == b.height_px() && a.item_radius_px() == b.item_radius_px();
-}
-
-Result<Picture> PictureDecoder::decode(evod::v1::SnapshotFrame frame) {
-    if (frame.codec() != evod::v1::CODEC_DELTA) {
-        return wire::decode(std::move(frame));
-    }
-    auto picture = decode_delta(std::move(frame));
-    if (!picture) {
-        base_.reset();
-    }
-    return picture;
-}
-
-Result<Picture> PictureDecoder::decode_delta(evod::v1::SnapshotFrame frame) {
-    const bool keyframe = frame.base_sequence() == 0;
-    if (!keyframe && !base_) {
-        return Damage{"a snapshot is told from one that is not known here: a keyframe is needed"};
-    }
-    if (!keyframe && frame.base_sequence() != base_->about.sequence()) {
-        return Damage{"a snapshot's base_sequence is " + std::to_string(frame.base_sequence()) +
-                      ", not the last one, " + std::to_string(base_->about.sequence())};
-    }
-    if (!keyframe) {
-        frame.set_world(base_->about.world());
-        frame.set_run_id(base_->about.run_id());
-        frame.set_island_count(base_->about.island_count());
-        frame.set_width_px(base_->about.width_px());
-        frame.set_height_px(base_->about.height_px());
-        frame.set_item_radius_px(base_->about.item_radius_px());
-    }
-    if (auto damage = damage_of_fields(frame)) {
-        return *std::move(damage);
-    }
-    const Scene* const base = keyframe ? nullptr : base_->footing.scene.get();
-    if (base && base->position_bytes != frame.position_bytes()) {
-        return Damage{"a snapshot's position_bytes differ from those of its base"};
-    }
-    std::string body = std::move(*frame.mutable_body());
-    frame.clear_body();
-    if (frame.compression() == evod::v1::COMPRESSION_ZSTD) {
-        auto content = decompress(body, body_bytes_max(frame, base));
-        if (!content) {
-            return content.error();
-        }
-        body = *std::move(content);
-    } else if (frame.compression() != evod::v1::COMPRESSION_NONE &&
-               frame.compression() != evod::v1::COMPRESSION_UNSPECIFIED) {
-        return Damage{"a snapshot's compression is " + std::to_string(frame.compression()) +
-                      ", not one that is known here"};
-    }
-    if (checksum_of(frame, body) != frame.checksum()) {
-        return Damage{"a snapshot's checksum is not that of its body"};
-    }
-
-    BodyReader reader{body};
-    const auto ticks = reader.number<std::uint16_t>();
-    const Step step{.ticks = ticks,
-                    .base_ticks = keyframe ? std::uint16_t{0} : base_->footing.ticks,
-                    .position_bytes = frame.position_bytes()};
-    auto scene = std::make_shared<Scene>();
-    scene->position_bytes = frame.position_bytes();
-    Footing footing;
-    footing.ticks = keyframe || ticks > 0 ? ticks : base_->footing.ticks;
-    for (const Kind& kind : kinds) {
-        Section from;
-        if (base) {
-            from.entities = base->*kind.entities;
-            if (kind.displacements) {
-                from.displacements = base_->footing.*kind.displacements;
-            }
-        }
-        Section section = read_section(kind, reader, std::move(from), (frame.*kind.count)(), step);
-        (*scene).*kind.entities = std::move(section.entities);
-        if (kind.displacements) {
-            footing.*kind.displacements = std::move(section.displacements);
-        }
-    }
-    if (reader.rest_bytes() > 0) {
-        reader.refuse("has bytes at its end that mean nothing");
-    }
-    if (reader.damage()) {
-        return *reader.damage();
-    }
-    Picture picture;
-    draw(*scene, picture);
-    footing.scene = std::move(scene);
-    base_ = Base{.footing = std::move(footing), .about = frame};
-    picture.about = std::move(frame);
-    return picture;
 }
 
 } // namespace evod::wire

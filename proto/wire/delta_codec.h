@@ -8,7 +8,7 @@
 // The encoder is handed pictures that are right; the decoder trusts nothing: its memory follows the bytes received and
 // the counts checked against them, and after damage it waits for a keyframe.
 //
-// Threads      a Scene and a Footing are immutable once made, and shared; a PictureDecoder is used by one thread.
+// Threads      a Scene and a Footing are immutable once made, and shared.
 // Determinism  whole numbers alone: equal pictures are equal bytes on every machine.
 #pragma once
 
@@ -19,30 +19,45 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evod::wire {
 
-/// Entities of one kind, by rising id or, of boxes, in their order. Numbers are those of CODEC_COLUMNS: 1/16 px, 1/16
-/// of health. All columns that a kind has are of one length; the others are empty.
+/// Entities of one kind, by rising id or, of an island's boxes, in their order. Numbers are those of CODEC_COLUMNS:
+/// 1/16 px, 1/16 of health. All columns that a kind has are of one length; the others are empty.
 struct Entities {
-    std::vector<std::uint32_t> id; // organisms, food, poison
+    std::vector<std::uint32_t> id; // organisms, food, poison; in a tile, boxes too: the index among the island's
     std::vector<std::uint32_t> x, y;
     std::vector<std::uint32_t> width;  // organisms: radius; boxes: half width
     std::vector<std::uint32_t> height; // organisms: health; boxes: half height
     friend bool operator==(const Entities&, const Entities&) = default;
 };
 
-/// The entities of one picture.
+/// The entities of one picture, or of one tile of it.
 struct Scene {
     std::uint32_t position_bytes = 2; // 2 or 4
-    Entities organisms, food, poison, crates, obstacles;
+    bool of_tile = false;             // boxes have ids, for they come and go
+    Entities organisms{}, food{}, poison{}, crates{}, obstacles{};
     friend bool operator==(const Scene&, const Scene&) = default;
 };
 
-/// frame  as encode() leaves it.
-Scene scene_of(const evod::v1::SnapshotFrame& frame);
+/// Of organisms, food, poison, crates, obstacles: the order of everything that is told.
+using Counts = std::array<std::uint32_t, 5>;
+constexpr std::array<Entities Scene::*, 5> scene_parts{&Scene::organisms, &Scene::food, &Scene::poison, &Scene::crates,
+                                                       &Scene::obstacles};
+Counts counts_of(const Scene& scene);
+/// Message  SnapshotFrame or TilePicture.
+template <class Message>
+Counts counts_of(const Message& message) {
+    return {message.organism_count(), message.food_count(), message.poison_count(), message.crate_count(),
+            message.obstacle_count()};
+}
+
+/// The same numbers as encode() tells.
+Scene scene_of(const IslandColumns& columns);
 
 /// What the next picture of an island is foretold from.
 struct Footing {
@@ -55,24 +70,80 @@ struct Footing {
     std::uint16_t ticks = 0;         // that it took
 };
 
+/// Scenes and footings wherever they lie: those above, or a tile's part of longer columns.
+struct EntitiesView {
+    std::span<const std::uint32_t> id, x, y, width, height;
+};
+struct SceneView {
+    SceneView() = default;
+    SceneView(const Scene& scene);
+    std::uint32_t position_bytes = 2;
+    bool of_tile = false;
+    EntitiesView organisms, food, poison, crates, obstacles;
+};
+struct FootingView {
+    FootingView() = default;
+    FootingView(const Footing& footing);
+    SceneView scene;
+    struct Displacements {
+        std::span<const std::uint32_t> x, y;
+    };
+    Displacements organisms, crates;
+    std::uint16_t ticks = 0;
+};
+
 /// Nothing has moved yet.
 Footing standing(std::shared_ptr<const Scene> scene);
 
 /// Whether `next` can be told as a delta from `base`: their boxes are the same but for the places of crates.
-bool follows(const Scene& next, const Scene& base);
+bool follows(const SceneView& next, const SceneView& base);
 
 /// Where an island stands `ticks` after `base`. Both ends compute it.
 ///
 /// next  follows() base.
 Footing moved_on(const Footing& base, std::shared_ptr<const Scene> next, std::uint16_t ticks);
 
+/// The same into columns that have a number, 0, for each that moves.
+struct MovedOn {
+    struct Displacements {
+        std::span<std::uint32_t> x, y;
+    };
+    Displacements organisms, crates;
+};
+void move_on(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn& to);
+
 /// The body of a keyframe.
-std::string encode_keyframe(const Footing& footing);
+std::string encode_keyframe(const FootingView& footing);
 
 /// The body of a delta: `next` is `ticks` after `base`, and follows() it.
-std::string encode_delta(const Footing& base, const Scene& next, std::uint16_t ticks);
+///
+/// to  where move_on() would write; null: nowhere.
+std::string encode_delta(const FootingView& base, const SceneView& next, std::uint16_t ticks,
+                         const MovedOn* to = nullptr);
 
-/// SnapshotFrame.checksum: of its sequence numbers, counts and position_bytes, and of the body before compression.
+/// What the fields beside a body say of it.
+struct BodyShape {
+    Counts counts{};
+    std::uint32_t position_bytes = 2;
+    bool of_tile = false;
+};
+
+/// Where an island stands after what a body tells, which may be anything. base: what it is told from; null: a keyframe.
+Result<Footing> decode_body(std::string_view body, const BodyShape& shape, const Footing* base);
+
+/// The longest body that can be told with these counts. base: null of a keyframe.
+std::uint64_t body_bytes_max(const Counts& counts, const Scene* base);
+
+/// What a checksum is over besides a body.
+struct Told {
+    std::uint64_t sequence = 0, base_sequence = 0;
+    Counts counts{};
+    std::uint32_t position_bytes = 2;
+};
+/// body    before it is compressed.
+/// before  checksum of what comes before all this.
+std::uint32_t checksum_of(const Told& told, std::string_view body, std::uint32_t before = 0);
+/// SnapshotFrame.checksum.
 std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body);
 
 /// Leaves out what a delta does not tell.
@@ -80,27 +151,5 @@ void leave_out_unchanging(evod::v1::SnapshotFrame& frame);
 
 /// Whether what deltas leave out is the same in both.
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b);
-
-/// The pictures of one island of one subscription, one after another, by any codec.
-class PictureDecoder {
-  public:
-    /// Damage says what is wrong; then every delta is refused up to the next keyframe.
-    Result<Picture> decode(evod::v1::SnapshotFrame frame);
-
-    /// Deltas are of no use now: there has been no keyframe yet, or damage after it.
-    bool needs_keyframe() const { return !base_; }
-
-    /// What the last picture consisted of; null before a keyframe.
-    const Scene* scene() const { return base_ ? base_->footing.scene.get() : nullptr; }
-
-  private:
-    struct Base {
-        Footing footing;
-        evod::v1::SnapshotFrame about; // what deltas leave out, and sequence
-    };
-    Result<Picture> decode_delta(evod::v1::SnapshotFrame frame);
-
-    std::optional<Base> base_;
-};
 
 } // namespace evod::wire

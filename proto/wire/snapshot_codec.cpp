@@ -1,11 +1,12 @@
 #include "proto/wire/snapshot_codec.h"
 
 #include "proto/wire/little_endian.h"
+#include "proto/wire/steps.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -14,9 +15,6 @@
 namespace evod::wire {
 
 namespace {
-
-constexpr unsigned steps_per_px_log2 = 4;
-constexpr float steps_per_px = 1 << steps_per_px_log2;
 
 /// Bytes of one entity's row over all of its columns.
 constexpr std::uint64_t organism_bytes(std::uint64_t position) {
@@ -27,6 +25,14 @@ constexpr std::uint64_t item_bytes(std::uint64_t position) {
 }
 constexpr std::uint64_t box_bytes(std::uint64_t position) {
     return 2 * position + 2 + 2;
+}
+
+/// Length of the body that these counts make.
+std::uint64_t body_bytes(const evod::v1::SnapshotFrame& frame) {
+    const std::uint64_t position = frame.position_bytes();
+    return frame.organism_count() * organism_bytes(position) +
+           (std::uint64_t{frame.food_count()} + frame.poison_count()) * item_bytes(position) +
+           (std::uint64_t{frame.crate_count()} + frame.obstacle_count()) * box_bytes(position);
 }
 
 // ---- encoding --------------------------------------------------------------------------------------------------
@@ -41,24 +47,10 @@ class Writer {
     }
     template <std::unsigned_integral Step>
     void positions(std::span<const std::int32_t> column, unsigned fraction_bits) {
-        const unsigned shift = fraction_bits - steps_per_px_log2;
-        const std::int32_t half = shift == 0 ? 0 : std::int32_t{1} << (shift - 1);
-        constexpr auto top = static_cast<std::int32_t>(
-            std::min<std::uint64_t>(std::numeric_limits<Step>::max(), std::numeric_limits<std::int32_t>::max()));
-        const std::int32_t largest = std::numeric_limits<std::int32_t>::max() - half; // what still has room to round up
-        each(column, [=](std::int32_t position) {
-            return static_cast<Step>(std::clamp((std::min(position, largest) + half) >> shift, std::int32_t{0}, top));
-        });
+        const PositionInSteps in_steps{fraction_bits, sizeof(Step)};
+        each(column, [=](std::int32_t position) { return static_cast<Step>(in_steps(position)); });
     }
-    void sizes(std::span<const float> column) {
-        each(column, [](float size) {
-            // The comparisons are written so that a NaN is 0.
-            const float steps = size * steps_per_px + 0.5F;
-            const float not_negative = steps > 0.F ? steps : 0.F;
-            return static_cast<std::uint16_t>(
-                static_cast<std::int32_t>(not_negative < 65535.F ? not_negative : 65535.F));
-        });
-    }
+    void sizes(std::span<const float> column) { each(column, size_in_steps); }
 
   private:
     template <class Value, class Convert>
@@ -143,10 +135,7 @@ Damage wrong(const char* field, const std::string& got, const char* allowed) {
 
 /// What is wrong with the length of the body, if anything.
 std::optional<Damage> damage_of_length(const evod::v1::SnapshotFrame& frame) {
-    const std::uint64_t position = frame.position_bytes();
-    const std::uint64_t expected = frame.organism_count() * organism_bytes(position) +
-                                   (std::uint64_t{frame.food_count()} + frame.poison_count()) * item_bytes(position) +
-                                   (std::uint64_t{frame.crate_count()} + frame.obstacle_count()) * box_bytes(position);
+    const std::uint64_t expected = body_bytes(frame);
     if (frame.body().size() != expected) {
         return wrong("body", std::to_string(frame.body().size()) + " bytes long",
                      (std::to_string(expected) + " as its counts say").c_str());
@@ -160,7 +149,7 @@ bool rise(const std::vector<std::uint32_t>& ids) {
 
 } // namespace
 
-void encode(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
+void describe(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
     require_same_length("organisms", island.organisms.id, island.organisms.x, island.organisms.y,
                         island.organisms.radius_px, island.organisms.health);
     require_same_length("food", island.food.id, island.food.x, island.food.y);
@@ -169,25 +158,24 @@ void encode(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
                         island.crates.half_height_px);
     require_same_length("obstacles", island.obstacles.x, island.obstacles.y, island.obstacles.half_width_px,
                         island.obstacles.half_height_px);
-    const bool narrow = std::max(island.width_px, island.height_px) * steps_per_px <= 65535.0;
-    const std::uint64_t position = narrow ? 2 : 4;
     frame.set_width_px(island.width_px);
     frame.set_height_px(island.height_px);
-    frame.set_codec(evod::v1::CODEC_COLUMNS);
     frame.set_organism_count(static_cast<std::uint32_t>(island.organisms.id.size()));
     frame.set_food_count(static_cast<std::uint32_t>(island.food.id.size()));
     frame.set_poison_count(static_cast<std::uint32_t>(island.poison.id.size()));
     frame.set_crate_count(static_cast<std::uint32_t>(island.crates.x.size()));
     frame.set_obstacle_count(static_cast<std::uint32_t>(island.obstacles.x.size()));
-    frame.set_position_bytes(static_cast<std::uint32_t>(position));
-    std::string& body = *frame.mutable_body();
-    body.resize(island.organisms.id.size() * organism_bytes(position) +
-                (island.food.id.size() + island.poison.id.size()) * item_bytes(position) +
-                (island.crates.x.size() + island.obstacles.x.size()) * box_bytes(position));
-    if (narrow) {
-        write_columns<std::uint16_t>(island, body.data());
+    frame.set_position_bytes(position_bytes_of(island.width_px, island.height_px));
+}
+
+void encode(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
+    describe(island, frame);
+    frame.set_codec(evod::v1::CODEC_COLUMNS);
+    frame.mutable_body()->resize(body_bytes(frame));
+    if (frame.position_bytes() == 2) {
+        write_columns<std::uint16_t>(island, frame.mutable_body()->data());
     } else {
-        write_columns<std::uint32_t>(island, body.data());
+        write_columns<std::uint32_t>(island, frame.mutable_body()->data());
     }
 }
 
@@ -248,6 +236,8 @@ Result<Picture> decode(evod::v1::SnapshotFrame frame) {
         boxes->y_px = reader.positions(count);
         boxes->half_width_px = reader.sizes(count);
         boxes->half_height_px = reader.sizes(count);
+        boxes->id.resize(count);
+        std::iota(boxes->id.begin(), boxes->id.end(), 0U);
     }
     for (const auto& [what, ids] : {std::pair{"organisms", &picture.organisms.id}, std::pair{"food", &picture.food.id},
                                     std::pair{"poison", &picture.poison.id}}) {

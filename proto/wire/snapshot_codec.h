@@ -43,10 +43,14 @@ struct IslandColumns {
     BoxColumns crates{}, obstacles{};
 };
 
-/// Sets width_px, height_px, codec, the counts, position_bytes and body of `frame`, and leaves its other fields alone.
+/// Sets width_px, height_px, the counts and position_bytes of `frame`, and leaves its other fields alone. Throws
+/// std::invalid_argument where the columns of one struct differ in length.
+void describe(const IslandColumns& columns, evod::v1::SnapshotFrame& frame);
+
+/// Sets codec and body of `frame` too.
 ///
 /// Positions are rounded to the nearest 1/16 px (a half goes right or down); what is beyond the column's range stands
-/// at its end. Throws std::invalid_argument where the columns of one struct differ in length.
+/// at its end.
 void encode(const IslandColumns& columns, evod::v1::SnapshotFrame& frame);
 
 struct OrganismPicture {
@@ -59,14 +63,39 @@ struct ItemPicture {
 };
 struct BoxPicture {
     std::vector<float> x_px, y_px, half_width_px, half_height_px;
+    std::vector<std::uint32_t> id{}; // rising: the index among the island's
+};
+
+/// What a tile of DETAIL_DOTS shows: where its entities are, to 1/256 of its side.
+struct DotPicture {
+    struct Places {
+        std::vector<float> x_px, y_px;
+    };
+    Places organisms, food, poison, crates, obstacles;
+};
+
+/// What a tile of DETAIL_DENSITY shows: how many there are in each of cells_per_side squared squares, row after row.
+struct DensityPicture {
+    std::uint32_t cells_per_side = 1;
+    std::vector<std::uint32_t> organisms, food, poison;
+};
+
+/// A tile that is seen.
+struct TilePicture {
+    std::uint32_t tile = 0; // index
+    evod::v1::Detail detail = evod::v1::DETAIL_FULL;
+    double left_px = 0, top_px = 0; // its corner; its side is SnapshotFrame.tile_px
+    DotPicture dots;                // DETAIL_DOTS
+    DensityPicture density;         // DETAIL_DENSITY
 };
 
 /// One picture of one island, ready to draw. All columns of a struct have the same length, and all numbers are finite.
 struct Picture {
-    evod::v1::SnapshotFrame about; // every field of the frame but its body: tick, walls, statistics, …
-    OrganismPicture organisms;
+    evod::v1::SnapshotFrame about; // every field of the frame but its body and tiles: tick, walls, statistics, …
+    OrganismPicture organisms;     // with tiles, of all those of DETAIL_FULL together; so too the others
     ItemPicture food, poison;
     BoxPicture crates, obstacles;
+    std::vector<TilePicture> tiles; // with a View: those that are seen, by rising index
 };
 
 /// What is wrong with the fields around the body, if anything; whichever the codec is.

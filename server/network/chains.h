@@ -16,34 +16,45 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace evod::network {
+
+/// Everybody takes a keyframe at least so often, if there are pictures.
+constexpr std::chrono::seconds keyframe_interval{2};
+
+/// A frame but for what is in it; immutable.
+using AboutPtr = std::shared_ptr<const v1::SnapshotFrame>;
+
+/// The ticks from one picture to the next; nullopt: another life, time turned back, or too much of it: nothing can be
+/// foretold.
+std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after);
 
 /// One picture of a chain, in every form in which it is sent: fields 1 to 49 of a SnapshotFrame.
 class ChainPicture {
   public:
-    /// about       all of the frame but its body; what the codec says of it is set here.
+    /// about       what the codec says of it is set here.
     /// scene       its entities.
     /// compressor  there as long as forms of the picture are asked for.
-    ChainPicture(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
+    ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
 
     /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all.
-    std::shared_ptr<ChainPicture> next(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene,
-                                       bool with_delta) const;
+    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const wire::Scene> scene, bool with_delta) const;
 
-    std::uint64_t sequence() const { return about_.sequence(); }
+    std::uint64_t sequence() const { return about_->sequence(); }
     /// Who was sent that picture last can take the delta; 0: there is none.
     std::uint64_t base_sequence() const { return base_sequence_; }
 
-    const SharedBytes& keyframe(v1::Compression compression);
-    const SharedBytes& delta(v1::Compression compression);
+    const SharedBytes& keyframe(v1::Compression compression) { return form(keyframe_, compression, false); }
+    const SharedBytes& delta(v1::Compression compression) { return form(delta_, compression, true); }
 
   private:
     using Forms = std::array<SharedBytes, 2>; // as it is, compressed
     const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
-    std::string body(bool as_delta) const;
 
-    v1::SnapshotFrame about_;
+    AboutPtr about_;
     std::shared_ptr<const wire::Footing> footing_, base_; // base_ is null where there is no delta
     std::uint64_t base_sequence_ = 0;
     std::uint16_t ticks_ = 0; // since the base
@@ -56,12 +67,9 @@ using ChainPicturePtr = std::shared_ptr<ChainPicture>;
 /// The pictures of one island at one rate.
 class Chain {
   public:
-    /// Everybody takes a keyframe at least so often, if there are pictures.
-    static constexpr std::chrono::seconds keyframe_interval{2};
-
     /// between  how long it usually is to the next picture.
-    ChainPicturePtr add(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor,
-                        runtime::Clock::time_point now, runtime::Clock::duration between);
+    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor,
+                               runtime::Clock::time_point now, runtime::Clock::duration between);
 
     /// Null before the first.
     const ChainPicturePtr& latest() const { return latest_; }
@@ -70,5 +78,20 @@ class Chain {
     ChainPicturePtr latest_;
     runtime::Clock::time_point keyframe_made_; // the last that was one for all
 };
+
+/// Sets body and compression: compressed, if that is asked for and makes it smaller.
+///
+/// message  a SnapshotFrame or a TilePicture.
+template <class Message>
+void set_body(Message& message, std::string body, v1::Compression compression, wire::Compressor& compressor) {
+    if (compression == v1::COMPRESSION_ZSTD) {
+        std::string shorter = compressor.compress(body);
+        if (shorter.size() < body.size()) {
+            body = std::move(shorter);
+            message.set_compression(v1::COMPRESSION_ZSTD);
+        }
+    }
+    message.set_body(std::move(body));
+}
 
 } // namespace evod::network

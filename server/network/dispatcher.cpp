@@ -440,6 +440,20 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     }
     if (auto faults = protocol::faults_of(request); !faults.empty())
         return refuse_it(protocol::invalid(std::move(faults)));
+    if (request.has_set_view()) {
+        const std::uint32_t subscription_id = request.set_view().subscription_id();
+        const auto found = session.snapshots.find(subscription_id);
+        if (found == session.snapshots.end())
+            return refuse_it(no_such_subscription("set_view.subscription_id", subscription_id));
+        if (!found->second.view)
+            return refuse_it(refusal(base::RefusalCode::FailedPrecondition,
+                                     "the subscription has no view: its pictures are not made of tiles"));
+        v1::Response response = response_to(id);
+        response.mutable_subscription()->set_subscription_id(subscription_id);
+        response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
+        session.answer(encode_response(std::move(response))); // before the first picture of what is seen now
+        return streams_.set_view(session, subscription_id, request.set_view().view());
+    }
 
     // The world is looked up by the simulation; the subscription begins back here.
     const auto full = [this](const Session& s) {
@@ -472,6 +486,8 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 wanted->compression = subscribe.compression();
                 if (subscribe.has_unacknowledged_max())
                     wanted->unacknowledged_max = subscribe.unacknowledged_max();
+                if (subscribe.has_view())
+                    wanted->set_view(subscribe.view());
             },
             [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
                 if (response.status().code() != v1::CODE_OK)

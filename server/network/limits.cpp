@@ -1,6 +1,7 @@
 #include "server/network/limits.h"
 
 #include "proto/wire/framing.h"
+#include "proto/wire/tiles.h"
 #include "server/base/assert.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
@@ -49,6 +50,7 @@ constexpr LimitRow table[] = {
      "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::SnapshotRate, "snapshot_rate_hz_max", static_cast<std::uint64_t>(snapshot_rate_hz_max),
      "pictures a second of a subscription", "lowered to it, and the answer says so"},
+    {Limit::Tiles, "tiles_max", wire::tiles_max, "tiles of an island", "tiles are larger"},
     {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds", "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::Pasts, "pasts_max", runtime::TimeTravel::pasts_max, "worlds of a session that show the past",
      "refused, `RESOURCE_EXHAUSTED`; so too beyond 64 of all sessions"},

@@ -54,6 +54,7 @@ enum class Limit : std::uint8_t {
     MailboxCommands,
     Subscriptions,
     SnapshotRate,
+    Tiles,
     Worlds,
     Pasts,
     Lease,

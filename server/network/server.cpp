@@ -73,6 +73,7 @@ Server::Server(ServerOptions options)
                   [this] { return metrics(); }} {
     host_.limits = limits_message(options_.session_bounds);
     host_.instance_id = to_text(draw_run_id());
+    host_.clock = &clock_;
     host_.handle = [this](Session& session, v1::Request request) { dispatcher_.handle(session, std::move(request)); };
     host_.admit = [this](const std::string& token, const std::string& address) {
         return gate_->admit(token, address, access::Gate::Clock::now());

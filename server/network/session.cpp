@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ namespace {
 constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::size_t batch_frames_max = 64;
+constexpr std::size_t gathered_parts_max = 12; // Asio hands 16 buffers at once to the system; more are put together
 
 tcp::endpoint peer_of(const tcp::socket& socket) {
     boost::system::error_code ignored; // one who has gone already is at no address
@@ -80,6 +82,19 @@ SharedBytes encode_event(v1::Event event) {
     v1::ServerMessage message;
     *message.mutable_event() = std::move(event);
     return encode_control(message);
+}
+
+void SnapshotSubscription::set_view(const v1::View& wanted) {
+    view = wanted;
+    if (view->detail() == v1::DETAIL_UNSPECIFIED)
+        view->set_detail(v1::DETAIL_FULL);
+    const auto bytes_per_s = static_cast<double>(view->bytes_per_s_max());
+    if (!view->has_bytes_per_s_max())
+        budget.reset();
+    else if (budget)
+        budget->change(bytes_per_s, view->detail());
+    else
+        budget.emplace(bytes_per_s, view->detail());
 }
 
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
@@ -302,7 +317,7 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_protocol_version(wire::protocol_version);
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
-    for (const char* feature : {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements"})
+    for (const char* feature : {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view"})
         welcome.add_features(feature);
     *welcome.mutable_limits() = host_.limits;
     welcome.set_durability(host_.durability);
@@ -387,14 +402,26 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
     wake_writer();
 }
 
-void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& newest) {
+void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
     const auto subscription = snapshots.find(subscription_id);
     if (subscription == snapshots.end())
         return;
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.last_sent = 0;
-    if (!of.waiting)
-        picture(subscription_id, island, {.sequence = newest->sequence(), .columns = nullptr, .chained = newest});
+    of.tiles_sent.forget();
+    show_again(subscription_id, island, std::move(newest));
+}
+
+void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
+    const auto subscription = snapshots.find(subscription_id);
+    if (subscription == snapshots.end())
+        return;
+    SnapshotSubscription::Island& of = subscription->second.islands[island];
+    of.not_before = {};
+    if (of.waiting)
+        wake_writer();
+    else
+        picture(subscription_id, island, std::move(newest));
 }
 
 void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
@@ -410,33 +437,94 @@ void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
     wake_writer();
 }
 
-std::optional<Session::Outgoing> Session::next_picture() {
+bool Session::next_picture() {
     // Turns of subscriptions that are gone are found first, and go too.
     std::erase_if(turns_, [this](const Turn& turn) { return !snapshots.contains(turn.subscription_id); });
-    const auto turn = std::find_if(turns_.begin(), turns_.end(), [this](const Turn& one) {
-        const SnapshotSubscription& of = snapshots.at(one.subscription_id);
-        return !of.unacknowledged_max || of.islands.at(one.island).unacknowledged.size() < *of.unacknowledged_max;
-    });
-    if (turn == turns_.end())
-        return std::nullopt;
-    SnapshotSubscription& subscription = snapshots.at(turn->subscription_id);
-    SnapshotSubscription::Island& island = subscription.islands.at(turn->island);
+    next_budget_ = runtime::Clock::time_point::max();
+    for (auto turn = turns_.begin(); turn != turns_.end(); ++turn) {
+        SnapshotSubscription& subscription = snapshots.at(turn->subscription_id);
+        SnapshotSubscription::Island& island = subscription.islands.at(turn->island);
+        if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max)
+            continue;
+        if (!take(turn->subscription_id, subscription, island)) {
+            next_budget_ = std::min(next_budget_, island.not_before);
+            continue;
+        }
+        turns_.erase(turn);
+        return true;
+    }
+    return false;
+}
+
+bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscription,
+                   SnapshotSubscription::Island& island) {
+    outgoing_.parts.clear();
     v1::SnapshotFrame of_viewer;
-    of_viewer.set_subscription_id(turn->subscription_id);
+    of_viewer.set_subscription_id(subscription_id);
     of_viewer.set_dropped_count(subscription.dropped_count);
-    turns_.erase(turn);
-    const SnapshotSubscription::Waiting picture = std::exchange(island.waiting, {});
-    island.columns = {};
-    Outgoing outgoing{.fields = picture.columns, .tail = of_viewer.SerializeAsString()};
-    if (picture.chained) {
+    outgoing_.tail = of_viewer.SerializeAsString();
+    const SnapshotSubscription::Waiting& picture = island.waiting;
+    if (picture.columns) {
+        outgoing_.parts.push_back(picture.columns);
+    } else if (picture.chained) {
         const bool has_base = island.last_sent != 0 && island.last_sent == picture.chained->base_sequence();
-        outgoing.fields = has_base ? picture.chained->delta(subscription.compression)
-                                   : picture.chained->keyframe(subscription.compression);
+        outgoing_.parts.push_back(has_base ? picture.chained->delta(subscription.compression)
+                                           : picture.chained->keyframe(subscription.compression));
+    } else {
+        const v1::View& view = *subscription.view;
+        const wire::TileLayout& layout = picture.tiled->layout();
+        const wire::TileRange seen = view.has_region() ? wire::tiles_of(view.region(), layout) : wire::tiles_of(layout);
+        const auto add_parts = [&](v1::Detail detail) {
+            outgoing_.parts.clear();
+            island.tiles_sent.add_parts(*picture.tiled, seen, detail, subscription.compression, outgoing_.parts);
+        };
+        v1::Detail detail = view.detail();
+        if (subscription.budget) {
+            const auto now = host_.clock->now();
+            if (now < island.not_before)
+                return false;
+            const Budget::Choice choice = subscription.budget->choose(now, [&](v1::Detail tried) {
+                add_parts(tried);
+                return wire::header_bytes + outgoing_.body_bytes();
+            });
+            island.not_before = choice.again;
+            if (!choice.detail)
+                return false;
+            detail = *choice.detail;
+        } else {
+            add_parts(detail);
+        }
+        island.tiles_sent.sent(*picture.tiled, seen, detail);
     }
     island.last_sent = picture.sequence;
     if (subscription.unacknowledged_max)
         island.unacknowledged.push_back(picture.sequence);
-    return outgoing;
+    island.waiting = {};
+    island.columns = {};
+    return true;
+}
+
+std::size_t Session::Outgoing::body_bytes() const {
+    return std::accumulate(parts.begin(), parts.end(), tail.size(),
+                           [](std::size_t bytes, const SharedBytes& part) { return bytes + part->size(); });
+}
+
+const std::vector<asio::const_buffer>& Session::frame_of_outgoing() {
+    auto& [parts, tail, header, together, buffers] = outgoing_;
+    header = wire::encode_header(
+        {.channel = wire::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(outgoing_.body_bytes())});
+    buffers.assign({asio::buffer(header)});
+    if (parts.size() <= gathered_parts_max) {
+        for (const SharedBytes& part : parts)
+            buffers.push_back(asio::buffer(*part));
+    } else {
+        together.clear();
+        for (const SharedBytes& part : parts)
+            together += *part;
+        buffers.push_back(asio::buffer(together));
+    }
+    buffers.push_back(asio::buffer(tail));
+    return buffers;
 }
 
 void Session::enqueue(SharedBytes frame, Kind kind) {
@@ -465,9 +553,9 @@ void Session::wake_writer() {
     writer_signal_.cancel();
 }
 
-asio::awaitable<void> Session::wait_for_work() {
+asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
     // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
-    writer_signal_.expires_at(asio::steady_timer::time_point::max());
+    writer_signal_.expires_at(until);
     co_await writer_signal_.async_wait(no_throw);
 }
 
@@ -500,13 +588,10 @@ asio::awaitable<void> Session::write() {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
             enqueue(encode_event(std::move(event)), Kind::Event);
-        } else if (const auto picture = finishing_ ? std::nullopt : next_picture()) {
-            const auto header = wire::encode_header(
-                {.channel = wire::Channel::Stream,
-                 .body_bytes = static_cast<std::uint32_t>(picture->fields->size() + picture->tail.size())});
-            buffers = {asio::buffer(header), asio::buffer(*picture->fields), asio::buffer(picture->tail)};
-            sending_.push_back({{host_.buffers, picture->fields}, Kind::Picture});
-            const auto [error, count] = co_await line_.write(buffers);
+        } else if (!finishing_ && next_picture()) {
+            for (const SharedBytes& part : outgoing_.parts)
+                sending_.push_back({{host_.buffers, part}, Kind::Picture});
+            const auto [error, count] = co_await line_.write(frame_of_outgoing());
             host_.traffic.sent_stream_bytes.add(count);
             if (error)
                 break;
@@ -515,7 +600,7 @@ asio::awaitable<void> Session::write() {
         } else if (finishing_) {
             break;
         } else {
-            co_await wait_for_work();
+            co_await wait_for_work(next_budget_);
         }
     }
     if (finishing_ && !ended_)

@@ -5,7 +5,7 @@
 // Full         requests: more than requests_per_s_max are not read before it is time. Responses: a client that leaves
 //              more than queued_response_bytes_max unread is closed. Events: dropped and counted, then told with
 //              EventsDropped. Pictures: one of each subscription and island waits, the newest, until the client has
-//              acknowledged enough of those before it. Whoever takes nothing at all for a while is closed.
+//              acknowledged enough of those before it, and its budget allows it. Whoever takes nothing at all for a while is closed.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -14,13 +14,17 @@
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
 #include "server/network/buffers.h"
+#include "server/network/budget.h"
 #include "server/network/chains.h"
 #include "server/network/limits.h"
 #include "server/network/line.h"
+#include "server/network/tiled_pictures.h"
 #include "server/network/token_bucket.h"
+#include "server/runtime/clock.h"
 
 #include <boost/asio/steady_timer.hpp>
 
+#include <array>
 #include <deque>
 #include <functional>
 #include <map>
@@ -45,6 +49,7 @@ struct SessionHost {
     std::optional<v1::Storage> storage = {}; // as it stands now; nothing: runs are not kept
     asio::ssl::context* tls = nullptr;       // nullptr: in the clear
     metrics::Traffic traffic = {};
+    runtime::Clock* clock = nullptr;
     /// Who comes with a token, from an address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
     std::function<void(Session&, v1::Request)> handle = {};
@@ -61,18 +66,25 @@ struct SnapshotSubscription {
     v1::Codec codec = v1::CODEC_COLUMNS;
     v1::Compression compression = v1::COMPRESSION_NONE;
     std::optional<std::uint32_t> unacknowledged_max; // pictures of an island on their way; nullopt: any number
+    std::optional<v1::View> view;                    // CODEC_DELTA: pictures come in tiles
+    std::optional<Budget> budget;                    // of view
 
-    /// A picture as it waits, in one of two ways.
+    void set_view(const v1::View& wanted);
+
+    /// A picture as it waits, in one of three ways.
     struct Waiting {
         std::uint64_t sequence = 0;
         SharedBytes columns;     // fields 1 to 49
         ChainPicturePtr chained; // CODEC_DELTA: its form is chosen when it is sent
-        explicit operator bool() const { return columns || chained; }
+        TiledPicturePtr tiled;   // with a view: so are its tiles and theirs
+        explicit operator bool() const { return columns || chained || tiled; }
     };
     struct Island {
         Waiting waiting;                          // the newest picture not yet sent
         Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
+        runtime::Clock::time_point not_before;    // the budget does not allow it
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
+        TilesSent tiles_sent;                     // with a view
         std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
     };
     std::map<std::uint32_t, Island> islands; // by index
@@ -114,8 +126,10 @@ class Session : public std::enable_shared_from_this<Session> {
     void count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count);
     /// Takes a picture for a subscription in the place of one that has not been sent.
     void picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture);
-    /// What this subscription is sent next of an island is a keyframe: one that waits, or else `picture`.
-    void keyframe(std::uint32_t subscription_id, std::uint32_t island, const ChainPicturePtr& picture);
+    /// What this subscription is sent next of an island is a keyframe: one that waits, or else `newest`.
+    void keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest);
+    /// Something else is to be seen of an island now: of the picture that waits, or else of `newest`.
+    void show_again(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest);
 
     /// Says what was wrong, and ends the session.
     void fail(const base::Refusal& refusal);
@@ -150,16 +164,25 @@ class Session : public std::enable_shared_from_this<Session> {
     /// Until the client may go on, if it has sent too much for now.
     asio::awaitable<void> wait_for_turn();
     asio::awaitable<void> discard_input();
-    asio::awaitable<void> wait_for_work();
+    asio::awaitable<void> wait_for_work(runtime::Clock::time_point until = runtime::Clock::time_point::max());
     void on_frame(const wire::Frame& frame);
     void on_hello(const v1::Hello& hello);
     void on_acknowledgement(const v1::AcknowledgePicture& acknowledged);
-    /// Fields 1 to 49 of the picture whose turn it is, with what it is sent for; nullopt: none may be sent now.
+    /// A picture that is being sent.
     struct Outgoing {
-        SharedBytes fields;
-        std::string tail; // fields 50 and up
+        std::vector<SharedBytes> parts; // fields 1 to 49
+        std::string tail;               // fields 50 and up
+        std::array<std::byte, wire::header_bytes> header;
+        std::string together; // what many parts come to
+        std::vector<asio::const_buffer> buffers;
+        std::size_t body_bytes() const;
     };
-    std::optional<Outgoing> next_picture();
+    /// Puts the picture whose turn it is into outgoing_; false: none may be sent now.
+    bool next_picture();
+    /// The same of this one. false: the budget does not allow it yet.
+    bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
+    /// The whole frame of outgoing_, as long as that is not changed.
+    const std::vector<asio::const_buffer>& frame_of_outgoing();
     void enqueue(SharedBytes frame, Kind kind);
     void written(const Queued& queued);
     void wake_writer();
@@ -193,6 +216,8 @@ class Session : public std::enable_shared_from_this<Session> {
         std::uint32_t subscription_id, island;
     };
     std::deque<Turn> turns_; // of the pictures that wait in `snapshots`
+    Outgoing outgoing_;
+    runtime::Clock::time_point next_budget_; // when a picture may be sent that its budget does not allow now
     std::uint32_t subscription_id_ = 0;
 };
 

@@ -47,9 +47,8 @@ wire::BoxColumns columns_of(const runtime::BoxesSnapshot& boxes, std::size_t beg
     return {part(boxes.x), part(boxes.y), part(boxes.half_width_px), part(boxes.half_height_px)};
 }
 
-} // namespace
-
-v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
+/// All of a picture's frame but what is in it, and its sequence.
+v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
     v1::SnapshotFrame frame;
     frame.set_world(snapshot.world);
     frame.set_run_id(to_text(snapshot.run_id));
@@ -66,21 +65,10 @@ v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime
     *frame.mutable_live() = protocol::to_proto(island.live, island.island);
     frame.set_ticks_per_s(snapshot.ticks_per_s);
     frame.set_slowed(snapshot.slowed);
-
-    static thread_local PresentItems food, poison; // working memory, kept warm
-    const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
-    wire::encode({.width_px = island.width_px,
-                  .height_px = island.height_px,
-                  .position_fraction_bits = std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
-                  .organisms = {island.organisms.id, island.organisms.x, island.organisms.y, island.organisms.radius_px,
-                                island.organisms.health},
-                  .food = columns_of(island.food, food),
-                  .poison = columns_of(island.poison, poison),
-                  .crates = columns_of(island.boxes, 0, crates),
-                  .obstacles = columns_of(island.boxes, crates, boxes)},
-                 frame);
     return frame;
 }
+
+} // namespace
 
 std::uint32_t Streams::subscribe(Session& session, SnapshotSubscription subscription) {
     const std::uint32_t id = session.next_subscription_id();
@@ -109,17 +97,40 @@ bool Streams::send_keyframes(Session& session, std::uint32_t subscription_id) {
     const auto found = session.snapshots.find(subscription_id);
     if (found == session.snapshots.end())
         return false;
-    const SnapshotSubscription& subscription = found->second;
-    if (const auto group = groups_.find(group_of(subscription));
-        group != groups_.end() && subscription.codec == v1::CODEC_DELTA)
-        for (const auto& [island, chain] : group->second.chains)
-            if (chain.latest() && (!subscription.island || *subscription.island == island))
-                session.keyframe(subscription_id, island, chain.latest());
+    each_newest(found->second, [&](std::uint32_t island, SnapshotSubscription::Waiting newest) {
+        session.keyframe(subscription_id, island, std::move(newest));
+    });
     return true;
 }
 
+void Streams::set_view(Session& session, std::uint32_t subscription_id, const v1::View& view) {
+    SnapshotSubscription& subscription = session.snapshots.at(subscription_id);
+    subscription.set_view(view);
+    each_newest(subscription, [&](std::uint32_t island, SnapshotSubscription::Waiting newest) {
+        session.show_again(subscription_id, island, std::move(newest));
+    });
+}
+
+template <class Do>
+void Streams::each_newest(const SnapshotSubscription& subscription, const Do& what) const {
+    const auto group = groups_.find(group_of(subscription));
+    if (group == groups_.end() || subscription.codec != v1::CODEC_DELTA)
+        return;
+    const auto wanted = [&](std::uint32_t island) { return !subscription.island || *subscription.island == island; };
+    for (const auto& [island, chain] : group->second.chains)
+        if (wanted(island))
+            what(island, SnapshotSubscription::Waiting{.sequence = chain.latest()->sequence(),
+                                                       .columns = nullptr,
+                                                       .chained = chain.latest(),
+                                                       .tiled = nullptr});
+    for (const auto& [island, tiled] : group->second.tiled)
+        if (wanted(island))
+            what(island, SnapshotSubscription::Waiting{
+                             .sequence = tiled->sequence(), .columns = nullptr, .chained = nullptr, .tiled = tiled});
+}
+
 Streams::GroupName Streams::group_of(const SnapshotSubscription& subscription) {
-    return {subscription.world, subscription.rate_hz};
+    return {subscription.world, subscription.rate_hz, subscription.view.has_value()};
 }
 
 void Streams::update_demand() {
@@ -182,38 +193,71 @@ class Pace {
 /// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
 class EncodedIslands {
   public:
-    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence)
-        : snapshot_{snapshot}, sequence_{sequence}, islands_(snapshot.islands.size()) {}
+    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, wire::Compressor& compressor)
+        : snapshot_{snapshot}, sequence_{sequence}, compressor_{compressor}, islands_(snapshot.islands.size()) {}
 
-    const v1::SnapshotFrame& frame(std::size_t i) {
+    const std::shared_ptr<const v1::SnapshotFrame>& about(std::size_t i) {
         Island& island = islands_[i];
-        if (!island.frame) {
-            island.frame = picture_frame(snapshot_, snapshot_.islands[i]);
-            island.frame->set_sequence(++sequence_);
+        if (!island.about) {
+            v1::SnapshotFrame about = about_of(snapshot_, snapshot_.islands[i]);
+            about.set_sequence(++sequence_);
+            wire::describe(columns_of(i), about);
+            island.about = std::make_shared<const v1::SnapshotFrame>(std::move(about));
         }
-        return *island.frame;
+        return island.about;
     }
     const SharedBytes& columns(std::size_t i) {
         Island& island = islands_[i];
-        if (!island.columns)
-            island.columns = std::make_shared<const std::string>(frame(i).SerializeAsString());
+        if (!island.columns) {
+            v1::SnapshotFrame frame = *about(i);
+            wire::encode(columns_of(i), frame);
+            island.columns = std::make_shared<const std::string>(frame.SerializeAsString());
+        }
         return island.columns;
     }
     const std::shared_ptr<const wire::Scene>& scene(std::size_t i) {
         Island& island = islands_[i];
         if (!island.scene)
-            island.scene = std::make_shared<const wire::Scene>(wire::scene_of(frame(i)));
+            island.scene = std::make_shared<const wire::Scene>(wire::scene_of(columns_of(i)));
         return island.scene;
+    }
+    const std::shared_ptr<IslandTiles>& tiles(std::size_t i) {
+        Island& island = islands_[i];
+        if (!island.tiles)
+            island.tiles = std::make_shared<IslandTiles>(*about(i), scene(i), compressor_);
+        return island.tiles;
     }
 
   private:
     struct Island {
-        std::optional<v1::SnapshotFrame> frame;
+        PresentItems food, poison;
+        std::optional<wire::IslandColumns> of_snapshot; // and of the items above
+        std::shared_ptr<const v1::SnapshotFrame> about;
         SharedBytes columns;
         std::shared_ptr<const wire::Scene> scene;
+        std::shared_ptr<IslandTiles> tiles;
     };
+    const wire::IslandColumns& columns_of(std::size_t i) {
+        const runtime::IslandSnapshot& from = snapshot_.islands[i];
+        Island& island = islands_[i];
+        const std::size_t crates = from.crate_count, boxes = from.boxes.x.size();
+        if (!island.of_snapshot)
+            island.of_snapshot = wire::IslandColumns{
+                .width_px = from.width_px,
+                .height_px = from.height_px,
+                .position_fraction_bits = std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
+                .organisms = {from.organisms.id, from.organisms.x, from.organisms.y, from.organisms.radius_px,
+                              from.organisms.health},
+                .food = network::columns_of(from.food, island.food),
+                .poison = network::columns_of(from.poison, island.poison),
+                .crates = network::columns_of(from.boxes, 0, crates),
+                .obstacles = network::columns_of(from.boxes, crates, boxes)};
+        return *island.of_snapshot;
+    }
+
     const runtime::Snapshot& snapshot_;
     std::uint64_t& sequence_;
+    wire::Compressor& compressor_;
     std::vector<Island> islands_;
 };
 
@@ -221,38 +265,42 @@ class EncodedIslands {
 
 void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
     const runtime::Snapshot& snapshot = *picture.snapshot;
-    EncodedIslands encoded{snapshot, sequence_};
-    // The groups that are shown this picture, and what of each island its chain comes to with it.
-    std::map<const Group*, std::vector<ChainPicturePtr>> shown;
+    EncodedIslands encoded{snapshot, sequence_, compressor_};
+    // The groups that are shown this picture, and what each of its islands comes to with it.
+    std::map<const Group*, std::vector<SnapshotSubscription::Waiting>> shown;
     for (auto& [name, group] : groups_)
-        if (name.first == snapshot.world && Pace{name.second, group.next_picture}.takes(picture, now))
+        if (name.world == snapshot.world && Pace{name.rate_hz, group.next_picture}.takes(picture, now))
             shown[&group].resize(snapshot.islands.size());
     for (const auto& [number, session] : sessions_) {
         for (auto& [id, subscription] : session->snapshots) {
             if (subscription.world != snapshot.world)
                 continue;
             Pace pace{subscription.rate_hz, subscription.next_picture};
-            const bool chained = subscription.codec == v1::CODEC_DELTA;
-            Group* const group = chained ? &groups_.at(group_of(subscription)) : nullptr;
-            if (chained ? !shown.contains(group) : !pace.takes(picture, now))
+            Group* const group = subscription.codec == v1::CODEC_DELTA ? &groups_.at(group_of(subscription)) : nullptr;
+            const auto of_group = shown.find(group);
+            if (group ? of_group == shown.end() : !pace.takes(picture, now))
                 continue;
             session->count_dropped_pictures(subscription, picture.replaced_count);
             for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
                 const std::uint32_t island = snapshot.islands[i].island;
                 if (subscription.island && *subscription.island != island)
                     continue;
-                SnapshotSubscription::Waiting waiting;
-                waiting.sequence = encoded.frame(i).sequence();
-                if (chained) {
-                    ChainPicturePtr& link = shown[group][i];
-                    if (!link)
-                        link = group->chains[island].add(encoded.frame(i), encoded.scene(i), compressor_, now,
-                                                         pace.between());
-                    waiting.chained = link;
-                } else {
+                SnapshotSubscription::Waiting of_viewer;
+                SnapshotSubscription::Waiting& waiting = group ? of_group->second[i] : of_viewer;
+                if (waiting) {
+                    // Made for another of the group.
+                } else if (!group) {
                     waiting.columns = encoded.columns(i);
+                } else if (subscription.view) {
+                    TiledPicturePtr& tiled = group->tiled[island];
+                    tiled = waiting.tiled =
+                        std::make_shared<TiledPicture>(encoded.tiles(i), tiled, now, pace.between());
+                } else {
+                    waiting.chained =
+                        group->chains[island].add(encoded.about(i), encoded.scene(i), compressor_, now, pace.between());
                 }
-                session->picture(id, island, std::move(waiting));
+                waiting.sequence = encoded.about(i)->sequence();
+                session->picture(id, island, waiting);
             }
         }
     }

@@ -1,7 +1,7 @@
 // Streams: who watches what, and the way of pictures and events from the simulation to their sessions.
 //
 // A picture is encoded once per island, whoever gets it; the sessions share the bytes. Those who take deltas of a world
-// at one rate form a group, which is shown the same pictures.
+// at one rate, whole or in tiles, form a group, which is shown the same pictures.
 //
 // Owner        the server; on the network thread.
 #pragma once
@@ -11,9 +11,9 @@
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
 
+#include <compare>
 #include <map>
 #include <string>
-#include <utility>
 
 namespace evod::network {
 
@@ -32,6 +32,9 @@ class Streams {
     bool unsubscribe(Session& session, std::uint32_t subscription_id);
     /// Sends the newest pictures of a subscription as keyframes. false: the session has no such subscription.
     bool send_keyframes(Session& session, std::uint32_t subscription_id);
+    /// Shows something else of the newest pictures, and of those that follow. The session has the subscription, and
+    /// that has a view.
+    void set_view(Session& session, std::uint32_t subscription_id, const v1::View& view);
 
     /// To be called when the subscriptions of a session have gone with it.
     void update_demand();
@@ -42,13 +45,22 @@ class Streams {
     void count_dropped_events(std::uint64_t count);
 
   private:
-    /// The viewers of a world at one rate that take deltas.
+    /// The viewers of a world at one rate that take deltas, whole or in tiles.
     struct Group {
-        runtime::Clock::time_point next_picture; // not before then
-        std::map<std::uint32_t, Chain> chains;   // by island, of those that are watched
+        runtime::Clock::time_point next_picture;        // not before then
+        std::map<std::uint32_t, Chain> chains;          // by island, of those that are watched whole
+        std::map<std::uint32_t, TiledPicturePtr> tiled; // the newest by island, of those that are watched in tiles
     };
-    using GroupName = std::pair<std::string, double>; // world, rate_hz
+    struct GroupName {
+        std::string world;
+        double rate_hz;
+        bool in_tiles;
+        friend auto operator<=>(const GroupName&, const GroupName&) = default;
+    };
     static GroupName group_of(const SnapshotSubscription& subscription);
+    /// Calls what(island, picture) for each island that the subscription is shown.
+    template <class Do>
+    void each_newest(const SnapshotSubscription& subscription, const Do& what) const;
 
     const Sessions& sessions_;
     runtime::Demand& demand_;
@@ -57,8 +69,5 @@ class Streams {
     wire::Compressor compressor_;
     std::map<GroupName, Group> groups_;
 };
-
-/// Fields 1 to 49 of the SnapshotFrame of one island, CODEC_COLUMNS, but for its sequence.
-v1::SnapshotFrame picture_frame(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island);
 
 } // namespace evod::network

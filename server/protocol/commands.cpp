@@ -145,6 +145,31 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
     return command;
 }
 
+void add_faults(const v1::View& view, const std::string& path, Violations& violations) {
+    const v1::Region& region = view.region(); // all 0 without one
+    const auto finite = [&](const char* field, double value) {
+        if (!std::isfinite(value))
+            violations.push_back({path + ".region." + field, "a finite number", number_text(value)});
+    };
+    const auto positive = [&](const char* field, double value) {
+        if (!(value > 0 && std::isfinite(value)))
+            violations.push_back({path + ".region." + field, "a finite number above 0", number_text(value)});
+    };
+    if (view.has_region()) {
+        finite("left_px", region.left_px());
+        finite("top_px", region.top_px());
+        positive("width_px", region.width_px());
+        positive("height_px", region.height_px());
+    }
+    if (!v1::Detail_IsValid(view.detail()))
+        violations.push_back({path + ".detail", "one of Detail's", std::to_string(view.detail())});
+    const std::uint64_t bytes = view.bytes_per_s_max();
+    if (view.has_bytes_per_s_max() && (bytes < view_bytes_per_s_least || bytes > view_bytes_per_s_most))
+        violations.push_back({path + ".bytes_per_s_max",
+                              std::to_string(view_bytes_per_s_least) + " to " + std::to_string(view_bytes_per_s_most),
+                              std::to_string(bytes)});
+}
+
 void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
     if (!(request.rate_hz() > 0 && std::isfinite(request.rate_hz())))
         violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(request.rate_hz())});
@@ -157,6 +182,18 @@ void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
     if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_pictures_max))
         violations.push_back({"subscribe_snapshots.unacknowledged_max",
                               "1 to " + std::to_string(unacknowledged_pictures_max), std::to_string(unacknowledged)});
+    if (request.has_view())
+        add_faults(request.view(), "subscribe_snapshots.view", violations);
+    if (request.has_view() && request.codec() != v1::CODEC_DELTA)
+        violations.push_back(
+            {"subscribe_snapshots.codec", "CODEC_DELTA (2) with a view", std::to_string(request.codec())});
+}
+
+void add_faults(const v1::SetView& request, Violations& violations) {
+    if (request.has_view())
+        add_faults(request.view(), "set_view.view", violations);
+    else
+        violations.push_back({"set_view.view", "a view; an empty one is of everything", "nothing"});
 }
 
 void add_faults(const v1::ExportRun& request, Violations& violations) {
@@ -202,6 +239,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kSubscribeEvents:
     case RequestCase::kUnsubscribe:
     case RequestCase::kRequestKeyframe:
+    case RequestCase::kSetView:
         return RequestKind::Subscription;
     case RequestCase::kOpenPast:
     case RequestCase::kSeek:
@@ -214,7 +252,6 @@ RequestKind kind_of(const v1::Request& request) {
         return RequestKind::Lease;
     case RequestCase::kShutDown:
         return RequestKind::Server;
-    case RequestCase::kSetView:
     case RequestCase::REQUEST_NOT_SET:
         break;
     }
@@ -271,6 +308,8 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
                                   std::to_string(query.last_generation())});
     } else if (request.has_subscribe_snapshots()) {
         add_faults(request.subscribe_snapshots(), violations);
+    } else if (request.has_set_view()) {
+        add_faults(request.set_view(), violations);
     } else if (request.has_seek() && !request.seek().has_to()) {
         violations.push_back({"seek.to", "a moment of the run", "nothing"});
     } else if (request.has_close_past() && request.close_past().world().empty()) {

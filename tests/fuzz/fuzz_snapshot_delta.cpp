@@ -1,8 +1,9 @@
 // Any SnapshotFrames, one after another, are decoded or refused by one decoder; what is decoded is sound.
 //
-// The input is frames, each behind its length in two bytes. Checksums are put right, for chance would find none.
-#include "proto/wire/delta_codec.h"
+// The input is frames, whole or in tiles, each behind its length in two bytes. Checksums are put right, for chance
+// would find none.
 #include "proto/wire/little_endian.h"
+#include "proto/wire/picture_decoder.h"
 #include "tests/fuzz/sound_picture.h"
 
 #include <algorithm>
@@ -19,6 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         size -= 2 + length;
         if (frame.compression() != evod::v1::COMPRESSION_ZSTD) {
             frame.set_checksum(evod::wire::checksum_of(frame, frame.body()));
+        }
+        for (auto& tile : *frame.mutable_tiles()) {
+            if (tile.compression() != evod::v1::COMPRESSION_ZSTD) {
+                tile.set_checksum(evod::wire::checksum_of(frame, tile, tile.body()));
+            }
         }
         const auto picture = decoder.decode(std::move(frame));
         if (!picture) {

@@ -25,9 +25,20 @@ inline void require_rising(const std::vector<std::uint32_t>& ids) {
     require(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end());
 }
 
+inline void require_sound_tile(const wire::TilePicture& tile) {
+    const wire::DotPicture& dots = tile.dots;
+    for (const auto* places : {&dots.organisms, &dots.food, &dots.poison, &dots.crates, &dots.obstacles}) {
+        require_finite(places->x_px, places->x_px.size());
+        require_finite(places->y_px, places->x_px.size());
+    }
+    const std::size_t cells = tile.density.cells_per_side * std::size_t{tile.density.cells_per_side};
+    for (const auto* counts : {&tile.density.organisms, &tile.density.food, &tile.density.poison}) {
+        require(counts->size() == (tile.detail == v1::DETAIL_DENSITY ? cells : 0));
+    }
+}
+
 inline void require_sound(const wire::Picture& picture) {
     const auto& organisms = picture.organisms;
-    require(organisms.id.size() == picture.about.organism_count());
     require_rising(organisms.id);
     for (const auto* column : {&organisms.x_px, &organisms.y_px, &organisms.radius_px, &organisms.health}) {
         require_finite(*column, organisms.id.size());
@@ -37,15 +48,26 @@ inline void require_sound(const wire::Picture& picture) {
         require_finite(items->x_px, items->id.size());
         require_finite(items->y_px, items->id.size());
     }
-    require(picture.food.id.size() == picture.about.food_count());
-    require(picture.poison.id.size() == picture.about.poison_count());
-    require(picture.crates.x_px.size() == picture.about.crate_count());
-    require(picture.obstacles.x_px.size() == picture.about.obstacle_count());
     for (const auto* boxes : {&picture.crates, &picture.obstacles}) {
+        require_rising(boxes->id);
         for (const auto* column : {&boxes->x_px, &boxes->y_px, &boxes->half_width_px, &boxes->half_height_px}) {
-            require_finite(*column, boxes->x_px.size());
+            require_finite(*column, boxes->id.size());
         }
     }
+    require(std::ranges::adjacent_find(picture.tiles, std::ranges::greater_equal{}, &wire::TilePicture::tile) ==
+            picture.tiles.end());
+    for (const auto& tile : picture.tiles) {
+        require_sound_tile(tile);
+    }
+    if (picture.about.tile_px() > 0 && picture.about.codec() == v1::CODEC_DELTA) {
+        return; // its counts are of the whole island
+    }
+    require(picture.tiles.empty());
+    require(organisms.id.size() == picture.about.organism_count());
+    require(picture.food.id.size() == picture.about.food_count());
+    require(picture.poison.id.size() == picture.about.poison_count());
+    require(picture.crates.id.size() == picture.about.crate_count());
+    require(picture.obstacles.id.size() == picture.about.obstacle_count());
 }
 
 } // namespace evod::fuzz

@@ -29,6 +29,7 @@ LEAST = {
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
     "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
     "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_past": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
+    "set_view": VIEWER,
 }
 NAMES = {VIEWER: "viewer", CONTROLLER: "controller", ADMIN: "admin"}
 

@@ -1,4 +1,4 @@
-"""Pictures of CODEC_DELTA as numpy arrays, without a loop over the entities."""
+"""Pictures of CODEC_DELTA as numpy arrays, whole or in tiles, without a loop over the entities."""
 import struct
 import zlib
 
@@ -44,41 +44,48 @@ class Body:
         return numpy.cumsum((self.column(count) & 0xffffffff) + 1) - 1
 
 
-class Decoder:
-    """The pictures of one island of one subscription, one after another."""
+def content(picture, position_bytes, before, decompress):
+    """The body of a SnapshotFrame or TilePicture, once it is known to be whole, and the counts of its entities."""
+    data = decompress(picture.body) if picture.compression == 2 else picture.body
+    counts = [getattr(picture, field) for field in
+              ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")]
+    checked = before + struct.pack("<QQ6I", picture.sequence, picture.base_sequence, *counts, position_bytes) + data
+    if zlib.crc32(checked) != picture.checksum:
+        raise ValueError("damaged")
+    return data, counts
 
-    def __init__(self, decompress):
+
+class Decoder:
+    """The pictures of one island of one subscription, or of one tile of it, one after another."""
+
+    def __init__(self, decompress, have_ids=HAVE_IDS):
         """decompress: the content of a zstd frame."""
-        self.decompress = decompress
+        self.decompress, self.have_ids = decompress, have_ids
         self.sequence = 0  # of the picture that the next delta is told from; 0: there is none
         self.ticks, self.entities = 0, {}
 
-    def decode(self, frame):
+    def decode(self, picture, position_bytes=None, checked_before=b""):
         """{"organisms": {"id": …, "x": …, …, "dx": …}, "food": …, …} in 1/16 px; ValueError: ask for a keyframe."""
+        position_bytes = position_bytes or picture.position_bytes
         base, self.sequence = self.sequence, 0
-        if frame.base_sequence not in (0, base):
+        if picture.base_sequence not in (0, base):
             raise ValueError("told from a picture that is not the last one")
-        data = self.decompress(frame.body) if frame.compression == 2 else frame.body
-        counts = [getattr(frame, field) for field in
-                  ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")]
-        checked = struct.pack("<QQ6I", frame.sequence, frame.base_sequence, *counts, frame.position_bytes) + data
-        if zlib.crc32(checked) != frame.checksum:
-            raise ValueError("damaged")
+        data, counts = content(picture, position_bytes, checked_before, self.decompress)
         body = Body(data)
         ticks = body.number("<u2")
         entities = {}
         for (name, sizes), count in zip(KINDS, counts):
-            of_base = self.entities[name] if frame.base_sequence else None
-            entities[name] = self.section(body, name, sizes, of_base, ticks, frame.position_bytes)
+            of_base = self.entities[name] if picture.base_sequence else None
+            entities[name] = self.section(body, name, sizes, of_base, ticks, position_bytes)
             if len(entities[name]["x"]) != count:
                 raise ValueError("not as many as there should be")
         self.entities = entities
-        self.ticks = ticks if ticks or not frame.base_sequence else self.ticks
-        self.sequence = frame.sequence
+        self.ticks = ticks if ticks or not picture.base_sequence else self.ticks
+        self.sequence = picture.sequence
         return entities
 
     def section(self, body, name, sizes, base, ticks, position_bytes):
-        fields = [*(["id"] if name in HAVE_IDS else []), "x", "y", *sizes, *(["dx", "dy"] if name in MOVE else [])]
+        fields = [*(["id"] if name in self.have_ids else []), "x", "y", *sizes, *(["dx", "dy"] if name in MOVE else [])]
         stayed = dict(base) if base else {field: numpy.zeros(0, numpy.int64) for field in fields}
         parts, come = body.number("<u1"), {}
         if parts & 1:
@@ -86,7 +93,7 @@ class Decoder:
             stayed = {field: numpy.delete(column, gone) for field, column in stayed.items()}
         if parts & 2:
             count = body.number("<u4")
-            if name in HAVE_IDS:
+            if name in self.have_ids:
                 come["id"] = body.rising_column(count)
             for field in ("x", "y"):
                 come[field] = body.planes(count, position_bytes)
@@ -105,7 +112,37 @@ class Decoder:
             stayed["health"] = stayed["health"] + body.column(count)
         if come:
             stayed = {field: numpy.concatenate((stayed[field], come[field])) for field in fields}
-            if name in HAVE_IDS:
+            if name in self.have_ids:
                 order = numpy.argsort(stayed["id"], kind="stable")
                 stayed = {field: column[order] for field, column in stayed.items()}
         return stayed
+
+
+class TilesDecoder:
+    """The pictures of one island of one subscription with a view."""
+
+    def __init__(self, decompress):
+        self.decompress = decompress
+        self.full = {}  # a Decoder for each tile that the last picture showed at DETAIL_FULL
+
+    def decode(self, frame):
+        """{tile: what its detail tells}: entities; or {"organisms": {"x": …, "y": …}, …}, in 1/256 of the tile's side; or
+        {"organisms": a square array of counts, …}. ValueError: ask for a keyframe."""
+        before, self.full = self.full, {}
+        full, seen = {}, {}
+        for tile in frame.tiles:
+            checked_before = struct.pack("<III", frame.tile_px, tile.tile, tile.detail)
+            if tile.detail == 1:
+                full[tile.tile] = before.get(tile.tile) or Decoder(self.decompress, [name for name, _ in KINDS])
+                seen[tile.tile] = full[tile.tile].decode(tile, frame.position_bytes, checked_before)
+                continue
+            data, counts = content(tile, frame.position_bytes, checked_before, self.decompress)
+            body, names = Body(data), [name for name, _ in KINDS]
+            if tile.detail == 2:
+                x, y = (numpy.split(body.plain("<u1", sum(counts)), numpy.cumsum(counts)[:-1]) for _ in "xy")
+                seen[tile.tile] = {name: {"x": x[i], "y": y[i]} for i, name in enumerate(names)}
+            else:
+                cells = body.number("<u1")
+                seen[tile.tile] = {name: body.column(cells * cells).reshape(cells, cells) for name in names[:3]}
+        self.full = full
+        return seen

@@ -33,7 +33,7 @@ sys.path.insert(0, messages_path)
 import numpy  # noqa: E402
 from google.protobuf import descriptor_pb2  # noqa: E402
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2 as w  # noqa: E402
-from delta_decoder import Decoder  # noqa: E402
+from delta_decoder import KINDS, Decoder, TilesDecoder  # noqa: E402
 
 patience_s = 60
 OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 12, 14
@@ -303,7 +303,7 @@ class Handshake(WithServer):
         self.assertEqual(welcome.protocol_version, 1)
         self.assertRegex(welcome.server_version, r"^\d+\.\d+\.\d+$")
         self.assertRegex(welcome.instance_id, r"^[0-9a-f]{32}$")
-        self.assertLessEqual({"codec:columns", "codec:delta", "compression:zstd", "acknowledgements"},
+        self.assertLessEqual({"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view"},
                              set(welcome.features))
         for field, limit in welcome.limits.ListFields():
             self.assertGreater(limit, 0, field.name)
@@ -1382,6 +1382,259 @@ class Deltas(WithServer):
             status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
                 world=world, rate_hz=1, **{field: number})).status
             self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots." + field])
+
+
+class Views(WithServer):
+    """Pictures in tiles, held against CODEC_COLUMNS of the same ticks."""
+
+    def setUp(self):
+        super().setUp()
+        self.viewer = self.enterContext(Client(self.server))
+        self.decoders = {}
+
+    def wide_world(self, **parameters):
+        return self.new_world(**{"seed": 3, "population_size": 200, "food_count": 300, "poison_count": 200,
+                                 "island_width_px": 2600.0, "island_height_px": 1700.0, "obstacle_count": 6,
+                                 "crate_count": 20, **parameters})
+
+    def subscribe(self, world, view=None, rate_hz=120.0, **fields):
+        codec = stream_pb2.CODEC_COLUMNS if view is None else stream_pb2.CODEC_DELTA
+        return self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
+            world=world, codec=codec, rate_hz=rate_hz, view=view, **fields)).subscription.subscription_id
+
+    def set_view(self, subscription, **view):
+        answer = self.viewer.call(set_view=c.SetView(subscription_id=subscription, view=c.View(**view))).subscription
+        self.assertEqual(answer.subscription_id, subscription)
+
+    def next(self, condition=lambda picture: True):
+        """The next picture that fulfils the condition, and what its tiles show; those before it are decoded too."""
+        while True:
+            picture = self.viewer.next_picture()
+            seen = None
+            if picture.codec == stream_pb2.CODEC_DELTA:
+                self.assertEqual(picture.base_sequence, 0)
+                self.assertEqual((picture.tile_px, picture.body), (512, b""))
+                decoder = self.decoders.setdefault((picture.subscription_id, picture.island), TilesDecoder(zstd_content))
+                seen = decoder.decode(picture)
+            if condition(picture):
+                return picture, seen
+
+    def tiles_of(self, picture):
+        return math.ceil(picture.width_px / 512), math.ceil(picture.height_px / 512)
+
+    def in_tiles(self, columns_picture):
+        """{kind: {"tile": …, "id": …, "x": …, …}} in 1/16 px, of a picture of CODEC_COLUMNS."""
+        across, down = self.tiles_of(columns_picture)
+        entities = {}
+        for kind, fields in columns(columns_picture).items():
+            of_kind = {field: numpy.asarray(column * (1 if field == "id" else 16), numpy.int64)
+                       for field, column in fields.items()}
+            of_kind.setdefault("id", numpy.arange(len(of_kind["x"])))
+            of_kind["tile"] = (numpy.minimum(of_kind["y"] // 8192, down - 1) * across +
+                               numpy.minimum(of_kind["x"] // 8192, across - 1))
+            entities[kind] = of_kind
+        return entities
+
+    def assert_full(self, seen, entities):
+        """What tiles of DETAIL_FULL show together is what is in them."""
+        for kind, expected in entities.items():
+            there = numpy.isin(expected["tile"], list(seen))
+            order = numpy.argsort(numpy.concatenate([of[kind]["id"] for of in seen.values()] or [[]]), kind="stable")
+            for field in set(expected) - {"tile"}:
+                together = numpy.concatenate([of[kind][field] for of in seen.values()] or [[]])
+                numpy.testing.assert_array_equal(together[order], expected[field][there], f"{kind} {field}")
+
+    def touched(self, picture, region):
+        across, down = self.tiles_of(picture)
+        return [row * across + column for row in range(down) for column in range(across)
+                if column * 512 < region.left_px + region.width_px and (column + 1) * 512 > region.left_px and
+                row * 512 < region.top_px + region.height_px and (row + 1) * 512 > region.top_px and
+                region.left_px < picture.width_px and region.top_px < picture.height_px]
+
+    def watch_together(self, world, generations=1, **fields):
+        """By columns, of everything in tiles, and of a region that pans with every picture."""
+        whole, all_tiles = self.subscribe(world), self.subscribe(world, c.View(), **fields)
+        panning = self.subscribe(world, c.View(region=c.Region(left_px=-500, width_px=600, height_px=600)), **fields)
+        regions, step = {}, 0
+        self.client.call(run=c.Run(world=world))
+        shown, alike, bases, last_generation = {}, 0, {all_tiles: 0, panning: 0}, 0
+        while alike < 150 or min(bases.values()) < 150 or last_generation < generations:
+            picture, seen = self.next()
+            subscription = picture.subscription_id
+            if seen is not None:
+                bases[subscription] += sum(tile.base_sequence > 0 for tile in picture.tiles)
+                self.assertEqual([tile.tile for tile in picture.tiles], sorted(seen))
+                self.assertTrue(all(tile.detail == stream_pb2.DETAIL_FULL for tile in picture.tiles))
+            if subscription == panning:
+                step += 1
+                if step % 3 == 0:
+                    region = c.Region(left_px=step * 17 % 3400 - 500, top_px=step * 11 % 2200 - 300, width_px=600,
+                                      height_px=600)
+                    self.set_view(panning, region=region)
+                    regions[tuple(self.touched(picture, region))] = True
+                    if len(seen) > 0:
+                        self.assertLess(len(seen), 10)
+            of_hash = shown.setdefault(picture.state_hash, {})
+            of_hash[subscription] = picture if seen is None else seen
+            if whole in of_hash and len(of_hash) > 1:
+                entities = self.in_tiles(of_hash[whole])
+                for seen in [of_hash.pop(name) for name in (all_tiles, panning) if name in of_hash]:
+                    self.assert_full(seen, entities)
+                    alike += 1
+                last_generation = picture.generation
+        self.assertGreater(len(regions), 3)
+
+    def test_all_tiles_and_those_of_a_region_show_what_columns_show(self):
+        world = self.wide_world(generation_s=2)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(real_time_factor=3)))
+        self.watch_together(world, 2)
+
+    def test_compressed_too_and_on_wide_islands(self):
+        self.watch_together(self.wide_world(island_width_px=5000.0), compression=stream_pb2.COMPRESSION_ZSTD)
+
+    def test_dots_and_densities_are_counted_right(self):
+        world = self.wide_world()
+        whole = self.subscribe(world)
+        kinds = {self.subscribe(world, c.View(detail=detail), compression=compression): detail
+                 for detail in (stream_pb2.DETAIL_DOTS, stream_pb2.DETAIL_DENSITY) for compression in (1, 2)}
+        self.client.run_to(30, world)
+        pictures = {}
+        while len(pictures) < 5:
+            picture, seen = self.next(lambda p: p.tick == 30)
+            pictures[picture.subscription_id] = picture, seen
+        entities = self.in_tiles(pictures[whole][0])
+        across, down = self.tiles_of(pictures[whole][0])
+        for subscription, detail in kinds.items():
+            picture, seen = pictures[subscription]
+            self.assertEqual(sorted(seen), list(range(across * down)))
+            self.assertEqual({tile.detail for tile in picture.tiles}, {detail})
+            for kind, of_kind in list(entities.items())[:5 if detail == stream_pb2.DETAIL_DOTS else 3]:
+                for tile, shown in seen.items():
+                    there = of_kind["tile"] == tile
+                    x, y = of_kind["x"][there] - tile % across * 8192, of_kind["y"][there] - tile // across * 8192
+                    if detail == stream_pb2.DETAIL_DOTS:
+                        numpy.testing.assert_array_equal(shown[kind]["x"], x // 32)
+                        numpy.testing.assert_array_equal(shown[kind]["y"], y // 32)
+                    else:
+                        cells = len(shown[kind])
+                        self.assertGreater(cells, 1)
+                        expected = numpy.zeros((cells, cells), int)
+                        numpy.add.at(expected, (y * cells // 8192, x * cells // 8192), 1)
+                        numpy.testing.assert_array_equal(shown[kind], expected)
+
+    def test_a_region_that_moves_is_shown_at_once_even_if_the_world_stands_still(self):
+        world = self.wide_world()
+        self.client.run_to(20, world)
+        subscription = self.subscribe(world, c.View(region=c.Region(width_px=600, height_px=100)))
+        first, seen = self.next()
+        self.assertEqual(sorted(seen), [0, 1])
+        self.assertGreater(first.organism_count, sum(tile.organism_count for tile in first.tiles))
+        self.set_view(subscription, region=c.Region(left_px=520, width_px=600, height_px=100))
+        moved, seen_moved = self.next()
+        self.assertEqual([(t.tile, t.base_sequence) for t in moved.tiles], [(1, first.sequence), (2, 0)])
+        for kind, fields in seen_moved[1].items():
+            for field, column in fields.items():
+                numpy.testing.assert_array_equal(column, seen[1][kind][field])
+        self.set_view(subscription, region=c.Region(width_px=10, height_px=10))
+        back, _ = self.next()
+        self.assertEqual([(t.tile, t.base_sequence) for t in back.tiles], [(0, 0)])
+        for outside in ({"left_px": -700}, {"left_px": 2600}, {"top_px": 5000}, {"left_px": 1e300}):
+            self.set_view(subscription, region=c.Region(width_px=600, height_px=600, **outside))
+            self.assertEqual(self.next()[1], {})
+        self.set_view(subscription)
+        self.assertEqual(len(self.next()[1]), 6 * 4)
+
+    def test_a_damaged_tile_is_mended_by_a_keyframe(self):
+        world = self.wide_world()
+        subscription = self.subscribe(world, c.View())
+        self.client.call(run=c.Run(world=world))
+        self.next(lambda p: any(t.base_sequence for t in p.tiles))
+        decoder = self.decoders[subscription, 0]
+        damaged = self.viewer.next_picture()
+        damaged.tiles[3].body = bytes([damaged.tiles[3].body[0] ^ 1]) + damaged.tiles[3].body[1:]
+        with self.assertRaisesRegex(ValueError, "damaged|not the last"):
+            decoder.decode(damaged)
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
+        decoder.decode(self.viewer.next_picture(lambda p: not any(t.base_sequence for t in p.tiles)))
+        self.next(lambda p: all(t.base_sequence for t in p.tiles))
+
+    def test_every_tile_takes_a_keyframe_now_and_then(self):
+        world = self.wide_world()
+        self.subscribe(world, c.View())
+        self.client.call(run=c.Run(world=world))
+        keyframes = dict.fromkeys(range(24), 0)
+        before = self.next()[0]
+        while min(keyframes.values()) < 2:
+            picture = self.next()[0]
+            if (picture.dropped_count, picture.generation) == (before.dropped_count, before.generation):
+                for tile in picture.tiles:
+                    keyframes[tile.tile] += tile.base_sequence == 0
+            before = picture
+
+    def test_they_wait_for_acknowledgements_and_the_newest_wins(self):
+        world = self.wide_world()
+        subscription = self.subscribe(world, c.View(), unacknowledged_max=1)
+        self.client.call(run=c.Run(world=world))
+        first = self.next()[0]
+        with Client(self.server) as other:
+            other.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=120))
+            other.next_picture(lambda p: p.tick > first.tick + 60)
+            paused = self.client.call(pause=c.Pause(world=world)).world
+            other.next_picture(lambda p: p.tick == paused.tick)
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.viewer.pictures, [])
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+            subscription_id=subscription, island=0, sequence=first.sequence)))
+        newest, _ = self.next()
+        self.assertEqual(newest.tick, paused.tick)
+        self.assertFalse(any(t.base_sequence for t in newest.tiles))
+        self.assertGreater(newest.dropped_count, 0)
+
+    def test_a_budget_leaves_out_detail_and_then_pictures_and_is_kept(self):
+        world = self.wide_world()
+        subscription = self.subscribe(world, c.View(), rate_hz=60)
+        self.client.call(run=c.Run(world=world))
+        self.assertEqual({t.detail for t in self.next()[0].tiles}, {stream_pb2.DETAIL_FULL})
+        for bytes_per_s in (60_000, 2_000):
+            self.set_view(subscription, bytes_per_s_max=bytes_per_s)
+            began, got, details = time.monotonic(), 0, set()
+            while got < 5 * bytes_per_s or stream_pb2.DETAIL_DENSITY not in details:
+                picture, _ = self.next()
+                got += 8 + picture.ByteSize()
+                details |= {tile.detail for tile in picture.tiles}
+            # Beside what was saved and on its way before.
+            self.assertLess(got, bytes_per_s * (time.monotonic() - began + 2) + 60_000)
+        self.assertGreater(picture.dropped_count, 100)
+        self.set_view(subscription)
+        self.next(lambda p: {t.detail for t in p.tiles} == {stream_pb2.DETAIL_FULL})
+
+    def test_what_cannot_be_seen_is_refused(self):
+        world = self.new_world()
+        nan, good = float("nan"), {"width_px": 1.0, "height_px": 1.0}
+        wrong = [("region.left_px", {"region": c.Region(**good, left_px=nan)}),
+                 ("region.top_px", {"region": c.Region(**good, top_px=float("inf"))}),
+                 ("region.width_px", {"region": c.Region(width_px=0, height_px=1)}),
+                 ("region.height_px", {"region": c.Region(width_px=1, height_px=nan)}),
+                 ("detail", {"detail": 9}), ("bytes_per_s_max", {"bytes_per_s_max": 999}),
+                 ("bytes_per_s_max", {"bytes_per_s_max": 10 ** 12 + 1})]
+        subscription = self.subscribe(world, c.View())
+        for field, view in wrong:
+            for path, request in (("subscribe_snapshots.view.", {"subscribe_snapshots": c.SubscribeSnapshots(
+                    world=world, rate_hz=1, codec=2, view=c.View(**view))}),
+                    ("set_view.view.", {"set_view": c.SetView(subscription_id=subscription, view=c.View(**view))})):
+                status = self.viewer.call(INVALID, **request).status
+                self.assertEqual([v.field for v in status.violations], [path + field])
+                self.assertTrue(status.violations[0].allowed and status.violations[0].got)
+        for codec in (0, 1):
+            status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
+                world=world, rate_hz=1, codec=codec, view=c.View())).status
+            self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.codec"])
+        status = self.viewer.call(INVALID, set_view=c.SetView(subscription_id=subscription)).status
+        self.assertEqual([v.field for v in status.violations], ["set_view.view"])
+        status = self.viewer.call(NOT_FOUND, set_view=c.SetView(subscription_id=99, view=c.View())).status
+        self.assertEqual([v.field for v in status.violations], ["set_view.subscription_id"])
+        whole = self.subscribe(world)
+        self.viewer.call(PRECONDITION, set_view=c.SetView(subscription_id=whole, view=c.View()))
 
 
 class Queries(WithServer):

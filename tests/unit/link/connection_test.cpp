@@ -1,4 +1,5 @@
 #include "proto/wire/delta_codec.h"
+#include "proto/wire/tiles.h"
 #include "tests/unit/link/fake_server.h"
 
 #include <gmock/gmock.h>
@@ -390,12 +391,13 @@ class WalkingPictures {
         const std::vector<std::uint32_t> ids{5};
         const std::vector<std::int32_t> x{static_cast<std::int32_t>(sequence_) * 4096}, y{4096};
         const std::vector<float> radius{1.F}, health{2.F};
+        const wire::IslandColumns columns{
+            .width_px = 100,
+            .height_px = 100,
+            .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}};
         v1::SnapshotFrame frame;
-        wire::encode({.width_px = 100,
-                      .height_px = 100,
-                      .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}},
-                     frame);
-        const auto scene = std::make_shared<const wire::Scene>(wire::scene_of(frame));
+        wire::describe(columns, frame);
+        const auto scene = std::make_shared<const wire::Scene>(wire::scene_of(columns));
         frame.set_island_count(1);
         frame.set_subscription_id(1);
         frame.set_codec(v1::CODEC_DELTA);
@@ -510,6 +512,101 @@ TEST(Pictures, AServerWhoseKeyframesAreDamagedIsNotAskedForEver) {
     }
     EXPECT_TRUE(eventually([&] { return connection.status().damaged_picture_count == 20; }));
     EXPECT_EQ(connection.status().keyframe_request_count, 3U);
+}
+
+v1::View view_of(double left_px) {
+    v1::View view;
+    view.mutable_region()->set_left_px(left_px);
+    view.mutable_region()->set_width_px(10);
+    view.mutable_region()->set_height_px(10);
+    return view;
+}
+
+TEST(Views, AreAskedForChangedAndAskedForAgain) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::SubscribeSnapshots subscribe;
+    *subscribe.mutable_view() = view_of(1);
+    const SubscriptionHandle handle = connection.subscribe(subscribe);
+    {
+        FakeSession session = server.accept_and_welcome();
+        const v1::Request request = session.read_request();
+        EXPECT_EQ(request.subscribe_snapshots().view().region().left_px(), 1);
+        EXPECT_EQ(request.subscribe_snapshots().codec(), v1::CODEC_DELTA);
+        connection.set_view(handle, view_of(2)); // before the server knows of any
+        auto marker = connection.send(run_request(1));
+        session.answer(session.read_request());
+        ASSERT_TRUE(marker.get());
+        session.answer_subscription(request, 7);
+        const v1::Request changed = session.read_request();
+        EXPECT_EQ(changed.set_view().subscription_id(), 7U);
+        EXPECT_EQ(changed.set_view().view().region().left_px(), 2);
+        connection.set_view(handle, view_of(3));
+        EXPECT_EQ(session.read_request().set_view().view().region().left_px(), 3);
+    }
+    FakeSession again = server.accept_and_welcome();
+    EXPECT_EQ(again.read_request().subscribe_snapshots().view().region().left_px(), 3);
+}
+
+/// A picture of one tile, with two organisms in it.
+v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequence) {
+    const std::vector<std::uint32_t> ids{5, 6};
+    const std::vector<std::int32_t> place(2, 4096);
+    const std::vector<float> size(2, 1.F);
+    const wire::IslandColumns columns{
+        .width_px = 100,
+        .height_px = 100,
+        .organisms = {.id = ids, .x = place, .y = place, .radius_px = size, .health = size}};
+    v1::SnapshotFrame frame;
+    wire::describe(columns, frame);
+    frame.set_codec(v1::CODEC_DELTA);
+    frame.set_island_count(1);
+    frame.set_subscription_id(1);
+    frame.set_sequence(sequence);
+    frame.set_tick(sequence);
+    wire::TiledScene tiled{std::make_shared<const wire::Scene>(wire::scene_of(columns)), wire::tile_layout(100, 100)};
+    frame.set_tile_px(tiled.layout().tile_px);
+    v1::TilePicture& tile = *frame.add_tiles();
+    tile.set_detail(v1::DETAIL_FULL);
+    tile.set_organism_count(2);
+    tile.set_sequence(sequence);
+    tile.set_base_sequence(base_sequence);
+    wire::FootingView standing;
+    standing.scene = tiled.full(0);
+    const std::vector<std::uint32_t> still(2);
+    standing.organisms = {still, still};
+    tile.set_body(base_sequence ? wire::encode_delta(standing, standing.scene, 1) : wire::encode_keyframe(standing));
+    tile.set_checksum(wire::checksum_of(frame, tile, tile.body()));
+    return frame;
+}
+
+TEST(Views, ADamagedTileIsMendedByAKeyframeThatIsAskedFor) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::SubscribeSnapshots subscribe;
+    subscribe.mutable_view();
+    const SubscriptionHandle handle = connection.subscribe(subscribe);
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    session.send(tile_picture(1, 0));
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    const auto first = picture_of_tick(connection, handle, 1);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->organisms.id, (std::vector<std::uint32_t>{5, 6}));
+    EXPECT_EQ(first->tiles.size(), 1U);
+    auto damaged = tile_picture(2, 1);
+    damaged.mutable_tiles(0)->mutable_body()->back() ^= 1;
+    session.send(damaged);
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    EXPECT_EQ(session.read_request().request_keyframe().subscription_id(), 1U);
+    session.send(tile_picture(3, 2)); // on its way before the request came
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    session.send(tile_picture(4, 0));
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    session.send(tile_picture(5, 4));
+    EXPECT_TRUE(picture_of_tick(connection, handle, 5));
+    EXPECT_EQ(connection.status().damaged_picture_count, 1U);
+    EXPECT_EQ(connection.status().keyframe_request_count, 1U);
 }
 
 TEST(Events, ComeInOrderAndALossIsTold) {

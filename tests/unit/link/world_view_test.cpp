@@ -74,14 +74,15 @@ TEST(WorldView, DoesNotBlendLivesOrLongLeaps) {
     EXPECT_TRUE(alone_after([](auto& about) { about.set_simulated_s(1); }));
 }
 
-TEST(WorldView, BlendsCratesByTheirPlace) {
+TEST(WorldView, BlendsTheCratesThatBothPicturesShow) {
     WorldView view;
     auto first = picture(1, {}), second = picture(2, {});
-    first->crates = {.x_px = {0, 10}, .y_px = {0, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}};
-    second->crates = {.x_px = {2, 20}, .y_px = {4, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}};
+    first->crates = {.x_px = {0, 10}, .y_px = {0, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}, .id = {3, 7}};
+    // Another one is seen, and the first not any more.
+    second->crates = {.x_px = {2, 20}, .y_px = {4, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}, .id = {5, 7}};
     view.add(first, start);
     view.add(second, start + 10ms);
-    EXPECT_EQ(view.crates_at(0.5).x_px, (std::vector<float>{1, 15}));
+    EXPECT_EQ(view.crates_at(0.5).x_px, (std::vector<float>{2, 15}));
     view.clear();
     EXPECT_EQ(view.latest(), nullptr);
     EXPECT_TRUE(view.crates_at(0.5).x_px.empty());

@@ -1,6 +1,6 @@
 #include "server/network/chains.h"
 
-#include "proto/wire/snapshot_codec.h"
+#include "proto/wire/picture_decoder.h"
 
 #include <gtest/gtest.h>
 
@@ -19,15 +19,16 @@ class ChainTest : public testing::Test {
         const std::vector<std::uint32_t> ids{1, 2};
         const std::vector<std::int32_t> x(2, static_cast<std::int32_t>(frame_.generation_tick()) * 4096), y(2, 4096);
         const std::vector<float> radius(2, 1.F), health(2, 100.F);
-        wire::encode({.width_px = 100,
-                      .height_px = 100,
-                      .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}},
-                     frame_);
+        const wire::IslandColumns columns{
+            .width_px = 100,
+            .height_px = 100,
+            .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}};
+        wire::describe(columns, frame_);
         frame_.set_island_count(1);
         frame_.set_sequence(frame_.sequence() + 1);
         now_ += between;
-        return chain_.add(frame_, std::make_shared<const wire::Scene>(wire::scene_of(frame_)), compressor_, now_,
-                          between);
+        return chain_.add(std::make_shared<const v1::SnapshotFrame>(frame_),
+                          std::make_shared<const wire::Scene>(wire::scene_of(columns)), compressor_, now_, between);
     }
     ChainPicturePtr add_next() {
         frame_.set_generation_tick(frame_.generation_tick() + 6);
@@ -82,12 +83,12 @@ TEST_F(ChainTest, AKeyframeForAllComesAtLeastEveryTwoSeconds) {
     for (int i = 0; i < 100; ++i) {
         const auto picture = add_next();
         if (picture->base_sequence() == 0) {
-            EXPECT_LE(now_ - last_keyframe, Chain::keyframe_interval);
-            EXPECT_TRUE(i == 0 || now_ - last_keyframe > Chain::keyframe_interval - 2 * 100ms);
+            EXPECT_LE(now_ - last_keyframe, keyframe_interval);
+            EXPECT_TRUE(i == 0 || now_ - last_keyframe > keyframe_interval - 2 * 100ms);
             last_keyframe = now_;
         }
     }
-    EXPECT_LE(now_ - last_keyframe, Chain::keyframe_interval);
+    EXPECT_LE(now_ - last_keyframe, keyframe_interval);
 }
 
 TEST_F(ChainTest, AtALowRateEveryPictureIsAKeyframe) {

@@ -1,7 +1,7 @@
-#include "proto/wire/delta_codec.h"
+#include "proto/wire/picture_decoder.h"
 
 #include "proto/wire/compression.h"
-#include "proto/wire/little_endian.h"
+#include "tests/unit/wire/living_island.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,153 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <numeric>
-#include <random>
 
 namespace evod::wire {
 namespace {
-
-constexpr std::int32_t px = 4096; // fixed-point units
-
-using Random = std::mt19937_64; // its numbers are the same everywhere; what distributions make of them is not
-
-std::uint64_t below(Random& random, std::uint64_t end) {
-    return random() % end;
-}
-
-/// An island that lives: everything that can happen between two pictures does.
-struct LivingIsland {
-    double side_px = 4000; // of a square
-    struct Organism {
-        std::uint32_t id;
-        std::int64_t x, y, dx, dy;
-        float radius, health;
-    };
-    struct Item {
-        std::uint32_t id;
-        std::int64_t x, y;
-    };
-    struct Box {
-        std::int64_t x, y;
-        float half_width, half_height;
-    };
-    std::vector<Organism> organisms;
-    std::vector<Item> food, poison;
-    std::vector<Box> crates, obstacles;
-
-    std::int64_t anywhere(Random& random) const {
-        return static_cast<std::int64_t>(below(random, static_cast<std::uint64_t>(side_px) * px));
-    }
-
-    void populate(Random& random) {
-        for (std::uint64_t left = below(random, 60); left > 0; --left) {
-            add_organism(random);
-        }
-        for (auto* items : {&food, &poison}) {
-            std::uint32_t id = 0;
-            for (std::uint64_t left = below(random, 90); left > 0; --left) {
-                id += 1 + static_cast<std::uint32_t>(below(random, 3));
-                items->push_back({id, anywhere(random), anywhere(random)});
-            }
-        }
-        for (auto* boxes : {&crates, &obstacles}) {
-            for (std::uint64_t left = below(random, 4); left > 0; --left) {
-                boxes->push_back({anywhere(random), anywhere(random), 9.F, 12.5F});
-            }
-        }
-    }
-
-    void add_organism(Random& random) {
-        const std::uint32_t before = organisms.empty() ? 0 : organisms.back().id;
-        organisms.push_back({before + 1 + static_cast<std::uint32_t>(below(random, 300)), anywhere(random),
-                             anywhere(random), static_cast<std::int64_t>(below(random, 40 * px)) - 20 * px,
-                             static_cast<std::int64_t>(below(random, 40 * px)) - 20 * px, 10.F, 100.F});
-    }
-
-    void live(Random& random, std::uint64_t ticks) {
-        const auto top = static_cast<std::int64_t>(side_px * px);
-        for (Organism& organism : organisms) {
-            organism.dx += static_cast<std::int64_t>(below(random, px)) - px / 2;
-            organism.x = std::clamp<std::int64_t>(organism.x + organism.dx * static_cast<std::int64_t>(ticks), 0, top);
-            organism.y = std::clamp<std::int64_t>(organism.y + organism.dy * static_cast<std::int64_t>(ticks), 0, top);
-            organism.health -= 0.1F * static_cast<float>(ticks);
-            if (below(random, 50) == 0) { // from one end to the other, and health that is none or too much
-                organism.x = below(random, 2) == 0 ? 0 : top;
-                organism.y = anywhere(random);
-                organism.health = below(random, 2) == 0 ? std::nanf("") : 1e9F;
-            }
-            if (below(random, 90) == 0) { // another one of the same name
-                organism.radius += 1.F;
-            }
-        }
-        std::erase_if(organisms, [&](const Organism&) { return below(random, 40) == 0; });
-        for (std::uint64_t left = below(random, 3); left > 0; --left) {
-            add_organism(random);
-        }
-        for (auto* items : {&food, &poison}) {
-            for (Item& item : *items) {
-                if (below(random, 30) == 0) { // eaten, and back elsewhere
-                    item.x = anywhere(random);
-                }
-            }
-            std::erase_if(*items, [&](const Item&) { return below(random, 30) == 0; });
-            if (below(random, 3) == 0 && (items->empty() || items->front().id > 0)) {
-                items->insert(items->begin(), {0, anywhere(random), anywhere(random)});
-            }
-        }
-        for (Box& box : crates) {
-            box.x = std::clamp<std::int64_t>(box.x + static_cast<std::int64_t>(below(random, px)), 0, top);
-        }
-    }
-
-    evod::v1::SnapshotFrame frame() const {
-        struct Places {
-            std::vector<std::uint32_t> id;
-            std::vector<std::int32_t> x, y;
-            std::vector<float> width, height;
-        };
-        std::array<Places, 5> all;
-        const auto place = [](Places& places, const auto& entity) {
-            places.x.push_back(static_cast<std::int32_t>(std::min<std::int64_t>(entity.x, 0x7fffffff)));
-            places.y.push_back(static_cast<std::int32_t>(std::min<std::int64_t>(entity.y, 0x7fffffff)));
-        };
-        for (const Organism& organism : organisms) {
-            place(all[0], organism);
-            all[0].id.push_back(organism.id);
-            all[0].width.push_back(organism.radius);
-            all[0].height.push_back(organism.health);
-        }
-        const std::array<const std::vector<Item>*, 2> items{&food, &poison};
-        const std::array<const std::vector<Box>*, 2> boxes{&crates, &obstacles};
-        for (std::size_t k = 0; k < 2; ++k) {
-            for (const Item& item : *items[k]) {
-                place(all[1 + k], item);
-                all[1 + k].id.push_back(item.id);
-            }
-            for (const Box& box : *boxes[k]) {
-                place(all[3 + k], box);
-                all[3 + k].width.push_back(box.half_width);
-                all[3 + k].height.push_back(box.half_height);
-            }
-        }
-        evod::v1::SnapshotFrame frame;
-        frame.set_world("w");
-        frame.set_run_id("r");
-        frame.set_island_count(1);
-        encode({.width_px = side_px,
-                .height_px = side_px,
-                .position_fraction_bits = 12,
-                .organisms = {all[0].id, all[0].x, all[0].y, all[0].width, all[0].height},
-                .food = {all[1].id, all[1].x, all[1].y},
-                .poison = {all[2].id, all[2].x, all[2].y},
-                .crates = {all[3].x, all[3].y, all[3].width, all[3].height},
-                .obstacles = {all[4].x, all[4].y, all[4].width, all[4].height}},
-               frame);
-        return frame;
-    }
-};
 
 /// The server's end: each picture as a keyframe and, but for the first, as a delta.
 class Sender {
@@ -164,12 +21,13 @@ class Sender {
         evod::v1::SnapshotFrame columns, keyframe, delta;
     };
 
-    Sent send(const evod::v1::SnapshotFrame& columns, std::uint16_t ticks) {
-        Sent sent{.columns = columns, .keyframe = columns, .delta = {}};
-        const auto scene = std::make_shared<const Scene>(scene_of(columns));
+    Sent send(const LivingIsland& island, std::uint16_t ticks) {
+        Sent sent{.columns = island.about(), .keyframe = island.about(), .delta = {}};
+        encode(island.arrays().columns(), sent.columns);
+        const auto scene = std::make_shared<const Scene>(island.scene());
         const bool has_base = footing_.scene && follows(*scene, *footing_.scene);
         sent.columns.set_sequence(++sequence_);
-        sent.keyframe = sent.columns;
+        sent.keyframe.set_sequence(sequence_);
         sent.keyframe.set_codec(evod::v1::CODEC_DELTA);
         sent.delta = sent.keyframe;
         if (has_base) {
@@ -204,9 +62,9 @@ Sender::Sent two_pictures(std::uint64_t seed, PictureDecoder& decoder) {
     LivingIsland island;
     island.populate(random);
     Sender sender;
-    EXPECT_TRUE(decoder.decode(sender.send(island.frame(), 0).keyframe));
+    EXPECT_TRUE(decoder.decode(sender.send(island, 0).keyframe));
     island.live(random, 2);
-    return sender.send(island.frame(), 2);
+    return sender.send(island, 2);
 }
 
 RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, bool wide)) {
@@ -221,8 +79,8 @@ RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, boo
         if (ticks > 0) {
             island.live(random, ticks);
         }
-        auto sent = sender.send(island.frame(), ticks);
-        const Scene scene = scene_of(sent.columns);
+        auto sent = sender.send(island, ticks);
+        const Scene scene = island.scene();
         const auto expected = decode(sent.columns).value();
         const auto same = [&](const Result<Picture>& picture, const PictureDecoder& decoder) {
             RC_ASSERT(picture.has_value());
@@ -232,6 +90,7 @@ RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, boo
             RC_ASSERT(picture->organisms.health == expected.organisms.health);
             RC_ASSERT(picture->food.x_px == expected.food.x_px);
             RC_ASSERT(picture->crates.x_px == expected.crates.x_px);
+            RC_ASSERT(picture->crates.id == expected.crates.id);
             RC_ASSERT(picture->obstacles.half_width_px == expected.obstacles.half_width_px);
             RC_ASSERT(picture->about.world() == "w");
             RC_ASSERT(picture->about.width_px() == island.side_px);
@@ -249,13 +108,13 @@ TEST(DeltaCodec, ADeltaIsTheseBytes) {
     island.organisms = {{.id = 3, .x = 100 * px, .y = 50 * px, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F}};
     island.food = {{.id = 0, .x = px, .y = px}, {.id = 7, .x = 2 * px, .y = 3 * px}};
     Sender sender;
-    sender.send(island.frame(), 0);
+    sender.send(island, 0);
     island.organisms[0].x += px; // 16 steps
-    sender.send(island.frame(), 2);
+    sender.send(island, 2);
     island.organisms[0].x += 2 * px; // 16 more than foretold
     island.organisms[0].health -= 0.5F;
     island.food.erase(island.food.begin());
-    const auto delta = sender.send(island.frame(), 2).delta;
+    const auto delta = sender.send(island, 2).delta;
     EXPECT_EQ(delta.body(), std::string("\x02\x00"
                                         "\x00\x01\x10\x00\x01\xf8" // organisms: x +16, y as foretold, health -8
                                         "\x01\x01\x00\x00\x00\x00" // food: one is gone, the first
@@ -269,9 +128,9 @@ TEST(DeltaCodec, AColumnOfAFewLargeNumbersTellsThemAlone) {
         island.organisms.push_back({.id = id, .x = 0, .y = 0, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F});
     }
     Sender sender;
-    sender.send(island.frame(), 0);
+    sender.send(island, 0);
     island.organisms[500].x = 4000 * px;
-    const auto sent = sender.send(island.frame(), 2);
+    const auto sent = sender.send(island, 2);
     EXPECT_EQ(sent.delta.body().size(), 2U + 1 + (1 + 4 + 8) + 1 + 1 + 4);
 }
 
@@ -349,7 +208,7 @@ TEST(DeltaDamage, CountsThatNoBodyBacksTakeNoMemory) {
         }
     }
     // A keyframe without entities but for a count of those that come.
-    evod::v1::SnapshotFrame frame = LivingIsland{}.frame();
+    evod::v1::SnapshotFrame frame = LivingIsland{}.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
     frame.set_organism_count(0xffffffff);
     frame.set_body(std::string("\0\0\2\xff\xff\xff\xff\0\0\0\0", 11));
@@ -358,7 +217,7 @@ TEST(DeltaDamage, CountsThatNoBodyBacksTakeNoMemory) {
 }
 
 TEST(DeltaDamage, ACompressedBodyHoldsNoMoreThanItsCountsAllow) {
-    evod::v1::SnapshotFrame frame = LivingIsland{}.frame();
+    evod::v1::SnapshotFrame frame = LivingIsland{}.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
     frame.set_body(std::string(100'000, '\0'));
     compress(frame);

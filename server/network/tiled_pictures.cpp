@@ -1,0 +1,169 @@
+#include "server/network/tiled_pictures.h"
+
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/wire_format_lite.h>
+
+#include <span>
+#include <utility>
+
+namespace evod::network {
+
+IslandTiles::IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene,
+                         wire::Compressor& compressor)
+    : scene_{std::move(scene), wire::tile_layout(about.width_px(), about.height_px())}
+    , about_{std::move(about)}
+    , compressor_{&compressor} {
+    about_.set_codec(v1::CODEC_DELTA);
+    about_.set_tile_px(scene_.layout().tile_px);
+}
+
+const SharedBytes& IslandTiles::about_bytes() {
+    if (!about_bytes_)
+        about_bytes_ = std::make_shared<const std::string>(about_.SerializeAsString());
+    return about_bytes_;
+}
+
+SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, v1::Compression compression) {
+    using google::protobuf::internal::WireFormatLite;
+    using google::protobuf::io::CodedOutputStream;
+    const wire::Counts counts = scene_.counts(tile.tile());
+    tile.set_organism_count(counts[0]);
+    tile.set_food_count(counts[1]);
+    tile.set_poison_count(counts[2]);
+    tile.set_crate_count(counts[3]);
+    tile.set_obstacle_count(counts[4]);
+    tile.set_sequence(about_.sequence());
+    tile.set_checksum(wire::checksum_of(about_, tile, body));
+    set_body(tile, std::move(body), compression, *compressor_);
+
+    constexpr std::uint32_t tag =
+        WireFormatLite::MakeTag(v1::SnapshotFrame::kTilesFieldNumber, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
+    const auto length = static_cast<std::uint32_t>(tile.ByteSizeLong());
+    std::string field(CodedOutputStream::VarintSize32(tag) + CodedOutputStream::VarintSize32(length) + length, '\0');
+    auto* to = reinterpret_cast<std::uint8_t*>(field.data());
+    to = CodedOutputStream::WriteTagToArray(tag, to);
+    to = CodedOutputStream::WriteVarint32ToArray(length, to);
+    tile.SerializeWithCachedSizesToArray(to);
+    return std::make_shared<const std::string>(std::move(field));
+}
+
+const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1::Compression compression) {
+    if (coarse_.empty())
+        coarse_.resize(scene_.layout().count());
+    const bool dots = detail == v1::DETAIL_DOTS;
+    SharedBytes& bytes = coarse_[tile][(dots ? 0 : 2) + (compression == v1::COMPRESSION_ZSTD ? 1 : 0)];
+    if (!bytes) {
+        v1::TilePicture picture;
+        picture.set_tile(tile);
+        picture.set_detail(detail);
+        bytes = encode(std::move(picture), dots ? scene_.dots(tile) : scene_.density(tile), compression);
+    }
+    return bytes;
+}
+
+TiledPicture::TiledPicture(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledPicture>& before,
+                           runtime::Clock::time_point now, runtime::Clock::duration between)
+    : island_{std::move(island)}, now_{now}, between_{between}, tiles_(layout().count()) {
+    const wire::Counts counts = island_->scene().counts_before(layout().count());
+    organisms_.x.resize(counts[0]);
+    organisms_.y.resize(counts[0]);
+    crates_.x.resize(counts[3]);
+    crates_.y.resize(counts[3]);
+    if (!before)
+        return;
+    before->before_ = nullptr; // nobody is sent that one any more
+    const auto ticks = ticks_between(before->island_->about(), island_->about());
+    if (!ticks || before->layout() != layout())
+        return;
+    before_ = before;
+    ticks_ = *ticks;
+}
+
+const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression,
+                                      std::uint64_t sent) {
+    if (detail != v1::DETAIL_FULL)
+        return island_->coarse(tile, detail, compression);
+    Tile& of = full(tile);
+    const bool has_base = sent != 0 && sent == of.base_sequence;
+    const Form form = sent == sequence() ? Form::Again : has_base ? Form::Delta : Form::Keyframe;
+    SharedBytes& bytes = of.forms[static_cast<std::size_t>(form)][compression == v1::COMPRESSION_ZSTD ? 1 : 0];
+    if (bytes)
+        return bytes;
+    v1::TilePicture picture;
+    picture.set_tile(tile);
+    picture.set_detail(detail);
+    std::string body;
+    switch (form) {
+    case Form::Keyframe:
+        body = wire::encode_keyframe(footing(tile));
+        break;
+    case Form::Delta:
+        picture.set_base_sequence(of.base_sequence);
+        body = of.delta;
+        break;
+    case Form::Again: {
+        picture.set_base_sequence(sequence());
+        const wire::FootingView here = footing(tile);
+        body = wire::encode_delta(here, here.scene, 0);
+        break;
+    }
+    }
+    return bytes = island_->encode(std::move(picture), std::move(body), compression);
+}
+
+TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
+    Tile& of = tiles_[tile];
+    if (std::exchange(of.there, true))
+        return of;
+    of.keyframe_made = now_;
+    if (before_ && before_->tiles_[tile].there) {
+        const Tile& before = before_->tiles_[tile];
+        const wire::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
+        const auto part = [&](Displacements& all, std::size_t k) {
+            return wire::MovedOn::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
+                                                std::span{all.y}.subspan(begin[k], count[k])};
+        };
+        const wire::SceneView scene = island_->scene().full(tile);
+        const wire::MovedOn to{.organisms = part(organisms_, 0), .crates = part(crates_, 3)};
+        of.ticks = ticks_ > 0 ? ticks_ : before.ticks;
+        // The next picture would come too late to be the keyframe.
+        if (now_ + between_ > before.keyframe_made + keyframe_interval) {
+            wire::move_on(before_->footing(tile), scene, ticks_, to);
+        } else {
+            of.delta = wire::encode_delta(before_->footing(tile), scene, ticks_, &to);
+            of.base_sequence = before_->sequence();
+            of.keyframe_made = before.keyframe_made;
+        }
+    }
+    return of;
+}
+
+wire::FootingView TiledPicture::footing(std::uint32_t tile) const {
+    const wire::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
+    const auto part = [&](const Displacements& all, std::size_t k) {
+        return wire::FootingView::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
+                                                std::span{all.y}.subspan(begin[k], count[k])};
+    };
+    wire::FootingView footing;
+    footing.scene = island_->scene().full(tile);
+    footing.organisms = part(organisms_, 0);
+    footing.crates = part(crates_, 3);
+    footing.ticks = tiles_[tile].ticks;
+    return footing;
+}
+
+void TilesSent::add_parts(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail,
+                          v1::Compression compression, std::vector<SharedBytes>& parts) const {
+    parts.push_back(picture.about());
+    seen.each(picture.layout(), [&](std::uint32_t tile) {
+        const bool has = full_.contains(picture.layout(), tile);
+        parts.push_back(picture.tile(tile, detail, compression, has ? sequence_ : 0));
+    });
+}
+
+void TilesSent::sent(const TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail) {
+    sequence_ = picture.sequence();
+    full_ = detail == v1::DETAIL_FULL ? seen : wire::TileRange{};
+}
+
+} // namespace evod::network

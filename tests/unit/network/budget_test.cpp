@@ -1,0 +1,157 @@
+#include "server/network/budget.h"
+
+#include "tests/support/manual_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+namespace evod::network {
+namespace {
+
+using namespace std::chrono_literals;
+using v1::DETAIL_DENSITY;
+using v1::DETAIL_DOTS;
+using v1::DETAIL_FULL;
+
+class BudgetTest : public testing::Test {
+  protected:
+    /// What becomes of a picture of these costs now, and what of one every 50 ms for a while.
+    std::optional<v1::Detail> choose(Budget& budget) {
+        const auto detail = budget.choose(clock_.now(), [&](v1::Detail of) { return costs_.at(of); }).detail;
+        sent_bytes_ += detail ? costs_.at(*detail) : 0;
+        return detail;
+    }
+    std::vector<std::optional<v1::Detail>> choose_for(Budget& budget, std::chrono::seconds time) {
+        std::vector<std::optional<v1::Detail>> chosen;
+        for (auto passed = 0ms; passed < time; passed += 50ms) {
+            clock_.advance(50ms);
+            chosen.push_back(choose(budget));
+        }
+        return chosen;
+    }
+    static std::ptrdiff_t count(const std::vector<std::optional<v1::Detail>>& chosen, std::optional<v1::Detail> of) {
+        return std::count(chosen.begin(), chosen.end(), of);
+    }
+    static std::size_t changes(const std::vector<std::optional<v1::Detail>>& chosen) {
+        std::size_t changes = 0;
+        for (std::size_t i = 1; i < chosen.size(); ++i)
+            changes += chosen[i] != chosen[i - 1];
+        return changes;
+    }
+
+    support::ManualClock clock_;
+    std::map<v1::Detail, std::size_t> costs_{{DETAIL_FULL, 1000}, {DETAIL_DOTS, 300}, {DETAIL_DENSITY, 100}};
+    std::size_t sent_bytes_ = 0;
+};
+
+TEST_F(BudgetTest, EverythingIsShownWhileThereIsEnough) {
+    Budget budget{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
+    for (const auto& detail : choose_for(budget, 60s))
+        EXPECT_EQ(detail, DETAIL_FULL);
+}
+
+TEST_F(BudgetTest, DetailIsLeftOutBeforePicturesAre) {
+    Budget dots{10'000, DETAIL_FULL}, density{2'500, DETAIL_FULL};
+    choose_for(dots, 60s);
+    choose_for(density, 60s);
+    const auto in_dots = choose_for(dots, 60s), in_density = choose_for(density, 60s);
+    // All but now and then, when more detail is tried.
+    EXPECT_GT(count(in_dots, DETAIL_DOTS), 1000);
+    EXPECT_GT(count(in_density, DETAIL_DENSITY), 1000);
+    EXPECT_EQ(count(in_dots, std::nullopt), 0);
+    EXPECT_EQ(count(in_density, std::nullopt), 0);
+    Budget pictures{1'000, DETAIL_FULL};
+    choose_for(pictures, 60s);
+    const auto few = choose_for(pictures, 2s);
+    EXPECT_GT(count(few, std::nullopt), 10);
+    EXPECT_GT(count(few, DETAIL_DENSITY), 10);
+}
+
+TEST_F(BudgetTest, IsKeptInTheLongRunWhateverPicturesCost) {
+    std::uint64_t random = 1;
+    for (const double bytes_per_s : {1'000.0, 7'000.0, 30'000.0}) {
+        Budget budget{bytes_per_s, DETAIL_FULL};
+        sent_bytes_ = 0;
+        for (int round = 0; round < 200; ++round) {
+            random = random * 6364136223846793005U + 1442695040888963407U;
+            costs_[DETAIL_FULL] = (random >> 33) % 5000;
+            costs_[DETAIL_DOTS] = (random >> 40) % 2000;
+            costs_[DETAIL_DENSITY] = (random >> 45) % 1500;
+            choose_for(budget, 1s);
+        }
+        // What was saved at first, and the longest picture.
+        EXPECT_LE(static_cast<double>(sent_bytes_), (200 + Budget::saved_s_max) * bytes_per_s + 5000);
+        EXPECT_GT(static_cast<double>(sent_bytes_), 100 * bytes_per_s) << "it is made use of, too";
+    }
+}
+
+TEST_F(BudgetTest, DetailComesBackWhenItFitsAgain) {
+    Budget budget{10'000, DETAIL_FULL};
+    EXPECT_GT(count(choose_for(budget, 30s), DETAIL_DOTS), 400);
+    costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 300}, {DETAIL_DENSITY, 100}};
+    const auto chosen = choose_for(budget, std::chrono::seconds{Budget::patience_max} + 1s);
+    EXPECT_EQ(chosen.back(), DETAIL_FULL);
+    EXPECT_EQ(changes(chosen), 1U);
+}
+
+TEST_F(BudgetTest, EverythingIsShownWhereItCostsLessThanDots) {
+    Budget budget{10'000, DETAIL_FULL};
+    choose_for(budget, 30s);
+    costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 1200}, {DETAIL_DENSITY, 100}};
+    EXPECT_EQ(choose_for(budget, std::chrono::seconds{Budget::patience_max} + 1s).back(), DETAIL_FULL);
+}
+
+TEST_F(BudgetTest, DetailDoesNotComeAndGoWithEveryPicture) {
+    Budget budget{6'000, DETAIL_FULL}; // dots, just
+    choose_for(budget, 60s);
+    EXPECT_LE(changes(choose_for(budget, 120s)), 8U) << "of 2400 pictures";
+}
+
+TEST_F(BudgetTest, AKeyframeNowAndThenIsSavedFor) {
+    Budget budget{12'000, DETAIL_FULL};
+    for (int i = 0; i < 1000; ++i) { // 39 of 400 bytes and one of 8,000 every 2 s: 11,800 a second
+        costs_[DETAIL_FULL] = i % 40 == 0 ? 8000 : 400;
+        clock_.advance(50ms);
+        ASSERT_EQ(choose(budget), DETAIL_FULL) << i;
+    }
+}
+
+TEST_F(BudgetTest, WhatIsLongerThanCanBeSavedForIsSentNowAndThen) {
+    costs_ = {{DETAIL_FULL, 90'000}, {DETAIL_DOTS, 80'000}, {DETAIL_DENSITY, 70'000}};
+    Budget budget{1'000, DETAIL_FULL};
+    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+    sent_bytes_ = 0;
+    const auto chosen = choose_for(budget, 700s);
+    EXPECT_EQ(count(chosen, DETAIL_DENSITY), 10);
+    EXPECT_EQ(sent_bytes_, 700'000U);
+}
+
+TEST_F(BudgetTest, TellsWhenAPictureCanBeSent) {
+    costs_ = {{DETAIL_DENSITY, 1'500}};
+    Budget budget{1'000, DETAIL_DENSITY};
+    const auto cost = [&](v1::Detail of) { return costs_.at(of); };
+    EXPECT_TRUE(choose(budget)); // 500 are left
+    const auto now = clock_.now();
+    EXPECT_EQ(budget.choose(now, cost).again, now + 1s);
+    EXPECT_FALSE(budget.choose(now + 999ms, cost).detail);
+    EXPECT_EQ(budget.choose(now + 1s, cost).detail, DETAIL_DENSITY);
+}
+
+TEST_F(BudgetTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
+    Budget budget{1e9, DETAIL_DOTS};
+    for (const auto& detail : choose_for(budget, 10s))
+        EXPECT_EQ(detail, DETAIL_DOTS);
+    budget.change(3'000, DETAIL_FULL);
+    EXPECT_EQ(choose(budget), DETAIL_FULL);
+    choose_for(budget, 10s);
+    EXPECT_NE(choose(budget), DETAIL_FULL);
+    budget.change(1e9, DETAIL_FULL);
+    clock_.advance(50ms);
+    EXPECT_EQ(choose(budget), DETAIL_FULL);
+}
+
+} // namespace
+} // namespace evod::network
