@@ -118,6 +118,7 @@ constexpr std::chrono::milliseconds untaken_max{30'000};
 constexpr std::size_t retry_bytes_max = 64 << 20;
 
 constexpr std::chrono::milliseconds look_every{500};   // for a token file that has changed, and who is stalled
+constexpr std::size_t ended_to_trim = 64;              // sessions between two looks; then memory is given back
 constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
 constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
 

@@ -72,6 +72,12 @@ asio::awaitable<void> Line::finish() {
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
 }
 
+void Line::abort() {
+    boost::system::error_code ignored; // then it is closed as others are
+    socket_.set_option(asio::socket_base::linger{true, 0}, ignored);
+    close();
+}
+
 void Line::close() {
     boost::system::error_code ignored; // closed is closed
     socket_.close(ignored);

@@ -48,6 +48,8 @@ class Line {
     /// read meanwhile.
     asio::awaitable<void> finish();
     void close();
+    /// Closes, and what the other end has not taken is thrown away: nothing is left of it in the system either.
+    void abort();
 
   private:
     tcp::socket socket_;

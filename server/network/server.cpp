@@ -14,6 +14,8 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <csignal>
 #include <functional>
@@ -80,6 +82,7 @@ Server::Server(ServerOptions options)
     };
     host_.ended = [this](Session& session) {
         --connections_;
+        ++ended_since_look_;
         const bool watched = !session.snapshots.empty() || !session.events.empty();
         dispatcher_.forget(session);
         sessions_.erase(session.number());
@@ -234,6 +237,9 @@ void Server::look_around() {
         const auto now = clock_.now();
         for (const auto& [number, session] : sessions_)
             session->mind_progress(now);
+        // What many sessions leave is scattered over the heap, and is not given back by itself.
+        if (std::exchange(ended_since_look_, 0) >= ended_to_trim)
+            ::malloc_trim(0);
         look_around();
     });
 }

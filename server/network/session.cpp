@@ -664,7 +664,10 @@ void Session::finish() {
 void Session::close() {
     if (std::exchange(ended_, true))
         return;
-    line_.close();
+    if (sending_.empty())
+        line_.close();
+    else
+        line_.abort();
     hello_timer_.cancel();
     frame_timer_.cancel();
     turn_timer_.cancel();

@@ -5,7 +5,8 @@
 // Full         requests: more than requests_per_s_max are not read before it is time. Responses: a client that leaves
 //              more than queued_response_bytes_max unread is closed. Events: dropped and counted, then told with
 //              EventsDropped. Pictures: one of each subscription and island waits, the newest, until the client has
-//              acknowledged enough of those before it, and its budget allows it. Whoever takes nothing at all for a while is closed.
+//              acknowledged enough of those before it, and its budget allows it. Whoever takes nothing at all for a
+//              while is closed.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -13,8 +14,8 @@
 #include "server/access/gate.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
-#include "server/network/buffers.h"
 #include "server/network/budget.h"
+#include "server/network/buffers.h"
 #include "server/network/chains.h"
 #include "server/network/limits.h"
 #include "server/network/line.h"

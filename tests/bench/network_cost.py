@@ -1,0 +1,195 @@
+"""What clients cost the simulation, whether they watch, idle or attack; how soon commands and pictures come beside them.
+
+    network_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--only NAME ...] [--json]
+
+The world is that of default.json with scale_with_population. It runs free with one worker; the same ticks of the same run
+are simulated by turns with such clients and without. The clients are a process of their own (tests/system/attacker.py),
+pinned to another core than the server's simulation thread. A loss is the rise of the simulation thread's processor time
+per tick, plus the processor time of all other threads of the server over the simulation thread's. Pictures come 20 times
+a second, as deltas without compression.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("evod", help="the program")
+parser.add_argument("messages", help="where the Python classes of the messages are: build/release/tests/system")
+parser.add_argument("--organisms", type=int, default=10_000)
+parser.add_argument("--runs", type=int, default=9, help="pairs of runs of each kind of client")
+parser.add_argument("--only", nargs="+", metavar="NAME", help="of the kinds of clients below, and latency")
+parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+options = parser.parse_args()
+sys.path.insert(0, options.messages)
+
+from bench_client import Client, print_figures  # noqa: E402
+from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2 as w  # noqa: E402
+
+attacker = pathlib.Path(__file__).resolve().parents[1] / "system/attacker.py"
+cores = sorted(os.sched_getaffinity(0))
+server_core, client_core = cores[0], cores[-1]
+first_tick, last_tick = 120, 120 + max(200, 20_000_000 // options.organisms)
+kinds = {"viewer_1": ("watch", 1), "viewers_10": ("watch", 10), "viewers_50": ("watch", 50),
+         "region_viewers_200": ("views", 200), "idle_1000": ("idle", 1000), "slow_200": ("slow", 200),
+         "deaf_100": ("deaf", 100), "malformed_50000_a_second": ("malformed", 50_000)}
+
+
+class Server:
+    def __init__(self, *arguments, threads="1"):
+        self.process = subprocess.Popen([options.evod, "--port", "0", "--threads", threads, "--sessions-max", "2000",
+                                         *arguments], stdout=subprocess.PIPE, text=True)
+        for line in self.process.stdout:
+            if "listening on " in line:
+                self.port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
+                break
+        self.log = []
+        threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True).start()
+        self.control = Client(self.port)
+
+    def create(self, organisms):
+        parameters = [w.ParameterAssignment(name="population_size", value=w.ParameterValue(count=organisms)),
+                      w.ParameterAssignment(name="scale_with_population", value=w.ParameterValue(flag=True))]
+        self.control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=parameters))
+        self.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+
+    def pin(self):
+        """The simulation thread to one core; the others go where they like."""
+        for task in os.listdir(f"/proc/{self.process.pid}/task"):
+            if open(f"/proc/{self.process.pid}/task/{task}/comm").read().strip() == "simulation":
+                os.sched_setaffinity(int(task), {server_core})
+
+    def thread_s(self):
+        """Processor seconds: of the simulation thread, of all others."""
+        simulation, others = 0.0, 0.0
+        for task in os.listdir(f"/proc/{self.process.pid}/task"):
+            seconds = int(open(f"/proc/{self.process.pid}/task/{task}/schedstat").read().split()[0]) / 1e9
+            if open(f"/proc/{self.process.pid}/task/{task}/comm").read().strip() == "simulation":
+                simulation = seconds
+            else:
+                others += seconds
+        return simulation, others
+
+    def memory_bytes(self):
+        return int(re.search(r"VmRSS:\s+(\d+)", open(f"/proc/{self.process.pid}/status").read())[1]) * 1024
+
+    def end(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+class Clients:
+    def __init__(self, port, kind, number):
+        self.process = subprocess.Popen([sys.executable, str(attacker), options.messages, str(port), kind, str(number)],
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        os.sched_setaffinity(self.process.pid, {client_core})
+        assert self.process.stdout.readline() == "ready\n"
+
+    def end(self):
+        return json.loads(self.process.communicate("enough\n")[0])
+
+
+def spread(values):
+    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
+
+
+def stretch(server):
+    """Processor and wall seconds of the ticks that are measured: of the simulation thread, the others, the clock."""
+    server.control.run_to(first_tick)
+    before, began = server.thread_s(), time.perf_counter()
+    server.control.run_to(last_tick)
+    wall = time.perf_counter() - began
+    return [after - earlier for after, earlier in zip(server.thread_s(), before)] + [wall]
+
+
+def loss(server, kind, number):
+    rises, shares, losses, walls, became, memory = [], [], [], [], None, []
+    for _ in range(options.runs):
+        server.control.call(reset_world=c.ResetWorld(world="w"))
+        alone = stretch(server)
+        server.control.call(reset_world=c.ResetWorld(world="w"))
+        without = server.memory_bytes()
+        clients = Clients(server.port, kind, number)
+        beside = stretch(server)
+        memory.append((server.memory_bytes() - without) / number)
+        became = clients.end()
+        rises.append(100 * (beside[0] / alone[0] - 1))
+        shares.append(100 * beside[1] / beside[0])
+        losses.append(rises[-1] + shares[-1])
+        walls.append(100 * (beside[2] / alone[2] - 1))
+    return {"loss_percent": spread(losses), "simulation_rise_percent": spread(rises),
+            "others_share_percent": spread(shares), "wall_rise_percent": spread(walls),
+            "memory_bytes_each": spread(memory), **{name: became[name] for name in ("frames", "bytes", "closed", "seconds")}}
+
+
+def measure_losses():
+    server = Server("--keep-nothing")
+    server.create(options.organisms)
+    server.pin()
+    figures = {"organisms": options.organisms, "ticks": last_tick - first_tick, "pairs": options.runs}
+    for name, (kind, number) in kinds.items():
+        if options.only is None or name in options.only:
+            figures[name] = loss(server, kind, number)
+            print(name, json.dumps(figures[name]), file=sys.stderr, flush=True)
+    server.end()
+    return figures
+
+
+def percentile(values, percent):
+    return sorted(values)[min(len(values) - 1, len(values) * percent // 100)]
+
+
+def measure_latency(folder):
+    """Milliseconds to the answer of a command beside a full stream; to the first picture of one who comes late."""
+    figures = {}
+    for name, arguments in (("kept_nothing", ["--keep-nothing"]), ("durable", ["--data", folder])):
+        server = Server(*arguments)
+        server.create(options.organisms)
+        clients = Clients(server.port, "watch", 10)
+        server.control.call(run=c.Run(world="w"))
+        time.sleep(1)
+        ticks = next(x for x in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == "w").ticks_per_s
+        times = []
+        for _ in range(1000):
+            began = time.perf_counter()
+            server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+            times.append(1e3 * (time.perf_counter() - began))
+        figures[f"command_{name}_ms"] = {"tick": 1e3 / ticks, "median": statistics.median(times),
+                                         "p99": percentile(times, 99), "max": max(times)}
+        clients.end()
+        server.end()
+    for organisms in (10_000, 100_000):
+        server = Server("--keep-nothing")
+        server.create(organisms)
+        server.control.call(run=c.Run(world="w"))
+        times = []
+        for _ in range(15):
+            began = time.perf_counter()
+            viewer = Client(server.port)
+            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=stream_pb2.CODEC_DELTA,
+                                                                 compression=stream_pb2.COMPRESSION_ZSTD))
+            while viewer.frame()[0] != 2:
+                pass
+            times.append(1e3 * (time.perf_counter() - began))
+            viewer.socket.close()
+        figures[f"first_picture_{organisms}_ms"] = spread(times)
+        server.end()
+    return figures
+
+
+def measure():
+    figures = {} if options.only == ["latency"] else measure_losses()
+    if options.only is None or "latency" in options.only:
+        with tempfile.TemporaryDirectory() as folder:
+            figures |= measure_latency(folder)
+    return figures
+
+
+print_figures(measure(), options.json)

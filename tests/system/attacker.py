@@ -1,0 +1,196 @@
+"""Clients that mean no good, or fail: a process of its own, so that what they cost is not the honest clients' to bear.
+
+    attacker.py MESSAGES PORT ATTACK NUMBER [SECONDS]
+
+Prints "ready" once all of it is under way, and ends when its standard input does, or after SECONDS; then it prints what
+became of it, as JSON. It never has more than NUMBER connections, and makes no more than 1,000 a second.
+
+    idle N       N sessions that log in and say nothing more
+    slow N       N connections that send a frame a byte at a time; those that are closed come again
+    deaf N       N sessions that subscribe to pictures and never read them
+    connects N   N connections a second, each closed at once
+    malformed N  N frames a second with bodies that are no message, on one session that reads its answers
+    views N      N viewers of the world w, each of a part of it of its own; pictures are read away
+    watch N      N viewers of the whole world w; pictures are read away
+"""
+import json
+import select
+import socket
+import struct
+import sys
+import time
+
+messages_path, port, attack, number = sys.argv[1], int(sys.argv[2]), sys.argv[3], int(sys.argv[4])
+seconds = float(sys.argv[5]) if len(sys.argv) > 5 else 600.0
+sys.path.insert(0, messages_path)
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2  # noqa: E402
+
+begun = time.monotonic()
+counts = {"connected": 0, "closed": 0, "bytes": 0, "frames": 0}
+closed_after_s = []
+buffer = bytearray(1 << 20)
+
+
+def framed(message):
+    body = message.SerializeToString()
+    return b"EV\x01\x01" + struct.pack("<I", len(body)) + body
+
+
+hello = framed(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="attacker")))
+
+
+def asking(**request):
+    return framed(session_pb2.ClientMessage(request=c.Request(request_id=1, **request)))
+
+
+def subscribing(view=None):
+    return asking(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=stream_pb2.CODEC_DELTA,
+                                                           compression=stream_pb2.COMPRESSION_NONE, view=view))
+
+
+class Connection(socket.socket):
+    since = 0.0  # time.monotonic()
+    position = 0  # of the next byte to send, where they are sent one by one
+
+
+def connect(i, *sent, receive_bytes=None):
+    """From one of many addresses, as if from many machines."""
+    connection = Connection()
+    if receive_bytes:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_bytes)
+    connection.bind((f"127.0.{1 + i // 100 % 200}.{1 + i % 100}", 0))
+    connection.connect(("127.0.0.1", port))
+    connection.sendall(b"".join(sent))
+    connection.setblocking(False)
+    connection.since = time.monotonic()
+    counts["connected"] += 1
+    return connection
+
+
+def over():
+    return time.monotonic() - begun > seconds or bool(select.select([sys.stdin], [], [], 0)[0])
+
+
+def take(connection):
+    """Reads what there is; False: it was closed."""
+    try:
+        while got := connection.recv_into(buffer):
+            counts["bytes"] += got
+            if got < len(buffer):
+                return True
+        return False
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+
+
+def ready():
+    print("ready", flush=True)
+
+
+def close(connections, poller, descriptor):
+    connection = connections.pop(descriptor)
+    poller.unregister(descriptor)
+    counts["closed"] += 1
+    closed_after_s.append(time.monotonic() - connection.since)
+    connection.close()
+
+
+def hold(make, reads=True, again=False, each_round=None, pause_s=0.2):
+    """Keeps so many connections; those that are closed come again if `again`."""
+    poller, connections, made = select.epoll(), {}, 0
+
+    def add():
+        nonlocal made
+        connection = make(made)
+        made += 1
+        connections[connection.fileno()] = connection
+        poller.register(connection.fileno(), select.EPOLLRDHUP | select.EPOLLHUP | (select.EPOLLIN if reads else 0))
+
+    for _ in range(number):
+        add()
+    ready()
+    while not over():
+        for descriptor, event in poller.poll(pause_s):
+            gone = event & (select.EPOLLRDHUP | select.EPOLLHUP | select.EPOLLERR)
+            if not gone and take(connections[descriptor]):
+                continue
+            close(connections, poller, descriptor)
+            if again:
+                add()
+        if each_round:
+            for descriptor in [d for d, connection in connections.items() if not each_round(connection)]:
+                close(connections, poller, descriptor)
+                if again:
+                    add()
+    counts["open"] = len(connections)
+
+
+def slow():
+    slow_frame = asking(list_worlds=c.ListWorlds())
+
+    def a_byte_more(connection):
+        if time.monotonic() - connection.since < connection.position:
+            return True
+        try:
+            connection.send((slow_frame * 100)[connection.position:connection.position + 1])
+        except OSError:
+            return False
+        connection.position += 1
+        return True
+
+    # Half of them log in first.
+    hold(lambda i: connect(i, *([hello] if i % 2 else [])), again=True, each_round=a_byte_more)
+
+
+def connects():
+    ready()
+    while not over():
+        for i in range(max(1, number // 50)):
+            connect(counts["connected"]).close()
+        time.sleep(max(0.0, begun + counts["connected"] / number - time.monotonic()))
+
+
+def malformed():
+    connection = connect(0, hello)
+    batch = (b"EV\x01\x01" + struct.pack("<I", 8) + b"\xff\xfe\xfd\xfc\xfb\xfa\xf9\xf8") * 100
+    rest = b""
+    ready()
+    poller = select.poll()
+    poller.register(connection, select.POLLIN | select.POLLOUT)
+    while not over():
+        for _, event in poller.poll(100):
+            if event & select.POLLIN and not take(connection):
+                counts["closed"] += 1
+                return
+            if event & select.POLLOUT:
+                due = (time.monotonic() - begun) * number - counts["frames"]
+                if not rest and due < 100:
+                    time.sleep(0.001)
+                    continue
+                rest = rest or batch
+                try:
+                    rest = rest[connection.send(rest):]
+                except BlockingIOError:
+                    continue
+                except OSError:
+                    counts["closed"] += 1
+                    return
+                counts["frames"] += 0 if rest else 100
+
+
+def view(i):
+    return c.View(region=c.Region(left_px=300.0 * (i % 20), top_px=300.0 * (i // 20 % 20), width_px=1280, height_px=720))
+
+
+attacks = {"idle": lambda: hold(lambda i: connect(i, hello)),
+           "slow": slow,
+           "deaf": lambda: hold(lambda i: connect(i, hello, subscribing(), receive_bytes=4096), reads=False),
+           "connects": connects,
+           "malformed": malformed,
+           "views": lambda: hold(lambda i: connect(i, hello, subscribing(view(i)))),
+           "watch": lambda: hold(lambda i: connect(i, hello, subscribing()))}
+attacks[attack]()
+print(json.dumps({**counts, "seconds": time.monotonic() - begun,
+                  "closed_after_s": [min(closed_after_s), max(closed_after_s)] if closed_after_s else []}))

@@ -1,0 +1,134 @@
+"""Clients that mean no good, or fail, beside honest ones: the run is the same, the others are served, memory comes back.
+
+EVOD names the program, MESSAGES the folder of the message classes. Each test lets tests/system/attacker.py, a process of
+its own, at a server for a bounded time.
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+import unittest
+
+EVOD, MESSAGES = os.environ["EVOD"], os.environ["MESSAGES"]
+sys.argv[1:1] = [EVOD, MESSAGES, "-"]  # as plain_client reads them
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import plain_client as plain  # noqa: E402
+from delta_decoder import Decoder  # noqa: E402
+
+c, w = plain.c, plain.w
+MEMORY_BACK_BYTES = 8 << 20
+STEPS, STEP_TICKS = 10, 200
+STALLED_S, FRAME_S, HELLO_S = 10, 10, 5  # the server's limits
+PARAMETERS = {"population_size": 500, "scale_with_population": True}
+
+
+class Attack:
+    def __init__(self, server, kind, number):
+        self.process = subprocess.Popen(
+            [sys.executable, str(pathlib.Path(__file__).with_name("attacker.py")), MESSAGES, str(server.port), kind,
+             str(number)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        assert self.process.stdout.readline() == "ready\n"
+        self.begun = time.monotonic()
+
+    def lasted_s(self):
+        return time.monotonic() - self.begun
+
+    def end(self):
+        """What became of it."""
+        return json.loads(self.process.communicate("enough\n", plain.patience_s)[0])
+
+
+class Hostile(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = plain.Server("--sessions-max", "2000")
+        with plain.Client(cls.server) as client:
+            cls.begin_world(client)
+            cls.hash = client.run_to(STEPS * STEP_TICKS, "w").state_hash
+            client.call(delete_world=c.DeleteWorld(world="w"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.end()
+        assert "Sanitizer" not in cls.server.output(), cls.server.output()
+
+    @staticmethod
+    def begin_world(client):
+        client.response(client.ask(delete_world=c.DeleteWorld(world="w")))  # of a test that failed
+        client.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(**PARAMETERS)))
+        client.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+
+    def memory_bytes(self):
+        status = pathlib.Path(f"/proc/{self.server.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) << 10
+
+    def honest(self, viewer, control, tick):
+        """One who steps the world, and one who watches: both get all they ask for."""
+        stepped = control.run_to(tick, "w")
+        picture = viewer.next_picture(lambda one: viewer.decoder.decode(one) is not None and one.tick == tick)
+        self.assertEqual(picture.state_hash, stepped.state_hash)
+        return stepped
+
+    def attacked(self, kind, number, at_least_s=3.0, until=None):
+        """What became of the attackers, after honest work beside them."""
+        with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
+            self.begin_world(control)
+            viewer.decoder = Decoder(plain.zstd_content)
+            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=plain.stream_pb2.CODEC_DELTA))
+            self.honest(viewer, control, 1)
+            before = self.memory_bytes()
+            attack = Attack(self.server, kind, number)
+            self.addCleanup(attack.process.kill)
+            # At a pace at which it lasts so long.
+            pace = w.Speed(real_time_factor=STEPS * STEP_TICKS / 60 / at_least_s)
+            control.call(set_speed=c.SetSpeed(world="w", speed=pace))
+            for step in range(1, STEPS + 1):
+                stepped = self.honest(viewer, control, step * STEP_TICKS)
+            self.assertEqual(stepped.state_hash, self.hash)
+            became = attack.end()
+            plain.until(lambda: self.memory_bytes() <= before + MEMORY_BACK_BYTES, "memory comes back")
+            control.call(delete_world=c.DeleteWorld(world="w"))
+        return became
+
+    def test_a_thousand_idle_sessions(self):
+        became = self.attacked("idle", 1000)
+        self.assertEqual((became["open"], became["closed"]), (1000, 0))
+
+    def test_two_hundred_who_send_a_byte_at_a_time(self):
+        became = self.attacked("slow", 200, at_least_s=1.3 * FRAME_S)
+        self.assertGreaterEqual(became["closed"], 200)
+        self.assertGreater(became["closed_after_s"][0], 0.9 * HELLO_S)
+
+    def test_a_hundred_subscribers_who_never_read(self):
+        became = self.attacked("deaf", 100, at_least_s=2.0 * STALLED_S)
+        self.assertEqual((became["open"], became["closed"]), (0, 100))
+        self.assertGreater(became["closed_after_s"][0], 0.9 * STALLED_S)  # whatever fits on the way is sent first
+
+    def test_five_hundred_connections_a_second(self):
+        became = self.attacked("connects", 500)
+        self.assertGreater(became["connected"], 500)
+
+    def test_fifty_thousand_malformed_frames_a_second(self):
+        became = self.attacked("malformed", 50_000)
+        self.assertGreater(became["frames"], 1000)
+
+    def test_a_reader_who_pauses_is_cut_and_finds_all_well_when_it_comes_again(self):
+        with plain.Client(self.server) as control:
+            self.begin_world(control)
+            with plain.Client(self.server) as paused:
+                paused.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=60))
+                control.call(run=c.Run(world="w"))
+                who = f"plain 127.0.0.1:{paused.socket.getsockname()[1]}"
+                plain.until(lambda: f"{who} is closed" in self.server.output(), "it is noticed")
+                paused.assert_closed()
+            with plain.Client(self.server) as again:
+                again.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=60))
+                self.assertGreater(again.next_picture().tick, 0)
+            control.call(delete_world=c.DeleteWorld(world="w"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2, warnings="ignore")
