@@ -135,6 +135,7 @@ bool WatchingClient::hear(std::size_t count) {
 
 void WatchingClient::heard(const wire::Frame& frame) {
     require(!told_of_end_);
+    may_be_reason_ = false;
     if (frame.channel == wire::Channel::Stream) {
         auto picture = wire::parse_body<v1::SnapshotFrame>(frame.body);
         require(welcomed_ && picture);
@@ -160,14 +161,13 @@ void WatchingClient::heard(const v1::Response& response) {
     const std::uint64_t id = response.request_id();
     require(v1::Code_IsValid(response.status().code()));
     require(response.status().code() == v1::CODE_OK || !response.status().message().empty());
+    may_be_reason_ = id == 0 && response.status().code() != v1::CODE_OK;
     const auto found = outstanding_.find(id);
-    if (found == outstanding_.end()) {
-        // The reason for the session's end.
-        require(id == 0 && response.status().code() != v1::CODE_OK);
+    if (found == outstanding_.end() || !welcomed_) {
+        require(may_be_reason_);
         told_of_end_ = true;
         return;
     }
-    require(welcomed_);
     const Asked asked = std::move(found->second);
     outstanding_.erase(found);
     if (response.status().code() != v1::CODE_OK)
