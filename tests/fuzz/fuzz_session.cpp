@@ -121,6 +121,10 @@ class Play {
         const bool refused = how % 16 == 15 || server_.going_away();
         std::array<int, 2> ends{};
         require(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0);
+        if (how % 16 >= 8) { // a narrow line, so that things have to wait
+            const int bytes = 1;
+            require(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) == 0); // the least there is
+        }
         clients_.push_back(std::make_unique<WatchingClient>(ends[0], answers_, refused));
         if (refused)
             server_.accept(ends[1], base::refusal(base::RefusalCode::Unavailable, "not now"));
