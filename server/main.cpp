@@ -16,6 +16,7 @@
 #include "server/simulation/experiment.h"
 
 #include <CLI/CLI.hpp>
+#include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
 #include <charconv>
@@ -229,6 +230,9 @@ int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
 } // namespace
 
 int main(int argument_count, char** arguments) {
+    // What is wrong with a message is told to whoever sent it. Protocol Buffers would write a line of its own for each,
+    // and anybody could fill the log.
+    google::protobuf::SetLogHandler(nullptr);
     ServeOptions options;
     CLI::App app{"An evolution laboratory that runs as a server.", "evod"};
     app.set_version_flag("--version", std::string{"evod "} + EVOD_VERSION);

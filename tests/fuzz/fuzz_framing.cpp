@@ -1,59 +1,159 @@
-// Any bytes, cut anywhere, give the same frames and the same end; what a frame holds is parsed as both ends would.
+// Any bytes, cut in every way, give the same frames and the same end; what a frame holds is parsed as both ends would.
+//
+// The first byte says for whose limits they are read. All bytes are cut in ways that are drawn by them, short ones byte
+// by byte too. One input in 32, and which is drawn as well, is cut in every way: of up to 8 bytes all 2^(n-1); of up to
+// 16, which is a header, a body and the beginning of the next, all pairs of places; of up to 64 each place.
 #include "proto/wire/framing.h"
 
 #include "evod/v1/session.pb.h"
+#include "evod/v1/stream.pb.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <vector>
 
 namespace {
 
-struct Outcome {
-    std::vector<std::string> frames;
-    std::string damage;
-    friend bool operator==(const Outcome&, const Outcome&) = default;
+using namespace evod::wire;
+using Bytes = std::span<const std::byte>;
+
+void require(bool holds) {
+    if (!holds)
+        std::abort();
+}
+
+/// A frame ends here, `bytes` from the beginning; its body is the last of them.
+struct Found {
+    Channel channel;
+    std::size_t end, body_bytes;
 };
 
-Outcome read(std::span<const std::byte> bytes, std::size_t chunk_bytes) {
-    using namespace evod::wire;
-    Outcome outcome;
-    FrameReader reader{client_limits};
-    while (!bytes.empty()) {
-        const std::size_t length = std::min(chunk_bytes, bytes.size());
-        reader.feed(bytes.first(length));
-        bytes = bytes.subspan(length);
+/// What a reader makes of the bytes when they come at once.
+struct Whole {
+    std::vector<Found> frames;
+    std::string damage; // empty: there is none
+};
+
+Whole read_whole(Bytes bytes, const FrameLimits& limits) {
+    Whole whole;
+    FrameReader reader{limits};
+    reader.feed(bytes);
+    for (;;) {
+        const auto frame = reader.next();
+        if (!frame) {
+            whole.damage = frame.error().what;
+            require(!whole.damage.empty());
+            return whole;
+        }
+        if (!*frame)
+            return whole;
+        whole.frames.push_back({(*frame)->channel, bytes.size() - reader.buffered_bytes(), (*frame)->body.size()});
+    }
+}
+
+/// The same bytes in pieces: each frame must be there as soon as its last byte is, and damage must be said alike.
+class InPieces {
+  public:
+    InPieces(Bytes bytes, const FrameLimits& limits, const Whole& whole)
+        : bytes_{bytes}, whole_{whole}, reader_{limits} {}
+
+    /// The piece up to `cut` bytes from the beginning.
+    void feed_to(std::size_t cut) {
+        reader_.feed(bytes_.subspan(fed_, cut - fed_));
+        fed_ = cut;
         for (;;) {
-            const auto frame = reader.next();
+            const auto frame = reader_.next();
             if (!frame) {
-                outcome.damage = frame.error().what;
-                return outcome;
+                damage_ = frame.error().what;
+                return;
             }
-            if (!*frame) {
+            if (!*frame)
                 break;
-            }
+            require(next_ < whole_.frames.size());
+            const Found& expected = whole_.frames[next_++];
             const auto body = (*frame)->body;
-            outcome.frames.emplace_back(reinterpret_cast<const char*>(body.data()), body.size());
+            require((*frame)->channel == expected.channel && body.size() == expected.body_bytes &&
+                    std::memcmp(body.data(), bytes_.data() + expected.end - body.size(), body.size()) == 0);
+        }
+        require(next_ == whole_.frames.size() || whole_.frames[next_].end > fed_);
+    }
+    void finish() {
+        feed_to(bytes_.size());
+        require(next_ == whole_.frames.size() && damage_ == whole_.damage);
+    }
+
+  private:
+    const Bytes bytes_;
+    const Whole& whole_;
+    FrameReader reader_;
+    std::size_t fed_ = 0, next_ = 0;
+    std::string damage_;
+};
+
+void cut_in_every_way(Bytes bytes, const FrameLimits& limits, const Whole& whole) {
+    const std::size_t size = bytes.size();
+    if (size <= 8) {
+        for (std::uint32_t cuts = 0; size > 0 && cuts < 1u << (size - 1); ++cuts) {
+            InPieces pieces{bytes, limits, whole};
+            for (std::size_t at = 1; at < size; ++at)
+                if ((cuts >> (at - 1) & 1) != 0)
+                    pieces.feed_to(at);
+            pieces.finish();
+        }
+        return;
+    }
+    for (std::size_t first = 1; size <= 64 && first < size; ++first) {
+        for (std::size_t second = first; second < (size <= 16 ? size : first + 1); ++second) {
+            InPieces pieces{bytes, limits, whole};
+            pieces.feed_to(first);
+            pieces.feed_to(second); // where it is the first once more: a piece of nothing
+            pieces.finish();
         }
     }
-    return outcome;
+}
+
+/// next_length  says how long the next piece is, at least 1.
+void cut_by(Bytes bytes, const FrameLimits& limits, const Whole& whole, auto next_length) {
+    InPieces pieces{bytes, limits, whole};
+    for (std::size_t at = 0; at < bytes.size();) {
+        at = std::min(bytes.size(), at + next_length());
+        pieces.feed_to(at);
+    }
+    pieces.finish();
 }
 
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    if (size == 0) {
+    if (size == 0)
         return 0;
-    }
-    const auto bytes = std::as_bytes(std::span{data, size}).subspan(1);
-    const Outcome whole = read(bytes, bytes.size() + 1);
-    if (whole != read(bytes, 1 + data[0] % 16)) {
-        std::abort();
-    }
-    for (const std::string& body : whole.frames) {
-        (void)evod::wire::parse_body<evod::v1::ClientMessage>(std::as_bytes(std::span{body}));
-        (void)evod::wire::parse_body<evod::v1::ServerMessage>(std::as_bytes(std::span{body}));
+    constexpr FrameLimits limits_of[] = {hello_limits, server_limits, client_limits};
+    const FrameLimits& limits = limits_of[data[0] % std::size(limits_of)];
+    const Bytes bytes = std::as_bytes(std::span{data, size}).subspan(1);
+    std::uint32_t draw = data[0];
+    for (const std::byte byte : bytes)
+        draw = (draw ^ static_cast<std::uint32_t>(byte)) * 16777619u;
+    const Whole whole = read_whole(bytes, limits);
+    if (draw >> 27 == 0)
+        cut_in_every_way(bytes, limits, whole);
+    if (bytes.size() <= 64)
+        cut_by(bytes, limits, whole, [] { return 1; });
+    for (const std::size_t longest : {12, 1000})
+        cut_by(bytes, limits, whole, [longest, &draw] {
+            draw = draw * 1664525u + 1013904223u;
+            return 1 + (draw >> 16) % longest;
+        });
+
+    for (const auto& [channel, end, body_bytes] : whole.frames) {
+        const Bytes body = bytes.subspan(end - body_bytes, body_bytes);
+        (void)parse_body<evod::v1::ClientMessage>(body);
+        if (channel == Channel::Control)
+            (void)parse_body<evod::v1::ServerMessage>(body);
+        else
+            (void)parse_body<evod::v1::SnapshotFrame>(body);
     }
     return 0;
 }

@@ -1,0 +1,254 @@
+#include "tests/fuzz/watched_server.h"
+
+#include "server/network/random_ids.h"
+#include "server/protocol/events.h"
+#include "server/protocol/queries.h"
+#include "server/protocol/worlds.h"
+#include "tests/fuzz/sound_picture.h"
+
+#include <boost/asio/post.hpp>
+
+#include <cerrno>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+// ---- what a script must not depend on --------------------------------------------------------------------------
+
+evod::support::ManualClock& evod::fuzz::clock() {
+    static support::ManualClock clock;
+    return clock;
+}
+
+// Taken instead of the library's by all of the program.
+std::chrono::steady_clock::time_point std::chrono::steady_clock::now() noexcept {
+    return evod::fuzz::clock().now();
+}
+
+// Asio lets the kernel tell it of timers, who has another clock; without that it looks at the time itself.
+extern "C" int timerfd_create(int, int) noexcept {
+    errno = ENOSYS;
+    return -1;
+}
+
+namespace {
+std::uint64_t drawn = 0;
+} // namespace
+
+// Instead of server/network/random_ids.cpp.
+evod::base::Seed evod::network::draw_seed() {
+    return {++drawn};
+}
+evod::simulation::RunId evod::network::draw_run_id() {
+    return {0, ++drawn};
+}
+
+namespace evod::fuzz {
+namespace {
+
+/// Worlds beyond this would take a script's time; they are refused as if the machine were full.
+struct Bound {
+    const char* parameter;
+    double max;
+};
+constexpr Bound bounds[] = {{"population_size", 8},    {"island_count", 3},          {"food_count", 16},
+                            {"poison_count", 16},      {"obstacle_count", 2},        {"crate_count", 2},
+                            {"tournament_size", 8},    {"scale_with_population", 0}, {"island_width_px", 4000},
+                            {"island_height_px", 4000}};
+
+bool beyond(const Bound& bound, const simulation::ParameterValue& value) {
+    return std::visit(
+        [&](const auto& given) {
+            if constexpr (std::is_arithmetic_v<std::decay_t<decltype(given)>>)
+                return static_cast<double>(given) > bound.max;
+            else
+                return false;
+        },
+        value);
+}
+
+bool too_large(const simulation::Command& command) {
+    return std::ranges::any_of(bounds, [&](const Bound& bound) {
+        if (const auto* create = std::get_if<simulation::CreateWorld>(&command))
+            return beyond(bound, simulation::find_parameter(bound.parameter)->get(create->parameters));
+        const auto* set = std::get_if<simulation::SetParameters>(&command);
+        return set != nullptr && std::ranges::any_of(set->assignments, [&](const simulation::Assignment& assignment) {
+                   return assignment.name == bound.parameter && beyond(bound, assignment.value);
+               });
+    });
+}
+
+/// Decides only when a world advances.
+bool is_run_control(const simulation::Command& command) {
+    using namespace simulation;
+    return std::holds_alternative<Run>(command) || std::holds_alternative<RunUntilTick>(command) ||
+           std::holds_alternative<ReleaseLease>(command) || std::holds_alternative<Pause>(command) ||
+           std::holds_alternative<Resume>(command) || std::holds_alternative<SetSpeed>(command);
+}
+
+} // namespace
+
+base::Result<access::Visitor> admit(const std::string& token) {
+    if (const auto role = access::role_named(token))
+        return access::Visitor{.name = token, .role = *role};
+    return base::refusal(base::RefusalCode::Unauthenticated, "the token is not known");
+}
+
+WatchedServer::WatchedServer()
+    : outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
+    , streams_{sessions_, demand_, mailbox_}
+    , dispatcher_{context_, mailbox_, outbox_,
+                  demand_,  streams_, [this] { boost::asio::post(context_, [this] { go_away(); }); }}
+    , loop_{mailbox_,
+            demand_,
+            executor_,
+            clock(),
+            {.events =
+                 [this](const simulation::Laboratory& laboratory, std::vector<simulation::Event> events) {
+                     if (!demand_.events_wanted())
+                         return;
+                     for (const simulation::Event& event : events)
+                         outbox_.event([this, told = protocol::to_proto(event, laboratory)]() mutable {
+                             streams_.tell(std::move(told));
+                         });
+                 },
+             .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }}} {
+    drawn = 0;
+    host_.instance_id = "fuzz";
+    host_.handle = [this](network::Session& session, v1::Request request) {
+        dispatcher_.handle(session, std::move(request));
+    };
+    host_.admit = [](const std::string& token, const std::string&) { return admit(token); };
+    host_.ended = [this](network::Session& session) {
+        --connection_count_;
+        const bool watched = !session.snapshots.empty() || !session.events.empty();
+        dispatcher_.forget(session);
+        sessions_.erase(session.number());
+        if (watched)
+            streams_.update_demand();
+    };
+}
+
+void WatchedServer::accept(int descriptor, const std::optional<base::Refusal>& refusal) {
+    network::tcp::socket socket{context_};
+    socket.assign(network::tcp::v4(), descriptor); // of another family, which nobody asks for
+    const auto session = std::make_shared<network::Session>(std::move(socket), host_, ++session_number_);
+    ++connection_count_;
+    if (!refusal)
+        sessions_.emplace(session->number(), session);
+    session->start(refusal);
+}
+
+void WatchedServer::poll() {
+    context_.restart();
+    context_.poll();
+}
+
+void WatchedServer::pass() {
+    if (going_away_)
+        return;
+    watch_mail();
+    loop_.pass();
+}
+
+void WatchedServer::watch_mail() {
+    if (!mailbox_.pending())
+        return;
+    std::vector<runtime::Mail> waiting = mailbox_.drain();
+    mailbox_.wake();
+    for (runtime::Mail& mail : waiting) {
+        if (auto* command = std::get_if<runtime::CommandMail>(&mail)) {
+            require(carried_out_.emplace(command->origin.client_key, command->origin.request_id).second);
+            if (too_large(command->command)) {
+                command
+                    ->reply(loop_.laboratory(), command->command,
+                            base::refusal(base::RefusalCode::ResourceExhausted, "the world is too large"))
+                    .give();
+                continue;
+            }
+            const auto before = std::make_shared<std::string>();
+            mailbox_.push(runtime::QueryMail{[this, before](const auto&) { *before = state_of_all(); }});
+            command->reply = [this, before, reply = std::move(command->reply)](
+                                 const simulation::Laboratory& laboratory, const simulation::Command& carried_out,
+                                 const base::Result<simulation::Applied>& applied) {
+                if (applied)
+                    follow(carried_out, *applied);
+                else
+                    require(state_of_all() == *before);
+                return reply(laboratory, carried_out, applied);
+            };
+        }
+        mailbox_.push(std::move(mail));
+    }
+}
+
+std::string WatchedServer::state_of_all() const {
+    return protocol::list_worlds(loop_.laboratory()).SerializeAsString();
+}
+
+void WatchedServer::follow(const simulation::Command& command, const simulation::Applied& applied) {
+    if (is_run_control(command))
+        return;
+    if (const auto* set = std::get_if<simulation::SetParameters>(&command); set != nullptr && set->dry_run)
+        return;
+    // What stays is caught up with first.
+    const auto* fork = std::get_if<simulation::ForkWorld>(&command);
+    if (fork != nullptr || std::holds_alternative<simulation::SetParameters>(command)) {
+        const auto origin = loop_.laboratory().find(fork != nullptr ? fork->world : applied.world);
+        require(origin.has_value());
+        simulation::Entry& twin = catch_up(**origin);
+        if (fork != nullptr && fork->at_generation) {
+            require(twins_.fork(*fork, twin.world.at_its_opening(executor_)).has_value());
+            return;
+        }
+    }
+    const auto same = twins_.apply(command);
+    require(same && same->world == applied.world);
+}
+
+simulation::Entry& WatchedServer::catch_up(const simulation::Entry& entry) {
+    const auto twin = twins_.find(entry.name);
+    require(twin && (*twin)->run_id == entry.run_id);
+    simulation::World& world = (*twin)->world;
+    while (world.moment().tick < entry.world.moment().tick)
+        world.advance_tick(executor_);
+    return **twin;
+}
+
+void WatchedServer::compare_with_twins() {
+    require(loop_.laboratory().entries().size() == twins_.entries().size());
+    for (const auto& entry : loop_.laboratory().entries()) {
+        const simulation::World& twin = catch_up(*entry).world;
+        require(twin.moment().tick == entry->world.moment().tick && twin.hash() == entry->world.hash());
+    }
+}
+
+void WatchedServer::deliver() {
+    runtime::Outbox::Taken taken = outbox_.take();
+    for (runtime::Delivery& delivery : taken.deliveries)
+        delivery();
+    if (taken.dropped_events > 0)
+        streams_.count_dropped_events(taken.dropped_events);
+    const auto now = clock().now();
+    for (const auto& picture : taken.pictures)
+        streams_.show(picture, now);
+}
+
+void WatchedServer::go_away() {
+    if (std::exchange(going_away_, true))
+        return;
+    dispatcher_.refuse_all();
+    watch_mail();
+    loop_.close();
+    deliver();
+    v1::Event event;
+    event.mutable_server_going_away();
+    const network::SharedBytes frame = network::encode_event(std::move(event));
+    for (const auto& [number, session] : sessions_) {
+        if (session->greeted())
+            session->event(frame);
+        session->finish();
+    }
+}
+
+} // namespace evod::fuzz

@@ -1,0 +1,252 @@
+#include "tests/fuzz/watching_client.h"
+
+#include "server/protocol/commands.h"
+#include "tests/fuzz/sound_picture.h"
+#include "tests/fuzz/watched_server.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <iterator>
+
+namespace evod::fuzz {
+namespace {
+
+/// Of those that are answered by the simulation, in the order in which they came.
+bool goes_to_the_simulation(const v1::Request& request) {
+    switch (protocol::kind_of(request)) {
+    case protocol::RequestKind::Command:
+        return true;
+    case protocol::RequestKind::Query:
+        return !request.has_describe() && !request.has_get_metrics();
+    case protocol::RequestKind::Subscription:
+        return request.has_subscribe_snapshots() || request.has_subscribe_events();
+    default:
+        return false;
+    }
+}
+
+bool is_right(const v1::Hello& hello) {
+    return hello.protocol_version() == 1 && hello.client_name().size() <= 64 && hello.client_version().size() <= 64 &&
+           admit(hello.token());
+}
+
+} // namespace
+
+WatchingClient::WatchingClient(int descriptor, Answers& answers, bool refused)
+    : descriptor_{descriptor}, answers_{answers}, refused_{refused} {}
+
+WatchingClient::~WatchingClient() {
+    ::close(descriptor_);
+}
+
+// ---- what it says ----------------------------------------------------------------------------------------------
+
+void WatchingClient::send(std::size_t count) {
+    count = std::min(count, unsent_.size());
+    if (count == 0 || finished_ || closed_)
+        return;
+    const ssize_t sent = ::send(descriptor_, unsent_.data(), count, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent <= 0)
+        return; // not now, or nobody is there any more
+    said(std::as_bytes(std::span{unsent_}.first(static_cast<std::size_t>(sent))));
+    unsent_.erase(0, static_cast<std::size_t>(sent));
+}
+
+void WatchingClient::finish() {
+    ::shutdown(descriptor_, SHUT_WR);
+    finished_ = true;
+}
+
+void WatchingClient::said(std::span<const std::byte> bytes) {
+    said_.feed(bytes);
+    while (!refused_) {
+        const auto frame = said_.next();
+        if (!frame)
+            refused_ = true;
+        else if (*frame)
+            said(**frame);
+        else
+            return;
+    }
+}
+
+void WatchingClient::said(const wire::Frame& frame) {
+    const auto message = wire::parse_body<v1::ClientMessage>(frame.body);
+    if (!greeted_) {
+        greeted_ = message && message->has_hello() && is_right(message->hello());
+        refused_ = !greeted_;
+        if (greeted_) {
+            role_ = admit(message->hello().token())->role;
+            said_.set_limits(wire::server_limits);
+        }
+        return;
+    }
+    if (!message || message->message_case() == v1::ClientMessage::kHello ||
+        message->message_case() == v1::ClientMessage::MESSAGE_NOT_SET)
+        return owed(0, {});
+    if (message->has_acknowledge_picture()) {
+        const v1::AcknowledgePicture& acknowledged = message->acknowledge_picture();
+        const auto watch = watches_.find(acknowledged.subscription_id());
+        if (watch == watches_.end())
+            return;
+        Island& island = watch->second.islands[acknowledged.island()];
+        island.acknowledged_up_to = std::max<std::uint64_t>(island.acknowledged_up_to, acknowledged.sequence());
+        island.unacknowledged.erase(island.unacknowledged.begin(),
+                                    island.unacknowledged.upper_bound(acknowledged.sequence()));
+        return;
+    }
+    const v1::Request& request = message->request();
+    if (protocol::kind_of(request) == protocol::RequestKind::Command)
+        ++answers_.times_sent[{request.client_key(), request.request_id()}];
+    owed(request.request_id(), {.request = request, .place = ++place_});
+}
+
+void WatchingClient::owed(std::uint64_t request_id, Asked asked) {
+    ids_are_mixed_ = ids_are_mixed_ || outstanding_.contains(request_id);
+    outstanding_.emplace(request_id, std::move(asked));
+}
+
+// ---- what it hears ---------------------------------------------------------------------------------------------
+
+bool WatchingClient::hear(std::size_t count) {
+    std::array<std::byte, 65536> bytes;
+    if (closed_ || count == 0)
+        return false;
+    const ssize_t heard_bytes = ::recv(descriptor_, bytes.data(), std::min(count, bytes.size()), MSG_DONTWAIT);
+    if (heard_bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+        return false;
+    if (heard_bytes <= 0) {
+        closed_ = true;
+        return false;
+    }
+    heard_.feed(std::span{bytes}.first(static_cast<std::size_t>(heard_bytes)));
+    for (;;) {
+        const auto frame = heard_.next();
+        require(frame.has_value());
+        if (!*frame)
+            return true;
+        heard(**frame);
+    }
+}
+
+void WatchingClient::heard(const wire::Frame& frame) {
+    require(!told_of_end_);
+    may_be_reason_ = false;
+    if (frame.channel == wire::Channel::Stream) {
+        auto picture = wire::parse_body<v1::SnapshotFrame>(frame.body);
+        require(welcomed_ && picture);
+        return heard(*std::move(picture));
+    }
+    const auto message = wire::parse_body<v1::ServerMessage>(frame.body);
+    require(message.has_value());
+    switch (message->message_case()) {
+    case v1::ServerMessage::kWelcome:
+        require(greeted_ && !std::exchange(welcomed_, true));
+        return;
+    case v1::ServerMessage::kResponse:
+        return heard(message->response());
+    case v1::ServerMessage::kEvent:
+        require(welcomed_);
+        return heard(message->event());
+    case v1::ServerMessage::MESSAGE_NOT_SET:
+        require(false);
+    }
+}
+
+void WatchingClient::heard(const v1::Response& response) {
+    const std::uint64_t id = response.request_id();
+    require(v1::Code_IsValid(response.status().code()));
+    require(response.status().code() == v1::CODE_OK || !response.status().message().empty());
+    may_be_reason_ = id == 0 && response.status().code() != v1::CODE_OK;
+    const auto found = outstanding_.find(id);
+    if (found == outstanding_.end() || !welcomed_) {
+        require(may_be_reason_);
+        told_of_end_ = true;
+        return;
+    }
+    const Asked asked = std::move(found->second);
+    outstanding_.erase(found);
+    if (response.status().code() != v1::CODE_OK)
+        require(response.answer_case() == v1::Response::ANSWER_NOT_SET && !response.has_applied_tick());
+    else if (!ids_are_mixed_)
+        granted(asked, response);
+}
+
+void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
+    const v1::Request& request = asked.request;
+    require(role_ >= access::role_needed(request.request_case(), false));
+    bool once = true;
+    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
+        require(response.has_applied_tick());
+        const Answers::Command command{request.client_key(), request.request_id()};
+        const std::string answer = response.SerializeAsString();
+        const auto [first, is_first] = answers_.first.try_emplace(command, answer);
+        once = answers_.times_sent.at(command) == 1;
+        require(is_first || (!once && first->second == answer));
+    }
+    if (goes_to_the_simulation(request) && once) {
+        require(asked.place > last_place_answered_);
+        last_place_answered_ = asked.place;
+    }
+    const std::uint32_t subscription = response.subscription().subscription_id();
+    if (request.has_subscribe_snapshots())
+        require(watches_.emplace(subscription, Watch{.asked = request.subscribe_snapshots(), .islands = {}}).second);
+    if (request.has_subscribe_events())
+        require(event_subscriptions_.insert(subscription).second);
+    if (request.has_unsubscribe())
+        require(watches_.erase(request.unsubscribe().subscription_id()) +
+                    event_subscriptions_.erase(request.unsubscribe().subscription_id()) ==
+                1);
+}
+
+void WatchingClient::heard(const v1::Event& event) {
+    if (event.has_server_going_away())
+        told_of_end_ = true;
+    else
+        require(ids_are_mixed_ || !event_subscriptions_.empty());
+}
+
+void WatchingClient::heard(v1::SnapshotFrame frame) {
+    const auto found = watches_.find(frame.subscription_id());
+    if (found == watches_.end())
+        return require(ids_are_mixed_);
+    Watch& watch = found->second;
+    require(!watch.asked.has_island() || watch.asked.island() == frame.island());
+    require(frame.sequence() != 0);
+    Island& island = watch.islands[frame.island()];
+    // The same one comes again only as a keyframe that was asked for.
+    const std::uint64_t before = std::exchange(island.sequence, frame.sequence());
+    require(frame.sequence() > before || (frame.sequence() == before && frame.base_sequence() == 0));
+    if (watch.asked.has_unacknowledged_max() && frame.sequence() > island.acknowledged_up_to) {
+        island.unacknowledged.insert(frame.sequence());
+        require(island.unacknowledged.size() <= watch.asked.unacknowledged_max());
+    }
+    const auto picture = island.decoder.decode(std::move(frame));
+    require(picture.has_value());
+    require_sound(*picture);
+}
+
+std::optional<v1::AcknowledgePicture> WatchingClient::newest_picture(std::size_t wanted) const {
+    const auto watch = watches_.find(subscription(wanted));
+    if (watch == watches_.end() || watch->second.islands.empty())
+        return std::nullopt;
+    const auto& [island, of] =
+        *std::next(watch->second.islands.begin(), static_cast<std::ptrdiff_t>(wanted % watch->second.islands.size()));
+    v1::AcknowledgePicture acknowledgement;
+    acknowledgement.set_subscription_id(watch->first);
+    acknowledgement.set_island(island);
+    acknowledgement.set_sequence(of.sequence);
+    return acknowledgement;
+}
+
+std::uint32_t WatchingClient::subscription(std::size_t wanted) const {
+    if (watches_.empty())
+        return event_subscriptions_.empty() ? 0 : *event_subscriptions_.begin();
+    return std::next(watches_.begin(), static_cast<std::ptrdiff_t>(wanted % watches_.size()))->first;
+}
+
+} // namespace evod::fuzz
