@@ -97,8 +97,14 @@ base::Result<access::Visitor> admit(const std::string& token) {
 WatchedServer::WatchedServer()
     : outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
-    , dispatcher_{context_, mailbox_, outbox_,
-                  demand_,  streams_, [this] { boost::asio::post(context_, [this] { go_away(); }); }}
+    , dispatcher_{context_,
+                  mailbox_,
+                  outbox_,
+                  demand_,
+                  streams_,
+                  limit_counters_,
+                  [this] { boost::asio::post(context_, [this] { go_away(); }); },
+                  [] { return v1::Metrics{}; }}
     , loop_{mailbox_,
             demand_,
             executor_,
@@ -115,6 +121,8 @@ WatchedServer::WatchedServer()
              .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }}} {
     drawn = 0;
     host_.instance_id = "fuzz";
+    host_.limits = network::limits_message({});
+    host_.clock = &clock();
     host_.handle = [this](network::Session& session, v1::Request request) {
         dispatcher_.handle(session, std::move(request));
     };

@@ -60,7 +60,9 @@ class WatchedServer {
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;
     std::size_t connection_count_ = 0;
-    network::SessionHost host_;
+    network::LimitCounters limit_counters_;
+    network::Buffers buffers_{network::client_buffer_bytes_max, [] {}}; // more than any script can fill
+    network::SessionHost host_{limit_counters_, buffers_};
     network::Streams streams_;
     network::Dispatcher dispatcher_;
     runtime::SimulationLoop loop_;
