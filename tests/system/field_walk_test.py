@@ -23,6 +23,7 @@ BASE = {
     "set_speed": c.SetSpeed(speed=plain.w.Speed(real_time_factor=1)),
     "subscribe_snapshots": c.SubscribeSnapshots(rate_hz=1),
     "seek": c.Seek(to=c.RunMoment(tick=0)),
+    "set_view": c.SetView(view=c.View(detail=1)),
     "export_run": c.ExportRun(table=c.RUN_TABLE_GENERATIONS, format=c.TEXT_FORMAT_CSV),
 }
 # Fields with bounds of their own: the last that is taken on either side, and the first that is not.
@@ -37,6 +38,11 @@ NAMES = [b"", b"../x", b"/etc/passwd", b"/tmp/x", b"a/b", b"..", b".", b"x\0y", 
          b"\xed\xa0\x80", "ä".encode(), b"n" * 300, b"n" * 5000, b"n" * (LONG - 4096)]
 
 F = descriptor_pb2.FieldDescriptorProto
+# By part of a request: what there has to be beside it.
+REGION = c.Region(left_px=0, top_px=0, width_px=100, height_px=100)
+NEEDED = {"subscribe_snapshots.view": c.SubscribeSnapshots(codec=plain.stream_pb2.CODEC_DELTA),
+          "subscribe_snapshots.view.region": c.SubscribeSnapshots(view=c.View(region=REGION)),
+          "set_view.view.region": c.SetView(view=c.View(region=REGION))}
 WHOLE = [0, 1, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63 - 1, 2**63, 2**64 - 1]  # the last is -1, too
 REAL = [0.0, -0.0, float("nan"), float("inf"), -float("inf"), -1.0, 2.0**63]
 
@@ -153,12 +159,15 @@ class Walk(access.Access):
             self.client.step()
         return self.client.responses.popitem()[1].status
 
-    def base(self, name):
+    def base(self, name, path=""):
         kind = getattr(c, {f.name: f for f in c.Request.DESCRIPTOR.fields}[name].message_type.name)
         message = kind()
         if "world" in kind.DESCRIPTOR.fields_by_name:
             message.world = "walked"
         message.MergeFrom(BASE.get(name, kind()))
+        for part, needed in NEEDED.items():
+            if path.startswith(part):
+                message.MergeFrom(needed)
         self.client.request_id += 1
         return c.Request(client_key=self.client.key, request_id=self.client.request_id, **{name: message})
 
@@ -203,7 +212,7 @@ class Walk(access.Access):
                     body = encoded(field, value)
                     for step in reversed(way):
                         body = delimited(step.number, body)
-                    return self.base(kind.name).SerializeToString() + body
+                    return self.base(kind.name, path).SerializeToString() + body
                 with self.subTest(path):
                     walked += 1
                     self.walk(path, build, values_of(field))

@@ -121,7 +121,7 @@ class Documentation(Case):
         self.assertEqual(len(queries), 3)
         best, journal, dying = (self.run_file.execute(query).fetchall() for query in queries)
         self.assertEqual([row[0] for row in best], [1, 2, 3])
-        self.assertEqual([row[0] for row in journal if row[0] > 0], [130, 130, 240, 240])
+        self.assertEqual([row[0] for row in journal if row[0] > 0], [130, 130, 130, 240, 240, 240])
         self.assertTrue(all(2 * (starved + poisoned) > born for _, starved, poisoned, born in dying))
 
 
@@ -286,17 +286,17 @@ class Export(Case):
     def test_events_are_the_commands(self):
         rows = self.rows(changed, "events")
         self.assertEqual([row["kind"] for row in rows],
-                         ["create_world", "set_speed", "run_until_tick", "set_parameters", "run_until_tick",
-                          "set_parameters", "run_until_tick"])
-        self.assertEqual([int(row["number"]) for row in rows], list(range(1, 8)))
-        self.assertEqual([int(row["tick"]) for row in rows], [0, 0, 0, 130, 130, 240, 240])
+                         ["create_world", "set_speed", "pause", "run_until_tick", "set_parameters", "pause",
+                          "run_until_tick", "set_parameters", "pause", "run_until_tick"])
+        self.assertEqual([int(row["number"]) for row in rows], list(range(1, 11)))
+        self.assertEqual([int(row["tick"]) for row in rows], [0, 0, 0, 0, 130, 130, 130, 240, 240, 240])
         self.assertEqual(rows[0]["client"], "evod")
         self.assertIn("evoctl", rows[3]["client"])
         for row in rows:
             request = json.loads(row["request"])
             self.assertEqual((request["client_key"], request["request_id"]), (row["client_key"], row["request_id"]))
             self.assertIn(row["kind"], request)
-        self.assertEqual(json.loads(rows[3]["request"])["set_parameters"]["parameters"][0],
+        self.assertEqual(json.loads(rows[4]["request"])["set_parameters"]["parameters"][0],
                          {"name": "food_health", "value": {"real": 7}})
 
     def lineage(self, run, *arguments):

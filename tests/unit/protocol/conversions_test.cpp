@@ -88,6 +88,7 @@ class Lived : public testing::Test {
 
 TEST_F(Lived, AWorldIsToldCompletely) {
     entry().ticks_per_s = 60;
+    entry().slowed = true;
     // It has not ended, it lives, and is paced.
     EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "recording", "speed.max", "storage"));
     entry().storage = {.state = simulation::StorageState::Failing, .reason = "it is full"};
