@@ -4,14 +4,13 @@
 // end every request is answered, every session ends when its client goes, and every world is as its twin.
 //
 // An action is a byte for what (low half) and who (high half), the bytes it takes, and one for how it goes on.
+#include "server/log/log.h"
 #include "server/network/session.h"
 #include "server/simulation/parameters.h"
 #include "tests/fuzz/script.h"
 #include "tests/fuzz/sound_picture.h"
 #include "tests/fuzz/watched_server.h"
 #include "tests/fuzz/watching_client.h"
-
-#include <spdlog/spdlog.h>
 
 #include <sys/socket.h>
 
@@ -212,7 +211,7 @@ class Play {
     bool is_through(const WatchingClient& client) const {
         if (client.closed()) {
             // Nobody is sent away without a reason, and who says no more gets all answers.
-            require(client.may_have_been_told_of_end() || server_.going_away() ||
+            require(client.may_have_been_told_of_end() || client.may_have_stalled() || server_.going_away() ||
                     (client.finished() && (client.refused() || client.all_answered())));
             return true;
         }
@@ -233,7 +232,7 @@ class Play {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod;
-    spdlog::set_level(spdlog::level::off);
+    [[maybe_unused]] static const bool quiet = (log::begin(log::Level::Error, log::Format::Text), true);
     fuzz::clock() = support::ManualClock{};
     fuzz::clock().per_look = std::chrono::milliseconds{1};
     fuzz::Play{{data, size}}.run();

@@ -95,7 +95,8 @@ base::Result<access::Visitor> admit(const std::string& token) {
 }
 
 WatchedServer::WatchedServer()
-    : outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
+    : buffers_{network::client_buffer_bytes_max, [] { require(false); }} // which no script has a client leave unread
+    , outbox_{[this] { boost::asio::post(context_, [this] { deliver(); }); }}
     , streams_{sessions_, demand_, mailbox_}
     , dispatcher_{context_,
                   mailbox_,
@@ -120,8 +121,8 @@ WatchedServer::WatchedServer()
                  },
              .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }}} {
     drawn = 0;
-    host_.instance_id = "fuzz";
     host_.limits = network::limits_message({});
+    host_.instance_id = "fuzz";
     host_.clock = &clock();
     host_.handle = [this](network::Session& session, v1::Request request) {
         dispatcher_.handle(session, std::move(request));
@@ -150,6 +151,9 @@ void WatchedServer::accept(int descriptor, const std::optional<base::Refusal>& r
 void WatchedServer::poll() {
     context_.restart();
     context_.poll();
+    const auto now = clock().now();
+    for (const auto& [number, session] : sessions_)
+        session->mind_progress(now);
 }
 
 void WatchedServer::pass() {

@@ -52,6 +52,8 @@ class WatchedServer {
     void deliver();
     void go_away();
 
+    network::LimitCounters limit_counters_;
+    network::Buffers buffers_; // outlives the sessions
     boost::asio::io_context context_{1};
     base::InlineExecutor executor_;
     runtime::Mailbox mailbox_;
@@ -60,8 +62,6 @@ class WatchedServer {
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;
     std::size_t connection_count_ = 0;
-    network::LimitCounters limit_counters_;
-    network::Buffers buffers_{network::client_buffer_bytes_max, [] {}}; // more than any script can fill
     network::SessionHost host_{limit_counters_, buffers_};
     network::Streams streams_;
     network::Dispatcher dispatcher_;

@@ -1,5 +1,6 @@
 #include "tests/fuzz/watching_client.h"
 
+#include "server/network/limits.h"
 #include "server/protocol/commands.h"
 #include "tests/fuzz/sound_picture.h"
 #include "tests/fuzz/watched_server.h"
@@ -37,7 +38,7 @@ bool is_right(const v1::Hello& hello) {
 } // namespace
 
 WatchingClient::WatchingClient(int descriptor, Answers& answers, bool refused)
-    : descriptor_{descriptor}, answers_{answers}, refused_{refused} {}
+    : descriptor_{descriptor}, answers_{answers}, refused_{refused}, all_heard_{clock().now()} {}
 
 WatchingClient::~WatchingClient() {
     ::close(descriptor_);
@@ -117,8 +118,11 @@ bool WatchingClient::hear(std::size_t count) {
     if (closed_ || count == 0)
         return false;
     const ssize_t heard_bytes = ::recv(descriptor_, bytes.data(), std::min(count, bytes.size()), MSG_DONTWAIT);
-    if (heard_bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
+    if (heard_bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+        all_heard_ = clock().now();
         return false;
+    }
+    may_have_stalled_ = may_have_stalled_ || clock().now() - all_heard_ >= network::stalled_timeout;
     if (heard_bytes <= 0) {
         closed_ = true;
         return false;
@@ -218,9 +222,10 @@ void WatchingClient::heard(v1::SnapshotFrame frame) {
     require(!watch.asked.has_island() || watch.asked.island() == frame.island());
     require(frame.sequence() != 0);
     Island& island = watch.islands[frame.island()];
-    // The same one comes again only as a keyframe that was asked for.
+    // The same one comes again only as a keyframe that was asked for, or in another view.
     const std::uint64_t before = std::exchange(island.sequence, frame.sequence());
-    require(frame.sequence() > before || (frame.sequence() == before && frame.base_sequence() == 0));
+    require(frame.sequence() > before ||
+            (frame.sequence() == before && (wire::is_keyframe(frame) || watch.asked.has_view())));
     if (watch.asked.has_unacknowledged_max() && frame.sequence() > island.acknowledged_up_to) {
         island.unacknowledged.insert(frame.sequence());
         require(island.unacknowledged.size() <= watch.asked.unacknowledged_max());

@@ -10,9 +10,10 @@
 #pragma once
 
 #include "evod/v1/session.pb.h"
-#include "proto/wire/delta_codec.h"
 #include "proto/wire/framing.h"
+#include "proto/wire/picture_decoder.h"
 #include "server/access/role.h"
+#include "server/runtime/clock.h"
 
 #include <cstdint>
 #include <map>
@@ -53,6 +54,8 @@ class WatchingClient {
     bool finished() const { return finished_; }
     /// Whether what it said ends its session.
     bool refused() const { return refused_; }
+    /// It has left things unread for so long that its session may be closed without a word.
+    bool may_have_stalled() const { return may_have_stalled_; }
     /// Nothing is owed to it.
     bool all_answered() const { return outstanding_.empty(); }
     /// It has been told why its session ends, or that the server goes.
@@ -99,7 +102,8 @@ class WatchingClient {
     bool greeted_ = false, welcomed_ = false, finished_ = false, closed_ = false;
     bool told_of_end_ = false;   // it is certain
     bool may_be_reason_ = false; // the last response; or it answers what could not be read
-    bool ids_are_mixed_ = false;
+    bool ids_are_mixed_ = false, may_have_stalled_ = false;
+    runtime::Clock::time_point all_heard_; // when it had last read everything
     access::Role role_{};
     std::uint64_t request_id_ = 0, place_ = 0, last_place_answered_ = 0;
     std::multimap<std::uint64_t, Asked> outstanding_; // by request id; 0: what could not be read
