@@ -627,7 +627,7 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     const std::uint64_t first = tick("paced");
     int seeks = 0;
     bool on_the_way = false;
-    while (seeks < 6 || on_the_way) {
+    while (seeks < 6 || on_the_way || clock.now() - began < 1s) {
         if (!on_the_way) {
             on_the_way = true;
             mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = ++seeks % 2 == 1 ? 299u : 0u}},
@@ -639,7 +639,6 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
         kept.pass();
     }
     const std::chrono::duration<double> passed = clock.now() - began;
-    EXPECT_GT(passed, 1s);
     EXPECT_NEAR(static_cast<double>(tick("paced") - first), passed.count() * 60, 3);
     EXPECT_FALSE(entry("paced").slowed);
     const simulation::World& lived = entry("paced").world;
