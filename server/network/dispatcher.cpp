@@ -478,7 +478,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 wanted->world = watched->world;
                 if (subscribe.has_island())
                     wanted->island = subscribe.island();
-                wanted->rate_hz = std::min(subscribe.rate_hz(), snapshot_rate_hz_max);
+                wanted->rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
                 if (wanted->rate_hz < subscribe.rate_hz())
                     limit_counters_.met(Limit::SnapshotRate);
                 if (subscribe.codec() != v1::CODEC_UNSPECIFIED)

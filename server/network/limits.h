@@ -20,6 +20,7 @@ namespace evod::network {
 constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
 constexpr double snapshot_rate_hz_max = 120;
+constexpr double snapshot_rate_hz_min = 1e-6; // slower ones are raised to it: a clock's numbers have an end
 constexpr std::uint32_t retries_kept = 1000;
 constexpr std::uint32_t client_keys_max = 256;
 constexpr std::uint32_t exports_max = 8;
