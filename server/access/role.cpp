@@ -34,6 +34,9 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
     case Case::kGetOrganism:
     case Case::kDescribe:
     case Case::kGetMetrics:
+    case Case::kGetBreeding:
+    case Case::kGetPopulation:
+    case Case::kGetMotion:
     case Case::kSubscribeSnapshots:
     case Case::kSubscribeEvents:
     case Case::kUnsubscribe:

@@ -234,6 +234,9 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kGetOrganism:
     case RequestCase::kDescribe:
     case RequestCase::kGetMetrics:
+    case RequestCase::kGetBreeding:
+    case RequestCase::kGetPopulation:
+    case RequestCase::kGetMotion:
         return RequestKind::Query;
     case RequestCase::kSubscribeSnapshots:
     case RequestCase::kSubscribeEvents:

@@ -27,7 +27,8 @@ LEAST = {
     "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "seek": CONTROLLER,
     "close_past": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
-    "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
+    "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "get_breeding": VIEWER,
+    "get_population": VIEWER, "get_motion": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
     "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_past": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
     "set_view": VIEWER,
 }
