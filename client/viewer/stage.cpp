@@ -27,6 +27,7 @@ void Stage::draw(Watch& watch, Camera& camera, const Frame& frame) {
     scene_.draw(view, frame.blend, camera, frame.width_pixels, frame.height_pixels, pointed_at);
     scene_.draw_labels(view, frame.blend, camera, *ImGui::GetBackgroundDrawList(), gui_.label());
     overlay_.build(watch, gui_, frame.now);
+    panels_.build({watch, gui_, frame.now});
     if (pointed_at) {
         overlay_.build_organism(*watch.picture(), *pointed_at, *frame.pointed_at, gui_);
     }

@@ -7,6 +7,7 @@
 #include "client/viewer/camera.h"
 #include "client/viewer/gui.h"
 #include "client/viewer/overlay.h"
+#include "client/viewer/panels/panels.h"
 #include "client/viewer/scene.h"
 #include "client/viewer/watch.h"
 
@@ -35,11 +36,13 @@ class Stage {
 
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
+    Panels& panels() { return panels_; }
 
   private:
     Gui gui_;
     Scene scene_;
     Overlay overlay_;
+    Panels panels_;
     Clock::time_point drawn_{};
 };
 

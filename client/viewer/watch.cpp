@@ -37,6 +37,7 @@ void Watch::look_at(std::string world, std::uint32_t island) {
     }
     wanted_.world = std::move(world);
     wanted_.island = island;
+    selected_.reset();
     view_.clear();
     connection_.unsubscribe(pictures_);
     subscribe();
@@ -60,8 +61,12 @@ void Watch::turn_islands(int by) {
 void Watch::send(std::optional<evod::v1::Request> request) {
     if (request) {
         const bool is_command = !request->has_get_statistics() && !request->has_list_worlds();
-        unanswered_.push_back({is_command, connection_.send(*std::move(request))});
+        unanswered_.push_back({is_command, {}, connection_.send(*std::move(request))});
     }
+}
+
+void Watch::ask(evod::v1::Request request, Answer handler) {
+    unanswered_.push_back({false, std::move(handler), connection_.send(std::move(request))});
 }
 
 void Watch::next_world() {
@@ -106,7 +111,8 @@ bool Watch::update(link::WorldView::Clock::time_point now) {
     }
     // Events tell what became of what was answered, and have to be heard after it.
     take_answers();
-    for (const evod::v1::Event& event : connection_.take_events()) {
+    new_events_ = connection_.take_events();
+    for (const evod::v1::Event& event : new_events_) {
         take_event(event);
     }
     auto picture = connection_.take_picture(pictures_, wanted_.island);
@@ -130,7 +136,9 @@ void Watch::take_answers() {
         Unanswered answered = std::move(unanswered_[i]);
         unanswered_.erase(unanswered_.begin() + static_cast<std::ptrdiff_t>(i));
         const auto response = answered.response.get();
-        if (answered.is_command) {
+        if (answered.handler) {
+            answered.handler(response);
+        } else if (answered.is_command) {
             take_command_answer(response);
         } else if (response && response->has_statistics()) {
             take_statistics(response->statistics());

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <optional>
 #include <string>
@@ -43,9 +44,21 @@ class Watch {
     void real_time() { send(control_.real_time()); }
     void max_speed() { send(control_.max_speed()); }
 
+    // For panels.
+    using Answer = std::function<void(const link::Result<evod::v1::Response>&)>;
+    /// Sends a request; the handler is called by an update(), or never if another world is looked at before. What
+    /// it says of a refusal is its own affair.
+    void ask(evod::v1::Request request, Answer handler);
+    /// Events of all worlds since the update before the last, oldest first.
+    const std::vector<evod::v1::Event>& events() const { return new_events_; }
+
     // What is looked at.
     void turn_islands(int by);
     void next_world();
+
+    /// The organism that panels tell of and the camera may follow: an id of the generation that runs.
+    void select(std::optional<std::uint32_t> organism) { selected_ = organism; }
+    std::optional<std::uint32_t> selected() const { return selected_; }
 
     // What is known.
     link::WorldView& view() { return view_; }
@@ -69,6 +82,7 @@ class Watch {
   private:
     struct Unanswered {
         bool is_command;
+        Answer handler; // empty: of the commands and questions of the watch itself
         std::future<link::Result<evod::v1::Response>> response;
     };
 
@@ -91,6 +105,8 @@ class Watch {
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
     evod::v1::Storage storage_;
     std::vector<Unanswered> unanswered_;
+    std::vector<evod::v1::Event> new_events_;
+    std::optional<std::uint32_t> selected_;
     std::vector<std::string> notices_;
     std::uint64_t connected_count_ = 0;
 };

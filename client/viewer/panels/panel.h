@@ -1,0 +1,31 @@
+// Panel: a window of widgets over the island, which can be hidden. It asks and commands through the Watch alone, so
+// everything it does goes over the public protocol.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/gui.h"
+#include "client/viewer/watch.h"
+
+#include <string_view>
+
+namespace evod::viewer {
+
+class Panel {
+  public:
+    struct Context {
+        Watch& watch;
+        const Gui& gui;
+        link::WorldView::Clock::time_point now;
+    };
+
+    virtual ~Panel() = default;
+
+    /// Also of the window, and of its line in the help: "Parameters".
+    virtual std::string_view title() const = 0;
+
+    /// The widgets, between ImGui::Begin() and ImGui::End(); called only while it is shown.
+    virtual void build(Context& context) = 0;
+};
+
+} // namespace evod::viewer

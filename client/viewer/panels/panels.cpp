@@ -1,0 +1,33 @@
+#include "client/viewer/panels/panels.h"
+
+#include <imgui.h>
+
+#include <string>
+
+namespace evod::viewer {
+
+Panels::Panels() {
+    // places_.push_back({std::make_unique<ParametersPanel>()});
+}
+
+void Panels::toggle(std::size_t index) {
+    if (index < places_.size()) {
+        places_[index].shown = !places_[index].shown;
+    }
+}
+
+void Panels::build(Panel::Context context) {
+    for (Place& place : places_) {
+        if (!place.shown) {
+            continue;
+        }
+        const std::string title{place.panel->title()};
+        ImGui::SetNextWindowSize({380, 480}, ImGuiCond_FirstUseEver);
+        if (ImGui::Begin(title.c_str(), &place.shown)) {
+            place.panel->build(context);
+        }
+        ImGui::End();
+    }
+}
+
+} // namespace evod::viewer
