@@ -1,9 +1,9 @@
 // What changes a world's course: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
-#include "client/ctl/population_file.h"
 #include "client/ctl/text.h"
 #include "proto/wire/framing.h"
+#include "proto/wire/population_csv.h"
 
 #include <CLI/CLI.hpp>
 
@@ -53,11 +53,13 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     if (!file.is_open()) {
         throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read: " + std::strerror(errno)};
     }
-    const auto islands = read_population(file);
+    const auto islands = wire::read_population(file);
     if (!islands) {
-        stop_for("the population file " + path + " is wrong:", islands.error());
+        throw Stop{ExitCode::Usage, "the population file " + path + " is wrong: " + islands.error().what};
     }
-    command.mutable_population()->Assign(islands->begin(), islands->end());
+    for (const std::vector<float>& genes : *islands) {
+        command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
+    }
     // What else is in the request takes much less than the room that is left for it here.
     constexpr std::size_t rest_bytes_max = 32 << 10;
     if (command.ByteSizeLong() + rest_bytes_max > *wire::server_limits.control_bytes_max) {

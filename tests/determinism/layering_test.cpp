@@ -52,7 +52,7 @@ const std::map<std::string, std::set<std::string>> arrows = {
       "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/console",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/simulation",
-      "server/evolution", "server/physics", "server/base", "proto/evod"}},
+      "server/evolution", "server/physics", "server/base", "proto/wire", "proto/evod"}},
     {"server/network",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/metrics",
       "server/log", "server/simulation", "server/evolution", "server/base", "proto/wire", "proto/evod"}},
