@@ -113,7 +113,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
     /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
     bool admit_request();
-    /// So many bytes are being got together elsewhere for an answer to it; a difference, below 0 when they are there.
+    /// An answer to it may become so long; a difference, below 0 when it is there.
     void expect(std::ptrdiff_t bytes);
     /// The answer to an admitted request.
     void answer(SharedBytes frame);
