@@ -81,7 +81,8 @@ struct SnapshotSubscription {
         explicit operator bool() const { return columns || chained || tiled; }
     };
     struct Island {
-        Waiting waiting;                          // the newest picture not yet sent
+        Waiting waiting;                          // the newest picture not yet sent, or not as closely as is wanted
+        std::optional<v1::Detail> shown;          // of `waiting`: as it was sent; nullopt: it was not
         Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
         runtime::Clock::time_point not_before;    // the budget does not allow it
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
