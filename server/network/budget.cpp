@@ -3,8 +3,9 @@
 namespace evod::network {
 
 void Budget::change(double bytes_per_s, v1::Detail most) {
+    const double saved_bytes_more = saved_s_max * (bytes_per_s - bytes_per_s_);
     bytes_per_s_ = bytes_per_s;
-    saved_bytes_ = std::min(saved_bytes_, saved_bytes_max());
+    saved_bytes_ = std::min(saved_bytes_ + std::max(saved_bytes_more, 0.0), saved_bytes_max());
     most_ = detail_ = most;
     patience_ = patience_min;
     rose_ = {};
@@ -14,6 +15,18 @@ void Budget::save(Clock::time_point now) {
     const std::chrono::duration<double> passed = looked_ ? now - *looked_ : Clock::duration{0};
     looked_ = now;
     saved_bytes_ = std::min(saved_bytes_ + bytes_per_s_ * passed.count(), saved_bytes_max());
+}
+
+Budget::Clock::time_point Budget::when_saved(double bytes, Clock::time_point now) const {
+    const std::chrono::duration<double> wait{(bytes - saved_bytes_) / bytes_per_s_};
+    return now + std::chrono::ceil<Clock::duration>(wait);
+}
+
+void Budget::tell_more(v1::Detail detail, Clock::time_point now) {
+    if (detail < detail_)
+        rose_ = now;
+    detail_ = std::min(detail_, detail);
+    try_more_ = now + patience_;
 }
 
 void Budget::tell_less(Clock::time_point now) {

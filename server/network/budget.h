@@ -1,8 +1,8 @@
 // Budget: how closely a viewer is shown each picture so that it is sent no more bytes a second than it wants.
 //
 // What is not spent is saved for a while, for keyframes are long. When a picture costs more than there is, detail is
-// left out, and where that does not help the picture is. More detail is tried again after a while; if it cannot be kept
-// up, after a longer one.
+// left out, and where that does not help the picture is. More detail is tried again after a while, of the same picture
+// if no other has come; if it cannot be kept up, after a longer one.
 //
 // Owner        a subscription; on the network thread.
 #pragma once
@@ -26,14 +26,15 @@ class Budget {
     static constexpr std::chrono::seconds patience_min{2}, patience_max{64}; // before more detail is tried
 
     /// bytes_per_s  above 0; most: the detail that is wanted.
-    Budget(double bytes_per_s, v1::Detail most) : saved_bytes_{saved_s_max * bytes_per_s} { change(bytes_per_s, most); }
+    Budget(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
 
-    /// Something else is wanted now: it is shown as closely as it can be. What is saved stays, as far as it may.
+    /// Something else is wanted now: it is shown as closely as it can be. What is saved stays, as far as it may; what
+    /// may be saved beyond that is there, as at the beginning.
     void change(double bytes_per_s, v1::Detail most);
 
     struct Choice {
         std::optional<v1::Detail> detail; // nullopt: the picture cannot be sent yet
-        Clock::time_point again;          // then it can
+        Clock::time_point again;          // then it can; or, if it is sent in less detail than is wanted, look_closer()
     };
     /// How closely a picture is shown now; what that costs is spent.
     ///
@@ -41,13 +42,21 @@ class Budget {
     template <class Cost>
     Choice choose(Clock::time_point now, const Cost& cost);
 
+    /// The same of a picture that was shown already, and stays: in more detail than that, or not at all.
+    ///
+    /// shown  less than is wanted.
+    template <class Cost>
+    Choice look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost);
+
   private:
     double saved_bytes_max() const { return saved_s_max * bytes_per_s_; }
+    Clock::time_point when_saved(double bytes, Clock::time_point now) const;
+    void tell_more(v1::Detail detail, Clock::time_point now);
     void save(Clock::time_point now);
     void tell_less(Clock::time_point now);
     static v1::Detail less(v1::Detail detail) { return static_cast<v1::Detail>(detail + 1); }
 
-    double bytes_per_s_ = 0, saved_bytes_; // below 0 after a picture longer than can be saved for
+    double bytes_per_s_ = 0, saved_bytes_ = 0; // below 0 after a picture longer than can be saved for
     v1::Detail most_ = v1::DETAIL_FULL, detail_ = v1::DETAIL_FULL;
     Clock::duration patience_ = patience_min;
     std::optional<Clock::time_point> looked_; // at what is saved
@@ -64,10 +73,7 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
         v1::Detail more = most_;
         while (more != detail_ && !affordable(more))
             more = less(more);
-        if (more != detail_)
-            rose_ = now;
-        detail_ = more;
-        try_more_ = now + patience_;
+        tell_more(more, now);
     }
     for (;;) {
         const auto bytes = static_cast<double>(cost(detail_));
@@ -77,13 +83,29 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
             tell_less(now);
             continue;
         }
-        if (needed > saved_bytes_) {
-            const std::chrono::duration<double> wait{(needed - saved_bytes_) / bytes_per_s_};
-            return {std::nullopt, now + std::chrono::ceil<Clock::duration>(wait)};
-        }
+        if (needed > saved_bytes_)
+            return {std::nullopt, when_saved(needed, now)};
         saved_bytes_ -= bytes;
-        return {detail_, now};
+        return {detail_, detail_ == most_ ? now : try_more_};
     }
+}
+
+template <class Cost>
+Budget::Choice Budget::look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost) {
+    save(now);
+    if (detail_ >= shown && now < try_more_)
+        return {std::nullopt, try_more_};
+    for (v1::Detail detail = most_; detail < shown; detail = less(detail)) {
+        const auto bytes = static_cast<double>(cost(detail));
+        if (bytes > saved_bytes_max())
+            continue;
+        if (bytes > saved_bytes_)
+            return {std::nullopt, when_saved(bytes, now)};
+        saved_bytes_ -= bytes;
+        tell_more(detail, now);
+        return {detail, try_more_};
+    }
+    return {std::nullopt, Clock::time_point::max()};
 }
 
 } // namespace evod::network

@@ -384,26 +384,26 @@ void Dispatcher::query(Session& session, v1::Request request) {
             put(protocol::get_organism(laboratory, request.get_organism()), response, &v1::Response::mutable_organism);
         });
     case v1::Request::kGetHistory: {
-        // The rows are copied there and made into messages here, for there can be many.
-        auto rows = std::make_shared<protocol::HistoryRows>();
+        // Messages are made of it here, for they can be many. As long as they may become waits for the client from now on.
+        auto part = std::make_shared<protocol::HistoryPart>();
         constexpr std::ptrdiff_t bytes = protocol::history_statistics_max * sizeof(simulation::GenerationStatistics);
         const bool asked = ask(
             session, id,
-            [name, request, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
+            [name, request, part](const simulation::Laboratory& laboratory, v1::Response& response) {
                 if (auto found = protocol::get_history(laboratory, request.get_history()))
-                    *rows = *std::move(found);
+                    *part = *std::move(found);
                 else
                     refuse(response, protocol::with_paths(found.error(), name));
             },
-            [this, rows](Session& asking, v1::Response& response) {
+            [this, part](Session& asking, v1::Response& response) {
                 asking.expect(-bytes);
                 if (response.status().code() != v1::CODE_OK)
                     return;
-                if (rows->begins_late)
+                if (part->begins_late)
                     limit_counters_.met(Limit::HistoryGenerationsKept);
-                if (rows->next_generation)
+                if (part->next_generation)
                     limit_counters_.met(Limit::HistoryGenerations);
-                *response.mutable_history() = protocol::to_proto(*rows);
+                *response.mutable_history() = protocol::to_proto(*part);
             });
         if (asked)
             session.expect(bytes);

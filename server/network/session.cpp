@@ -393,10 +393,13 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
     if (subscription == snapshots.end() || finishing_ || ended_)
         return;
     SnapshotSubscription::Island& of = subscription->second.islands[island];
-    if (of.waiting)
-        count_dropped_pictures(subscription->second, 1);
-    else
+    if (!of.waiting)
         turns_.push_back({subscription_id, island});
+    else if (of.shown)
+        of.not_before = {};
+    else
+        count_dropped_pictures(subscription->second, 1);
+    of.shown.reset();
     of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
     of.waiting = std::move(picture);
     wake_writer();
@@ -418,6 +421,7 @@ void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, Sn
         return;
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.not_before = {};
+    of.shown.reset();
     if (of.waiting)
         wake_writer();
     else
@@ -450,7 +454,10 @@ bool Session::next_picture() {
             next_budget_ = std::min(next_budget_, island.not_before);
             continue;
         }
+        const Turn taken = *turn;
         turns_.erase(turn);
+        if (island.waiting)
+            turns_.push_back(taken);
         return true;
     }
     return false;
@@ -483,10 +490,12 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
             const auto now = host_.clock->now();
             if (now < island.not_before)
                 return false;
-            const Budget::Choice choice = subscription.budget->choose(now, [&](v1::Detail tried) {
+            const auto cost = [&](v1::Detail tried) {
                 add_parts(tried);
                 return wire::header_bytes + outgoing_.body_bytes();
-            });
+            };
+            const Budget::Choice choice = island.shown ? subscription.budget->look_closer(now, *island.shown, cost)
+                                                       : subscription.budget->choose(now, cost);
             island.not_before = choice.again;
             if (!choice.detail)
                 return false;
@@ -495,12 +504,17 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
             add_parts(detail);
         }
         island.tiles_sent.sent(*picture.tiled, seen, detail);
+        island.shown.reset();
+        if (detail != view.detail())
+            island.shown = detail;
     }
     island.last_sent = picture.sequence;
     if (subscription.unacknowledged_max)
         island.unacknowledged.push_back(picture.sequence);
-    island.waiting = {};
-    island.columns = {};
+    if (!island.shown) {
+        island.waiting = {};
+        island.columns = {};
+    }
     return true;
 }
 

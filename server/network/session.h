@@ -81,7 +81,8 @@ struct SnapshotSubscription {
         explicit operator bool() const { return columns || chained || tiled; }
     };
     struct Island {
-        Waiting waiting;                          // the newest picture not yet sent
+        Waiting waiting;                          // the newest picture not yet sent, or not as closely as is wanted
+        std::optional<v1::Detail> shown;          // of `waiting`: as it was sent; nullopt: it was not
         Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
         runtime::Clock::time_point not_before;    // the budget does not allow it
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
@@ -113,7 +114,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
     /// One more request to be answered; false: too many are, and it must be refused with send_unasked().
     bool admit_request();
-    /// So many bytes are being got together elsewhere for an answer to it; a difference, below 0 when they are there.
+    /// An answer to it may become so long; a difference, below 0 when it is there.
     void expect(std::ptrdiff_t bytes);
     /// The answer to an admitted request.
     void answer(SharedBytes frame);

@@ -65,7 +65,7 @@ base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& labora
     return organism_info(world, island, query.organism());
 }
 
-base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query) {
+base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query) {
     const auto entry = laboratory.find(lookup_name(query.world()));
     if (!entry)
         return entry.error();
@@ -73,7 +73,9 @@ base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, 
     if (query.has_island() && query.island() >= world.islands().size())
         return no_such("island", "get_history.island", world.islands().size(), query.island());
 
-    HistoryRows answer;
+    HistoryPart answer;
+    if (query.has_island())
+        answer.island = query.island();
     const auto& history = world.history();
     const std::uint64_t first = query.has_first_generation() ? query.first_generation() : 0;
     const std::uint64_t last =
@@ -82,26 +84,26 @@ base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, 
                          std::max<std::uint64_t>(first, 1) < history.front().front().generation;
     auto generation = std::partition_point(history.begin(), history.end(),
                                            [first](const auto& rows) { return rows.front().generation < first; });
+    std::size_t count = 0;
     for (; generation != history.end() && generation->front().generation <= last; ++generation) {
-        const std::size_t wanted = query.has_island() ? 1 : generation->size();
-        if (!answer.rows.empty() && answer.rows.size() + wanted > history_statistics_max) {
+        count += query.has_island() ? 1 : generation->size();
+        if (!answer.generations.empty() && count > history_statistics_max) {
             answer.next_generation = generation->front().generation;
             break;
         }
-        if (query.has_island())
-            answer.rows.push_back((*generation)[query.island()]);
-        else
-            answer.rows.insert(answer.rows.end(), generation->begin(), generation->end());
+        answer.generations.push_back(*generation);
     }
     return answer;
 }
 
-v1::History to_proto(const HistoryRows& rows) {
+v1::History to_proto(const HistoryPart& part) {
     v1::History history;
-    for (const auto& row : rows.rows)
-        *history.add_generations() = to_proto(row);
-    if (rows.next_generation)
-        history.set_next_generation(*rows.next_generation);
+    for (const simulation::GenerationRows& rows : part.generations)
+        for (const simulation::GenerationStatistics& row : rows)
+            if (!part.island || row.island == *part.island)
+                *history.add_generations() = to_proto(row);
+    if (part.next_generation)
+        history.set_next_generation(*part.next_generation);
     return history;
 }
 

@@ -18,14 +18,15 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query);
 base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query);
 
-/// Part of a world's history, copied as it lies so that the simulation need not wait for messages to be made.
-struct HistoryRows {
-    std::vector<simulation::GenerationStatistics> rows;
+/// Part of a world's history, shared with it, so that the simulation need not wait for messages to be made.
+struct HistoryPart {
+    std::vector<simulation::GenerationRows> generations;
+    std::optional<std::uint32_t> island; // nullopt: all
     std::optional<std::uint64_t> next_generation;
     bool begins_late = false; // some of those that were asked for are not kept any more
 };
-base::Result<HistoryRows> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
-v1::History to_proto(const HistoryRows& rows);
+base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
+v1::History to_proto(const HistoryPart& part);
 
 /// The world that is to be watched, as found by name.
 struct Watched {

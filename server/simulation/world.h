@@ -22,6 +22,7 @@
 
 #include <deque>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace evod::simulation {
@@ -33,12 +34,29 @@ struct Opening {
     evolution::Progress progress; // of the generations before it
 };
 
+/// The statistics of an ended generation, one entry per island. They never change, and copies share them.
+class GenerationRows {
+  public:
+    GenerationRows(std::vector<GenerationStatistics> rows)
+        : rows_{std::make_shared<const std::vector<GenerationStatistics>>(std::move(rows))} {}
+    operator const std::vector<GenerationStatistics>&() const { return *rows_; }
+
+    std::size_t size() const { return rows_->size(); }
+    auto begin() const { return rows_->begin(); }
+    auto end() const { return rows_->end(); }
+    const GenerationStatistics& front() const { return rows_->front(); }
+    const GenerationStatistics& operator[](std::size_t island) const { return (*rows_)[island]; }
+
+  private:
+    std::shared_ptr<const std::vector<GenerationStatistics>> rows_;
+};
+
 class World {
   public:
     /// Generations of statistics kept in memory; older ones are forgotten.
     static constexpr std::size_t history_generations_kept = 10'000;
-    /// Statistics of ended generations, oldest first, one element per generation with one entry per island.
-    using History = std::deque<std::vector<GenerationStatistics>>;
+    /// Of ended generations, oldest first.
+    using History = std::deque<GenerationRows>;
 
     /// The first generation stands ready at (1, 0).
     ///

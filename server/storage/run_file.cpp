@@ -743,16 +743,18 @@ Result<simulation::World::History> RunFile::history(std::uint64_t before, std::s
                       statistics_columns(),
                       "generation >= ? AND generation < ? ORDER BY generation, island",
                       {first, end}};
+    std::vector<simulation::GenerationStatistics> rows; // of one generation
     while (numbers.next()) {
         const simulation::GenerationStatistics statistics = read_statistics(numbers);
+        if (statistics.island == 0 && !rows.empty())
+            history.emplace_back(std::exchange(rows, {}));
         const std::uint64_t expected = static_cast<std::uint64_t>(first) + history.size();
-        const bool begins = statistics.island == 0;
-        if (!numbers.sound() || statistics.generation != (begins ? expected : expected - 1))
+        if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size())
             return damaged(row_of("statistics", expected));
-        if (begins)
-            history.emplace_back();
-        history.back().push_back(statistics);
+        rows.push_back(statistics);
     }
+    if (!rows.empty())
+        history.emplace_back(std::move(rows));
     if (database_.failed())
         return failure();
     return history;

@@ -1,9 +1,14 @@
-"""A client of a real evod, for the programs beside: asks one thing after another. And how they print their figures."""
+"""A real evod and a client of it, for the programs beside: it asks one thing after another. And how they tell figures."""
 import json
 import os
+import re
 import secrets
+import signal
 import socket
+import statistics
 import struct
+import subprocess
+import threading
 import time
 
 from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w
@@ -51,17 +56,52 @@ class Client:
             time.sleep(0.005)
 
 
-def thread_s(pid, name):
-    """Seconds of processor time of a server's thread; 0 if it has none of that name."""
-    for task in os.listdir(f"/proc/{pid}/task"):
-        if open(f"/proc/{pid}/task/{task}/comm").read().strip() == name:
-            return int(open(f"/proc/{pid}/task/{task}/schedstat").read().split()[0]) / 1e9
-    return 0
+class Server:
+    """A server of its own at a free port, whose log is read away. start_s: from its exec to the welcome of `control`."""
+
+    def __init__(self, evod, *arguments):
+        began = time.perf_counter()
+        self.process = subprocess.Popen([evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
+        line = next((line for line in self.process.stdout if "listening on " in line), None)
+        assert line, "evod ended at once"
+        self.port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
+        self.reader = threading.Thread(target=self.process.stdout.read, daemon=True)
+        self.reader.start()
+        self.control = Client(self.port)
+        self.start_s = time.perf_counter() - began
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end()
+
+    def end(self, how=signal.SIGTERM):
+        self.control.socket.close()
+        self.process.send_signal(how)
+        self.reader.join()
+        self.process.communicate()
+
+    def threads(self):
+        """The number and the name of each of its threads."""
+        for task in os.listdir(f"/proc/{self.process.pid}/task"):
+            yield int(task), open(f"/proc/{self.process.pid}/task/{task}/comm").read().strip()
+
+    def thread_s(self, wanted):
+        """Processor seconds of the threads whose name is wanted: a name, or what says so of one."""
+        wanted = wanted if callable(wanted) else wanted.__eq__
+        return sum(int(open(f"/proc/{self.process.pid}/task/{task}/schedstat").read().split()[0])
+                   for task, name in self.threads() if wanted(name)) / 1e9
+
+    def status_bytes(self, name):
+        """Memory, as VmRSS, or VmHWM for the most there was."""
+        status = open(f"/proc/{self.process.pid}/status").read()
+        return int(re.search(rf"{name}:\s+(\d+) kB", status)[1]) << 10
 
 
 def assignments(parameters):
-    return [w.ParameterAssignment(name=n, value=w.ParameterValue(**{"count" if isinstance(v, int) else "real": v}))
-            for n, v in parameters.items()]
+    kinds = {bool: "flag", int: "count", float: "real", str: "choice"}
+    return [w.ParameterAssignment(name=n, value=w.ParameterValue(**{kinds[type(v)]: v})) for n, v in parameters.items()]
 
 
 def benchmark_world(organisms):
@@ -71,11 +111,22 @@ def benchmark_world(organisms):
             "island_width_px": (area_px2 * 16 / 9) ** 0.5, "island_height_px": (area_px2 * 9 / 16) ** 0.5}
 
 
+def spread(values):
+    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
+
+
+def spread_ms(seconds):
+    return spread([1e3 * s for s in seconds])
+
+
+def lines_of(name, value):
+    if not isinstance(value, dict):
+        return [f"{name}: {value:.2f}"]
+    numbers = [f"{part} {number:.2f}" for part, number in value.items() if not isinstance(number, dict)]
+    return ([f"{name}: " + ", ".join(numbers)] if numbers else []) + [
+        line for part, inner in value.items() if isinstance(inner, dict) for line in lines_of(f"{name}, {part}", inner)]
+
+
 def print_figures(figures, as_json):
     """A line for each, or all as one object of JSON."""
-    if as_json:
-        print(json.dumps(figures))
-        return
-    for name, value in figures.items():
-        parts = value.items() if isinstance(value, dict) else [("", value)]
-        print(f"{name}: " + ", ".join(f"{part} {number:.2f}".strip() for part, number in parts))
+    print(json.dumps(figures) if as_json else "\n".join(line for item in figures.items() for line in lines_of(*item)))

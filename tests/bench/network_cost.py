@@ -12,12 +12,10 @@ import argparse
 import json
 import os
 import pathlib
-import re
 import statistics
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -30,7 +28,7 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
 
-from bench_client import Client, print_figures  # noqa: E402
+from bench_client import Client, Server, assignments, print_figures, spread  # noqa: E402
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2 as w  # noqa: E402
 
 attacker = pathlib.Path(__file__).resolve().parents[1] / "system/attacker.py"
@@ -42,47 +40,26 @@ kinds = {"viewer_1": ("watch", 1), "viewers_10": ("watch", 10), "viewers_50": ("
          "deaf_100": ("deaf", 100), "malformed_50000_a_second": ("malformed", 50_000)}
 
 
-class Server:
-    def __init__(self, *arguments, threads="1"):
-        self.process = subprocess.Popen([options.evod, "--port", "0", "--threads", threads, "--sessions-max", "2000",
-                                         *arguments], stdout=subprocess.PIPE, text=True)
-        for line in self.process.stdout:
-            if "listening on " in line:
-                self.port = int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1])
-                break
-        self.log = []
-        threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True).start()
-        self.control = Client(self.port)
+def serve(*arguments):
+    return Server(options.evod, "--threads", "1", "--sessions-max", "2000", *arguments)
 
-    def create(self, organisms):
-        parameters = [w.ParameterAssignment(name="population_size", value=w.ParameterValue(count=organisms)),
-                      w.ParameterAssignment(name="scale_with_population", value=w.ParameterValue(flag=True))]
-        self.control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=parameters))
-        self.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
 
-    def pin(self):
-        """The simulation thread to one core; the others go where they like."""
-        for task in os.listdir(f"/proc/{self.process.pid}/task"):
-            if open(f"/proc/{self.process.pid}/task/{task}/comm").read().strip() == "simulation":
-                os.sched_setaffinity(int(task), {server_core})
+def create(server, organisms):
+    parameters = assignments({"population_size": organisms, "scale_with_population": True})
+    server.control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=parameters))
+    server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
 
-    def thread_s(self):
-        """Processor seconds: of the simulation thread, of all others."""
-        simulation, others = 0.0, 0.0
-        for task in os.listdir(f"/proc/{self.process.pid}/task"):
-            seconds = int(open(f"/proc/{self.process.pid}/task/{task}/schedstat").read().split()[0]) / 1e9
-            if open(f"/proc/{self.process.pid}/task/{task}/comm").read().strip() == "simulation":
-                simulation = seconds
-            else:
-                others += seconds
-        return simulation, others
 
-    def memory_bytes(self):
-        return int(re.search(r"VmRSS:\s+(\d+)", open(f"/proc/{self.process.pid}/status").read())[1]) * 1024
+def pin(server):
+    """The simulation thread to one core; the others go where they like."""
+    for task, name in server.threads():
+        if name == "simulation":
+            os.sched_setaffinity(task, {server_core})
 
-    def end(self):
-        self.process.terminate()
-        self.process.wait()
+
+def thread_s(server):
+    """Processor seconds: of the simulation thread, of all others."""
+    return server.thread_s("simulation"), server.thread_s(lambda name: name != "simulation")
 
 
 class Clients:
@@ -96,29 +73,26 @@ class Clients:
         return json.loads(self.process.communicate("enough\n")[0])
 
 
-def spread(values):
-    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
-
-
 def stretch(server):
     """Processor and wall seconds of the ticks that are measured: of the simulation thread, the others, the clock."""
     server.control.run_to(first_tick)
-    before, began = server.thread_s(), time.perf_counter()
+    before, began = thread_s(server), time.perf_counter()
     server.control.run_to(last_tick)
     wall = time.perf_counter() - began
-    return [after - earlier for after, earlier in zip(server.thread_s(), before)] + [wall]
+    return [after - earlier for after, earlier in zip(thread_s(server), before)] + [wall]
 
 
 def loss(server, kind, number):
+    connections = 1 if kind == "malformed" else number  # whose number is of frames
     rises, shares, losses, walls, became, memory = [], [], [], [], None, []
     for _ in range(options.runs):
         server.control.call(reset_world=c.ResetWorld(world="w"))
         alone = stretch(server)
         server.control.call(reset_world=c.ResetWorld(world="w"))
-        without = server.memory_bytes()
+        without = server.status_bytes("VmRSS")
         clients = Clients(server.port, kind, number)
         beside = stretch(server)
-        memory.append((server.memory_bytes() - without) / number)
+        memory.append((server.status_bytes("VmRSS") - without) / connections)
         became = clients.end()
         rises.append(100 * (beside[0] / alone[0] - 1))
         shares.append(100 * beside[1] / beside[0])
@@ -130,15 +104,14 @@ def loss(server, kind, number):
 
 
 def measure_losses():
-    server = Server("--keep-nothing")
-    server.create(options.organisms)
-    server.pin()
     figures = {"organisms": options.organisms, "ticks": last_tick - first_tick, "pairs": options.runs}
-    for name, (kind, number) in kinds.items():
-        if options.only is None or name in options.only:
-            figures[name] = loss(server, kind, number)
-            print(name, json.dumps(figures[name]), file=sys.stderr, flush=True)
-    server.end()
+    with serve("--keep-nothing") as server:
+        create(server, options.organisms)
+        pin(server)
+        for name, (kind, number) in kinds.items():
+            if options.only is None or name in options.only:
+                figures[name] = loss(server, kind, number)
+                print(name, json.dumps(figures[name]), file=sys.stderr, flush=True)
     return figures
 
 
@@ -150,37 +123,36 @@ def measure_latency(folder):
     """Milliseconds to the answer of a command beside a full stream; to the first picture of one who comes late."""
     figures = {}
     for name, arguments in (("kept_nothing", ["--keep-nothing"]), ("durable", ["--data", folder])):
-        server = Server(*arguments)
-        server.create(options.organisms)
-        clients = Clients(server.port, "watch", 10)
-        server.control.call(run=c.Run(world="w"))
-        time.sleep(1)
-        ticks = next(x for x in server.control.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == "w").ticks_per_s
-        times = []
-        for _ in range(1000):
-            began = time.perf_counter()
-            server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
-            times.append(1e3 * (time.perf_counter() - began))
-        figures[f"command_{name}_ms"] = {"tick": 1e3 / ticks, "median": statistics.median(times),
-                                         "p99": percentile(times, 99), "max": max(times)}
-        clients.end()
-        server.end()
+        with serve(*arguments) as server:
+            create(server, options.organisms)
+            clients = Clients(server.port, "watch", 10)
+            server.control.call(run=c.Run(world="w"))
+            time.sleep(1)
+            worlds = server.control.call(list_worlds=c.ListWorlds()).worlds.worlds
+            tick_ms = 1e3 / next(x for x in worlds if x.name == "w").ticks_per_s
+            times = []
+            for _ in range(1000):
+                began = time.perf_counter()
+                server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+                times.append(1e3 * (time.perf_counter() - began))
+            figures[f"command_{name}_ms"] = {"tick": tick_ms, "median": statistics.median(times),
+                                             "p99": percentile(times, 99), "max": max(times)}
+            clients.end()
     for organisms in (10_000, 100_000):
-        server = Server("--keep-nothing")
-        server.create(organisms)
-        server.control.call(run=c.Run(world="w"))
-        times = []
-        for _ in range(15):
-            began = time.perf_counter()
-            viewer = Client(server.port)
-            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=stream_pb2.CODEC_DELTA,
-                                                                 compression=stream_pb2.COMPRESSION_ZSTD))
-            while viewer.frame()[0] != 2:
-                pass
-            times.append(1e3 * (time.perf_counter() - began))
-            viewer.socket.close()
-        figures[f"first_picture_{organisms}_ms"] = spread(times)
-        server.end()
+        with serve("--keep-nothing") as server:
+            create(server, organisms)
+            server.control.call(run=c.Run(world="w"))
+            times = []
+            for _ in range(15):
+                began = time.perf_counter()
+                viewer = Client(server.port)
+                viewer.call(subscribe_snapshots=c.SubscribeSnapshots(
+                    world="w", rate_hz=20, codec=stream_pb2.CODEC_DELTA, compression=stream_pb2.COMPRESSION_ZSTD))
+                while viewer.frame()[0] != 2:
+                    pass
+                times.append(1e3 * (time.perf_counter() - began))
+                viewer.socket.close()
+            figures[f"first_picture_{organisms}_ms"] = spread(times)
     return figures
 
 

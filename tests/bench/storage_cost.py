@@ -8,8 +8,7 @@ thread's processor time, both over the simulation thread's time where nothing is
 generation, so that most of one is to be simulated again.
 """
 import argparse
-import statistics
-import subprocess
+import signal
 import sys
 import tempfile
 import time
@@ -23,36 +22,28 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path.insert(0, options.messages)
 
-from bench_client import Client, assignments, benchmark_world, print_figures, thread_s  # noqa: E402
+from bench_client import Server, assignments, benchmark_world, print_figures, spread, spread_ms  # noqa: E402
 from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 
 first_tick, ticks = 60, max(4_900, 60_000_000 // options.organisms)  # two ends of a generation at least
 
 
-def start(*arguments):
-    server = subprocess.Popen([options.evod, "--port", "0", *arguments], stdout=subprocess.PIPE, text=True)
-    for line in server.stdout:
-        if "listening on " in line:
-            return server, Client(int(line.split("listening on ")[1].split(",")[0].rsplit(":")[1]))
-    raise AssertionError("evod ended at once")
-
-
 def measure_run(*arguments):
     """Seconds of the simulation thread and of the storage thread for the ticks; seconds of some commands."""
-    server, control = start("--threads", "1", *arguments)
-    control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(benchmark_world(options.organisms))))
-    control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
-    control.run_to(first_tick)
-    before = thread_s(server.pid, "simulation"), thread_s(server.pid, "storage")
-    control.run_to(first_tick + ticks)
-    after = thread_s(server.pid, "simulation"), thread_s(server.pid, "storage")
-    commands = []
-    for _ in range(100):
-        began = time.perf_counter()
-        control.call(pause=c.Pause(world="w"))
-        commands.append(time.perf_counter() - began)
-    server.terminate()
-    server.communicate()
+    with Server(options.evod, "--threads", "1", *arguments) as server:
+        control = server.control
+        control.call(create_world=c.CreateWorld(name="w", seed=1,
+                                                parameters=assignments(benchmark_world(options.organisms))))
+        control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+        control.run_to(first_tick)
+        before = server.thread_s("simulation"), server.thread_s("storage")
+        control.run_to(first_tick + ticks)
+        after = server.thread_s("simulation"), server.thread_s("storage")
+        commands = []
+        for _ in range(100):
+            began = time.perf_counter()
+            control.call(pause=c.Pause(world="w"))
+            commands.append(time.perf_counter() - began)
     return after[0] - before[0], after[1] - before[1], commands
 
 
@@ -60,27 +51,20 @@ def measure_ready_after_kill():
     """Seconds from exec to a client's welcome, several times."""
     times = []
     with tempfile.TemporaryDirectory() as data:
-        server, control = start("--data", data)
+        server = Server(options.evod, "--data", data)
         parameters = benchmark_world(options.organisms) | {"generation_s": 40.0}
-        control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(parameters)))
-        control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
-        control.run_to(2390)  # of 2400
-        control.call(pause=c.Pause(world="w"))  # is on the disk, with its tick
+        server.control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(parameters)))
+        server.control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+        server.control.run_to(2390)  # of 2400
+        server.control.call(pause=c.Pause(world="w"))  # is on the disk, with its tick
         for _ in range(options.runs):
-            server.kill()
-            server.communicate()
-            began = time.perf_counter()
-            server, control = start("--data", data)
-            times.append(time.perf_counter() - began)
-        worlds = control.call(list_worlds=c.ListWorlds()).worlds.worlds
+            server.end(signal.SIGKILL)
+            server = Server(options.evod, "--data", data)
+            times.append(server.start_s)
+        worlds = server.control.call(list_worlds=c.ListWorlds()).worlds.worlds
         assert next(x.tick for x in worlds if x.name == "w") == 2390
-        server.terminate()
-        server.communicate()
+        server.end()
     return times
-
-
-def spread(values):
-    return {"median": statistics.median(values), "min": min(values), "max": max(values)}
 
 
 def measure():
@@ -95,7 +79,7 @@ def measure():
         commands += waited
     return {"organisms": options.organisms, "ticks": ticks, "pairs": options.runs,
             "simulation_rise_percent": spread(rises), "storage_share_percent": spread(shares),
-            "cost_percent": spread(costs), "command_ms": spread([1e3 * s for s in commands]),
+            "cost_percent": spread(costs), "command_ms": spread_ms(commands),
             "ready_after_kill_s": spread(measure_ready_after_kill())}
 
 

@@ -10,7 +10,6 @@ import argparse
 import ctypes
 import pathlib
 import statistics
-import subprocess
 import sys
 import time
 
@@ -24,7 +23,7 @@ parser.add_argument("--json", action="store_true", help="print the figures as JS
 options = parser.parse_args()
 sys.path[:0] = [options.messages, str(pathlib.Path(__file__).resolve().parents[1] / "system")]
 
-from bench_client import Client, assignments, benchmark_world, print_figures, thread_s  # noqa: E402
+from bench_client import Client, Server, assignments, benchmark_world, print_figures  # noqa: E402
 from delta_decoder import Decoder  # noqa: E402
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2 as w  # noqa: E402
 
@@ -39,17 +38,18 @@ def zstd_content(frame):
     return content.raw
 
 
-def watch(process, port, control, name, codec, compression):
+def watch(server, name, codec, compression):
     """Reads the pictures of a run from first_tick to last_tick; figures of one picture, in the mean."""
+    control = server.control
     control.call(reset_world=c.ResetWorld(world=name))
     control.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
     control.call(run_until_tick=c.RunUntilTick(world=name, tick=first_tick))
     while next(x for x in control.call(list_worlds=c.ListWorlds()).worlds.worlds if x.name == name).tick < first_tick:
         time.sleep(0.005)
     control.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(real_time_factor=1)))
-    viewer = Client(port)
+    viewer = Client(server.port)
     viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=name, rate_hz=30, codec=codec, compression=compression))
-    before = thread_s(process.pid, "evod")
+    before = server.thread_s("evod")
     control.call(run_until_tick=c.RunUntilTick(world=name, tick=last_tick))
     decoder, sizes, alive, decoding, keyframes = Decoder(zstd_content), [], [], [], []
     tick = 0
@@ -67,7 +67,7 @@ def watch(process, port, control, name, codec, compression):
                 keyframes.append(8 + len(body))
         sizes.append(8 + len(body))
         alive.append(picture.organism_count)
-    spent = thread_s(process.pid, "evod") - before
+    spent = server.thread_s("evod") - before
     viewer.socket.close()
     figures = {"pictures": len(sizes), "bytes": statistics.mean(sizes), "bytes_median": statistics.median(sizes),
                "bytes_per_organism": sum(sizes) / sum(alive), "server_ms": 1e3 * spent / len(sizes)}
@@ -78,20 +78,16 @@ def watch(process, port, control, name, codec, compression):
 
 
 def measure():
-    process = subprocess.Popen([options.evod, "--port", "0", "--keep-nothing"], stdout=subprocess.PIPE, text=True)
-    port = int(process.stdout.readline().split("listening on ")[1].split(",")[0].rsplit(":")[1])
-    control = Client(port)
     figures = {}
-    for organisms in options.organisms:
-        name = f"w{organisms}"
-        parameters = {} if organisms == 50 else benchmark_world(organisms)
-        control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=assignments(parameters)))
-        for codec, number, compression in (("columns", 1, 1), ("delta", 2, 1), ("delta and zstd", 2, 2)):
-            figures[f"{organisms} {codec}"] = {"organisms": organisms, "codec": codec} | watch(
-                process, port, control, name, number, compression)
-        control.call(delete_world=c.DeleteWorld(world=name))
-    process.terminate()
-    process.wait()
+    with Server(options.evod, "--keep-nothing") as server:
+        for organisms in options.organisms:
+            name = f"w{organisms}"
+            parameters = {} if organisms == 50 else benchmark_world(organisms)
+            server.control.call(create_world=c.CreateWorld(name=name, seed=1, parameters=assignments(parameters)))
+            for codec, number, compression in (("columns", 1, 1), ("delta", 2, 1), ("delta and zstd", 2, 2)):
+                figures[f"{organisms} {codec}"] = {"organisms": organisms, "codec": codec} | watch(
+                    server, name, number, compression)
+            server.control.call(delete_world=c.DeleteWorld(world=name))
     return figures
 
 

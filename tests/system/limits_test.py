@@ -409,6 +409,27 @@ class Unread(Case):
         self.assertGreater(min(map(int, closed)), 1024)
         self.assertEqual(modest.response(modest.request_id).status.code, OK)  # whoever had little is still there
 
+    @unittest.skipIf(SANITIZED, "its memory is not what it would be")
+    def test_a_burst_of_long_answers_takes_no_more_than_may_wait(self):
+        server = self.serve()
+        other = self.come(server)
+        limits = other.welcome.limits
+        self.world_of_short_generations(other, 1100, island_count=1)
+        asking = b"".join(frame(request(request_id=i + 1, get_history=c.GetHistory(world="short")))
+                          for i in range(limits.requests_in_flight_max))
+        clients = [self.small(server) for _ in range(40)]
+        pathlib.Path(f"/proc/{server.process.pid}/clear_refs").write_text("5")  # the peak begins anew
+        with self.meets(other, "client_buffer_bytes_max"):
+            for client in clients:
+                with contextlib.suppress(OSError):  # it is one of those that are closed
+                    client.socket.sendall(asking)
+            # Which is answered after those that the simulation's mailbox had room for.
+            plain.until(lambda: other.response(other.ask(list_worlds=c.ListWorlds())).status.code == OK, "room")
+        status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
+        peak_mib = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) >> 10
+        print(f"{peak_mib} MiB at the most", file=sys.stderr)
+        self.assertLess(peak_mib, (limits.client_buffer_bytes_max >> 20) + 64)
+
 
 class Times(Case):
     def test_all_at_once(self):

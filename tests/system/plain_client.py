@@ -1545,6 +1545,37 @@ class Views(WithServer):
         self.set_view(subscription)
         self.assertEqual(len(self.next()[1]), 6 * 4)
 
+    def test_a_world_that_stands_still_is_shown_as_closely_as_the_budget_allows_in_time(self):
+        world = self.wide_world()
+        self.client.run_to(20, world)
+
+        def details():
+            picture, _ = self.next()
+            self.assertEqual(picture.tick, 20)
+            shown.append((picture.sequence, picture.dropped_count))
+            return {tile.detail for tile in picture.tiles}
+        shown = []
+        everything = self.subscribe(world, c.View())
+        keyframe_bytes = 8 + self.next()[0].ByteSize()
+        self.viewer.call(unsubscribe=c.Unsubscribe(subscription_id=everything))
+        subscription = self.subscribe(world, c.View(bytes_per_s_max=keyframe_bytes * 6 // 10))
+        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
+        self.assertNotIn(stream_pb2.DETAIL_FULL, details())  # there is not enough for another
+        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})  # now there is
+        # What is allowed from now on is there at once, too.
+        self.set_view(subscription, bytes_per_s_max=1000)
+        details()
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription))
+        self.assertNotIn(stream_pb2.DETAIL_FULL, details())
+        self.set_view(subscription, bytes_per_s_max=10 * keyframe_bytes)
+        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})
+        self.set_view(subscription, bytes_per_s_max=10 * keyframe_bytes, detail=stream_pb2.DETAIL_DOTS)
+        self.assertEqual(details(), {stream_pb2.DETAIL_DOTS})
+        self.set_view(subscription, bytes_per_s_max=10 * keyframe_bytes)
+        self.assertEqual(details(), {stream_pb2.DETAIL_FULL})
+        self.assertEqual(set(shown), {(shown[0][0], 0)})  # all of them are of the one picture, and none was dropped
+
     def test_a_damaged_tile_is_mended_by_a_keyframe(self):
         world = self.wide_world()
         subscription = self.subscribe(world, c.View())

@@ -140,6 +140,40 @@ TEST_F(BudgetTest, TellsWhenAPictureCanBeSent) {
     EXPECT_EQ(budget.choose(now + 1s, cost).detail, DETAIL_DENSITY);
 }
 
+TEST_F(BudgetTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
+    const auto cost = [&](v1::Detail of) { return costs_.at(of); };
+    const auto look_closer = [&](Budget& budget) { return budget.look_closer(clock_.now(), DETAIL_DENSITY, cost); };
+    Budget budget{550, DETAIL_FULL};
+    EXPECT_EQ(choose(budget), DETAIL_FULL); // 100 are left
+    const Budget::Choice shown = budget.choose(clock_.now(), cost);
+    EXPECT_EQ(shown.detail, DETAIL_DENSITY);
+    EXPECT_EQ(shown.again, clock_.now() + Budget::patience_min);
+    EXPECT_EQ(look_closer(budget).again, shown.again);
+    clock_.advance(Budget::patience_min);
+    EXPECT_EQ(look_closer(budget).detail, DETAIL_FULL); // 100 are left
+    // Another island's picture, that was shown as this was.
+    const Budget::Choice other = look_closer(budget);
+    EXPECT_FALSE(other.detail);
+    clock_.advance(other.again - clock_.now() - 1ms);
+    EXPECT_FALSE(look_closer(budget).detail);
+    clock_.advance(1ms);
+    EXPECT_EQ(look_closer(budget).detail, DETAIL_FULL);
+    costs_[DETAIL_FULL] = 1101; // than which less can be saved
+    clock_.advance(1h);
+    EXPECT_EQ(look_closer(budget).detail, DETAIL_DOTS);
+    costs_[DETAIL_DOTS] = 1101;
+    EXPECT_EQ(look_closer(budget).again, Budget::Clock::time_point::max());
+}
+
+TEST_F(BudgetTest, WhoWantsMoreHasMoreAtOnce) {
+    Budget budget{500, DETAIL_FULL};
+    EXPECT_EQ(choose(budget), DETAIL_FULL); // nothing is left
+    budget.change(400, DETAIL_FULL);
+    EXPECT_EQ(choose(budget), std::nullopt);
+    budget.change(900, DETAIL_FULL);
+    EXPECT_EQ(choose(budget), DETAIL_FULL);
+}
+
 TEST_F(BudgetTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
     Budget budget{1e9, DETAIL_DOTS};
     for (const auto& detail : choose_for(budget, 10s))
