@@ -54,8 +54,8 @@ double SelectionLaw::expected_wins(std::uint32_t rank) const {
         tournament.size = std::min(tournament.size, population_);
     const auto wins_of = [&](std::uint32_t winners) {
         tournament.winners = winners;
-        return expected_winners_up_to(rank, population_, tournament) -
-               (rank == 0 ? 0 : expected_winners_up_to(rank - 1, population_, tournament));
+        const double better = rank == 0 ? 0 : expected_winners_up_to(rank - 1, population_, tournament);
+        return std::max(0.0, expected_winners_up_to(rank, population_, tournament) - better); // or less, by a rounding
     };
     const std::uint32_t winners = winners_of_each(population_, tournament, picks_.wanted);
     const std::uint32_t whole = picks_.wanted / winners, left = picks_.wanted % winners;

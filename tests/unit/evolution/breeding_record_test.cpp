@@ -143,8 +143,8 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(BreedingRecord, EveryChoice, testing::ValuesIn(stage_choices()), [](const auto& info) {
-    std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(BreedingRecord, EveryChoice, testing::ValuesIn(stage_choices()), [](const auto& choice) {
+    std::string name = choice.param.name;
     std::ranges::replace_if(
         name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     return name;
