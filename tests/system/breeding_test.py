@@ -141,9 +141,10 @@ class Breeding(export_test.Runs):
     def test_what_was_not_kept_is_simulated_again(self):
         _, client = self.serve("--keep-every", "10")
         self.run_world(client, 24, fitness="gene_sum")
-        table = self.organisms()
-        for generation in (1, 9, 10, 14, 23):
-            self.check(self.breeding(client, generation=generation, island=1), table)
+        told = [self.breeding(client, generation=generation, island=1) for generation in (1, 9, 10, 14, 23)]
+        table = self.organisms()  # after what was told, which waits for the file
+        for bred in told:
+            self.check(bred, table)
 
     def test_many_rows_come_in_parts(self):
         _, client = self.serve()
