@@ -104,6 +104,7 @@ inline std::string at_least_one(const std::string& word) {
 void add_look_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_parameter_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_run_commands(CLI::App& app, const Common& common, Selected& selected);
+void add_breeding_command(CLI::App& app, const Common& common, Selected& selected);
 void add_export_command(CLI::App& app, const Common& common, Selected& selected);
 void add_watch_commands(CLI::App& app, const Common& common, Selected& selected);
 void add_top_command(CLI::App& app, const Common& common, Selected& selected);

@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
     add_run_commands(app, common, selected);
     add_parameter_commands(app, common, selected);
     add_look_commands(app, common, selected);
+    add_breeding_command(app, common, selected);
     add_export_command(app, common, selected);
     add_watch_commands(app, common, selected);
     add_top_command(app, common, selected);

@@ -7,8 +7,6 @@
 namespace evod::evolution {
 namespace {
 
-constexpr GeneMask all_genes = (1u << gene_count) - 1;
-
 int cut_count(const Parameters& parameters) {
     switch (parameters.crossover) {
     case CrossoverMethod::SinglePoint:
@@ -44,9 +42,9 @@ Crossover::Crossover(const Parameters& parameters)
     EVOD_ASSERT(mask_count_ >= 1);
 }
 
-GeneMask Crossover::draw(base::RandomStream& random) const {
+std::optional<GeneMask> Crossover::draw(base::RandomStream& random) const {
     if (method_ == CrossoverMethod::None || !chance_.draw(random))
-        return 0;
+        return {};
     if (method_ == CrossoverMethod::Uniform)
         return random.word() & all_genes;
     return masks_[random.below(mask_count_)];

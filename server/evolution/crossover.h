@@ -13,11 +13,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 namespace evod::evolution {
 
 /// Bit g stands for gene g.
 using GeneMask = std::uint32_t;
+
+constexpr GeneMask all_genes = (1u << gene_count) - 1;
 
 /// The mask that cuts give: genes change sides at every cut. Bit c of `cuts`, 1 … gene_count − 1, cuts before gene c.
 GeneMask mask_of_cuts(GeneMask cuts);
@@ -26,13 +29,13 @@ class Crossover {
   public:
     explicit Crossover(const Parameters& parameters);
 
-    /// The mask of one pair; 0, the children are copies, unless an event of probability crossover_chance happens.
+    /// The mask of one pair; nothing, the children are copies, unless an event of probability crossover_chance happens.
     ///
     /// uniform       each of the 64 masks equally likely.
     /// single_point  each of the 5 interior cuts equally likely.
     /// multi_point   each set of crossover_cuts different interior cuts equally likely.
-    /// none          0.
-    GeneMask draw(base::RandomStream& random) const;
+    /// none          nothing.
+    std::optional<GeneMask> draw(base::RandomStream& random) const;
 
   private:
     CrossoverMethod method_;

@@ -107,23 +107,52 @@ ValueMutation::ValueMutation(const Parameters& parameters)
         rare_flips_.emplace(gene_count * bits_, parameters.bit_flip_chance);
 }
 
-unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
-    if (!creep_chance_.is_never())
-        for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
-            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
-            genes[gene] = static_cast<float>(genes[gene] + step_ * unit);
-        });
-    if (!reset_chance_.is_never())
-        for_each_gene(reset_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
-            genes[gene] = static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene]));
-        });
-    const unsigned clamped = clamp(genes, bounds_);
-    if (!bit_flip_chance_.is_never())
-        flip_bits(genes, random);
+unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes) {
+    std::array<float, gene_count> before;
+    std::ranges::copy(genes, before.begin());
+    const unsigned clamped = clamp(genes, bounds);
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        if (genes[gene] != before[gene])
+            changes.push_back({gene, ChangeKind::Clamp, before[gene], genes[gene]});
     return clamped;
 }
 
-void ValueMutation::flip_bits(Genes genes, base::RandomStream& random) const {
+unsigned ValueMutation::apply(Genes genes, base::RandomStream& random) const {
+    return mutate(
+        genes, random, [&](unsigned gene, ChangeKind, float value) { genes[gene] = value; },
+        [&] { return clamp(genes, bounds_); });
+}
+
+unsigned ValueMutation::apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const {
+    return mutate(
+        genes, random,
+        [&](unsigned gene, ChangeKind kind, float value) {
+            changes.push_back({gene, kind, genes[gene], value});
+            genes[gene] = value;
+        },
+        [&] { return clamp(genes, bounds_, changes); });
+}
+
+template <class Change, class Clamp>
+unsigned ValueMutation::mutate(ConstGenes genes, base::RandomStream& random, const Change& change,
+                               const Clamp& clamp_all) const {
+    if (!creep_chance_.is_never())
+        for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
+            const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
+            change(gene, ChangeKind::Creep, static_cast<float>(genes[gene] + step_ * unit));
+        });
+    if (!reset_chance_.is_never())
+        for_each_gene(reset_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
+            change(gene, ChangeKind::Reset, static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene])));
+        });
+    const unsigned clamped = clamp_all();
+    if (!bit_flip_chance_.is_never())
+        flip_bits(genes, random, change);
+    return clamped;
+}
+
+template <class Change>
+void ValueMutation::flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const {
     std::array<std::uint32_t, gene_count> flips{};
     if (rare_flips_) {
         // A division by bits_, exact for so few trials: what the reciprocal is too large comes to less than 2^16.
@@ -139,7 +168,7 @@ void ValueMutation::flip_bits(Genes genes, base::RandomStream& random) const {
     for (unsigned gene = 0; gene < gene_count; ++gene)
         if (flips[gene] != 0) {
             const BinaryView view{bounds_.min[gene], bounds_.max[gene], bits_};
-            genes[gene] = view.to_value(view.to_code(genes[gene]) ^ flips[gene]);
+            change(gene, ChangeKind::BitFlip, view.to_value(view.to_code(genes[gene]) ^ flips[gene]));
         }
 }
 

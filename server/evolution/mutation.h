@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace evod::evolution {
 
@@ -26,6 +27,19 @@ struct BinaryView {
     std::uint32_t to_code(float value) const;
     float to_value(std::uint32_t code) const;
 };
+
+enum class ChangeKind { Creep, Reset, BitFlip, Clamp };
+
+/// What happened to a gene.
+struct GeneChange {
+    unsigned gene = 0;
+    ChangeKind kind = ChangeKind::Creep;
+    float before = 0, after = 0;
+    friend bool operator==(const GeneChange&, const GeneChange&) = default;
+};
+
+/// clamp(), and says which genes were put onto a bound.
+unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes);
 
 class ValueMutation {
   public:
@@ -43,9 +57,15 @@ class ValueMutation {
     ///
     /// returns  how many genes were clamped.
     unsigned apply(Genes genes, base::RandomStream& random) const;
+    /// The same, and adds what happened, in order.
+    unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
 
   private:
-    void flip_bits(Genes genes, base::RandomStream& random) const;
+    /// change(gene, kind, value)  gives a gene a value.
+    template <class Change, class Clamp>
+    unsigned mutate(ConstGenes genes, base::RandomStream& random, const Change& change, const Clamp& clamp_all) const;
+    template <class Change>
+    void flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const;
 
     GeneBounds bounds_;
     Creep creep_;

@@ -17,7 +17,8 @@ Slice draw_slice(base::RandomStream& random) {
     return {std::min(a, b), std::max(a, b)};
 }
 
-void swap_pair(Genes genes, base::RandomStream& random) {
+template <class T>
+void swap_pair(std::span<T, gene_count> genes, base::RandomStream& random) {
     const Slice pair = draw_slice(random);
     std::swap(genes[pair.first], genes[pair.last]);
 }
@@ -27,9 +28,18 @@ void swap_pair(Genes genes, base::RandomStream& random) {
 RearrangingMutation::RearrangingMutation(const Parameters& parameters)
     : method_{parameters.rearranging}, chance_{parameters.rearrange_chance} {}
 
-void RearrangingMutation::apply(Genes genes, base::RandomStream& random) const {
+bool RearrangingMutation::apply(Genes genes, base::RandomStream& random) const {
+    return rearrange(genes, random);
+}
+
+bool RearrangingMutation::apply(GeneOrder order, base::RandomStream& random) const {
+    return rearrange(order, random);
+}
+
+template <class T>
+bool RearrangingMutation::rearrange(std::span<T, gene_count> genes, base::RandomStream& random) const {
     if (is_off() || !chance_.draw(random))
-        return;
+        return false;
     switch (method_) {
     case Rearranging::None:
         break;
@@ -42,7 +52,7 @@ void RearrangingMutation::apply(Genes genes, base::RandomStream& random) const {
     }
     case Rearranging::Scramble: {
         const Slice slice = draw_slice(random);
-        random.shuffle(std::span<float>{genes}.subspan(slice.first, slice.last - slice.first + 1));
+        random.shuffle(std::span<T>{genes}.subspan(slice.first, slice.last - slice.first + 1));
         break;
     }
     case Rearranging::Inversion: {
@@ -51,6 +61,7 @@ void RearrangingMutation::apply(Genes genes, base::RandomStream& random) const {
         break;
     }
     }
+    return true;
 }
 
 } // namespace evod::evolution

@@ -8,7 +8,13 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/parameters.h"
 
+#include <cstdint>
+#include <span>
+
 namespace evod::evolution {
+
+/// Which gene's value each gene has got.
+using GeneOrder = std::span<std::uint32_t, gene_count>;
 
 class RearrangingMutation {
   public:
@@ -23,11 +29,18 @@ class RearrangingMutation {
     /// inversion  the genes of a slice, both ends included, are put in the opposite order.
     ///
     /// The genes may be out of their bounds afterwards, as each gene has bounds of its own.
-    void apply(Genes genes, base::RandomStream& random) const;
+    ///
+    /// returns  whether an event of that probability happened.
+    bool apply(Genes genes, base::RandomStream& random) const;
+    /// Does to something else what apply() does to genes.
+    bool apply(GeneOrder order, base::RandomStream& random) const;
 
     bool is_off() const { return method_ == Rearranging::None || chance_.is_never(); }
 
   private:
+    template <class T>
+    bool rearrange(std::span<T, gene_count> items, base::RandomStream& random) const;
+
     Rearranging method_;
     Chance chance_;
 };

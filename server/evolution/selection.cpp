@@ -14,17 +14,34 @@ namespace {
 constexpr std::size_t spins_per_stream = 4096;
 constexpr std::size_t pointers_per_piece = 16384;
 
+/// Calls stop(i, turns) for each spin of a roulette, side by side.
+template <class Stop>
+void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& executor, const Stop& stop) {
+    executor.parallel_for(spins, spins_per_stream, [&](base::Range piece) {
+        base::RandomStream random{key, static_cast<std::uint32_t>(piece.begin / spins_per_stream)};
+        for (std::size_t i = piece.begin; i < piece.end; ++i)
+            stop(i, random.uniform());
+    });
+}
+
+/// Where one of `wanted` equally spaced pointers stands, in turns; `offset` of a space on from its first place.
+double pointer_turns(std::size_t pointer, double offset, std::uint32_t wanted) {
+    return (static_cast<double>(pointer) + offset) / wanted;
+}
+
 } // namespace
 
 std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wanted, const base::RandomKey& key,
                                          base::Executor& executor) {
     std::vector<std::uint32_t> picked(wanted);
-    executor.parallel_for(wanted, spins_per_stream, [&](base::Range piece) {
-        base::RandomStream random{key, static_cast<std::uint32_t>(piece.begin / spins_per_stream)};
-        for (std::size_t i = piece.begin; i < piece.end; ++i)
-            picked[i] = wheel.at(random.uniform());
-    });
+    spin(wanted, key, executor, [&](std::size_t i, double turns) { picked[i] = wheel.at(turns); });
     return picked;
+}
+
+std::vector<double> roulette_turns(std::uint32_t wanted, const base::RandomKey& key, base::Executor& executor) {
+    std::vector<double> stops(wanted);
+    spin(wanted, key, executor, [&](std::size_t i, double turns) { stops[i] = turns; });
+    return stops;
 }
 
 std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
@@ -33,9 +50,7 @@ std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t want
     const double offset = random.uniform();
     std::vector<std::uint32_t> picked(wanted);
     executor.parallel_for(wanted, pointers_per_piece, [&](base::Range piece) {
-        const auto place = [&](std::size_t pointer) {
-            return (static_cast<double>(pointer) + offset) / wanted * ends.back();
-        };
+        const auto place = [&](std::size_t pointer) { return pointer_turns(pointer, offset, wanted) * ends.back(); };
         auto slot = std::upper_bound(ends.begin(), ends.end(), place(piece.begin));
         for (std::size_t pointer = piece.begin; pointer < piece.end; ++pointer) {
             while (slot < ends.end() && *slot <= place(pointer))
@@ -46,6 +61,18 @@ std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t want
     });
     shuffle(picked, random, executor);
     return picked;
+}
+
+std::vector<double> universal_turns(std::uint32_t wanted, base::RandomStream& random, base::Executor& executor) {
+    const double offset = random.uniform();
+    std::vector<std::uint32_t> pointers(wanted);
+    std::iota(pointers.begin(), pointers.end(), 0u);
+    shuffle(pointers, random, executor);
+    std::vector<double> turns;
+    turns.reserve(wanted);
+    for (const std::uint32_t pointer : pointers)
+        turns.push_back(pointer_turns(pointer, offset, wanted));
+    return turns;
 }
 
 std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random,
@@ -80,10 +107,14 @@ std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::
     return picked;
 }
 
+base::RandomStream selection_stream(const base::RandomKey& key) {
+    return {key, 0};
+}
+
 std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Parameters& parameters,
                                   const base::RandomKey& key, base::Executor& executor) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
-    base::RandomStream random{key, 0};
+    base::RandomStream random = selection_stream(key);
     EVOD_ASSERT(parameters.selection <= SelectionMethod::Truncation);
     switch (parameters.selection) {
     case SelectionMethod::Roulette:
@@ -91,11 +122,7 @@ std::vector<std::uint32_t> select(Ranking& ranking, const Picks& picks, const Pa
     case SelectionMethod::StochasticUniversal:
         return spin_universal(Wheel{scaled_fitness(ranking, parameters)}, picks.wanted, random, executor);
     case SelectionMethod::Tournament:
-        return hold_tournaments(ranking,
-                                {.size = parameters.tournament_size,
-                                 .winners = parameters.tournament_winners,
-                                 .replacement = parameters.tournament_replacement},
-                                picks.wanted, key, executor);
+        return hold_tournaments(ranking, tournament_of(parameters), picks.wanted, key, executor);
     case SelectionMethod::Random:
         return draw_unique(population, picks.wanted, random, executor);
     case SelectionMethod::Truncation:

@@ -22,12 +22,18 @@ namespace evod::evolution {
 std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wanted, const base::RandomKey& key,
                                          base::Executor& executor);
 
+/// Where each of those spins stops, in turns from the first slot, in [0, 1).
+std::vector<double> roulette_turns(std::uint32_t wanted, const base::RandomKey& key, base::Executor& executor);
+
 /// Stochastic universal sampling: one spin, `wanted` equally spaced pointers. An organism with share p is picked
 /// ⌊wanted · p⌋ or ⌈wanted · p⌉ times (to within the rounding of a sum of doubles), wanted · p on average.
 /// returns  shape (wanted), in random order.
 /// Source   Baker 1987, "Reducing bias and inefficiency in the selection algorithm".
 std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
                                           base::Executor& executor);
+
+/// Where the pointer of each of those picks stands, in turns from the first slot, to within rounding in [0, 1).
+std::vector<double> universal_turns(std::uint32_t wanted, base::RandomStream& random, base::Executor& executor);
 
 /// Different organisms, each set and order of them equally likely. When more are wanted than there are, full rounds of
 /// everybody come first, each in a fresh order.
@@ -39,6 +45,9 @@ std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t w
 /// pool     1 … population.
 /// returns  shape (wanted).
 std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted);
+
+/// What universal sampling and random selection draw from.
+base::RandomStream selection_stream(const base::RandomKey& key);
 
 struct Picks {
     std::uint32_t wanted; // how many to pick

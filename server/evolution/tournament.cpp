@@ -165,17 +165,65 @@ Way choose_way(std::uint32_t population, const Tournament& tournament) {
     return size < 4 * winners ? Way::Held : Way::SkipRanks;
 }
 
+/// Tournaments as they are held for a number of picks.
+struct Rules {
+    std::uint32_t population, size, winners;
+    bool replacement;
+    Way way;
+};
+
+Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted) {
+    EVOD_ASSERT(population >= 1 && tournament.size >= 1 && tournament.winners >= 1);
+    const std::uint32_t size = tournament.replacement ? tournament.size : std::min(tournament.size, population);
+    const std::uint32_t winners = std::min({tournament.winners, size, wanted});
+    return {population, size, winners, tournament.replacement,
+            choose_way(population, {size, winners, tournament.replacement})};
+}
+
+/// Of Way::Held.
+void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSet& drawn, base::RandomStream& random) {
+    if (rules.replacement)
+        draw_contestants(rules.population, contestants, random);
+    else
+        draw_different_contestants(rules.population, contestants, drawn, random);
+}
+
+DrawnSet drawn_set_for(const Rules& rules) {
+    return DrawnSet{rules.way == Way::Held && !rules.replacement ? rules.size : 0};
+}
+
 } // namespace
+
+Tournament tournament_of(const Parameters& parameters) {
+    return {.size = parameters.tournament_size,
+            .winners = parameters.tournament_winners,
+            .replacement = parameters.tournament_replacement};
+}
+
+std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted) {
+    return rules_of(population, tournament, wanted).winners;
+}
+
+std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
+                                          std::uint32_t wanted, const base::RandomKey& key) {
+    const Rules rules = rules_of(population, tournament, wanted);
+    if (rules.way != Way::Held)
+        return {};
+    std::vector<std::uint32_t> contestants(rules.size);
+    DrawnSet drawn = drawn_set_for(rules);
+    base::RandomStream random{key, index};
+    draw_held(rules, contestants, drawn, random);
+    return contestants;
+}
 
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
-    EVOD_ASSERT(population >= 1 && tournament.size >= 1 && tournament.winners >= 1);
-    const std::uint32_t size = tournament.replacement ? tournament.size : std::min(tournament.size, population);
     if (wanted == 0)
         return {};
-    const std::uint32_t winners = std::min({tournament.winners, size, wanted});
-    const Way way = choose_way(population, {size, winners, tournament.replacement});
+    const Rules rules = rules_of(population, tournament, wanted);
+    const std::uint32_t size = rules.size, winners = rules.winners;
+    const Way way = rules.way;
     const bool held = way == Way::Held;
     const Wheel wheel{way == Way::WheelOfRanks ? chances_of_ranks(population, size) : std::vector<double>{1}};
     const std::span<const std::uint32_t> best_first = held ? std::span<const std::uint32_t>{} : ranking.best_first();
@@ -188,7 +236,7 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
     const std::size_t grain = std::max<std::size_t>(contestants_per_piece / contestants_each, 1);
     executor.parallel_for(tournament_count, grain, [&](base::Range piece) {
         std::vector<std::uint32_t> drawn_contestants(contestants_each * std::min(at_once, piece.end - piece.begin));
-        DrawnSet drawn{held && !tournament.replacement ? size : 0};
+        DrawnSet drawn = drawn_set_for(rules);
         const auto contestants_of = [&](std::size_t place) {
             return std::span{drawn_contestants}.subspan(place * contestants_each, contestants_each);
         };
@@ -199,10 +247,7 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
                 const std::span<std::uint32_t> contestants = contestants_of(i);
                 switch (way) {
                 case Way::Held:
-                    if (tournament.replacement)
-                        draw_contestants(population, contestants, random);
-                    else
-                        draw_different_contestants(population, contestants, drawn, random);
+                    draw_held(rules, contestants, drawn, random);
                     break;
                 case Way::OrderStatistics:
                     draw_winning_ranks(population, size, contestants, random);

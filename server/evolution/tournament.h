@@ -8,6 +8,7 @@
 
 #include "server/base/executor.h"
 #include "server/base/random.h"
+#include "server/evolution/parameters.h"
 #include "server/evolution/ranking.h"
 
 #include <cstdint>
@@ -21,6 +22,8 @@ struct Tournament {
     bool replacement = true;   // whether an organism can be drawn, and win, more than once in a tournament
 };
 
+Tournament tournament_of(const Parameters& parameters);
+
 /// Holds tournaments until `wanted` organisms are picked; the last one's surplus winners are dropped, worst first.
 ///
 /// With replacement the best of k from n has rank r (0 = fittest) with probability ((n−r)^k − (n−r−1)^k) / n^k, without
@@ -31,6 +34,13 @@ struct Tournament {
 /// returns  shape (wanted): each tournament's winners together, best first.
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor);
+
+/// How many picks each of those tournaments gives; the last perhaps fewer.
+std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tournament, std::uint32_t wanted);
+
+/// The contestants of one of those tournaments, as drawn; empty if its outcome is drawn directly.
+std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
+                                          std::uint32_t wanted, const base::RandomKey& key);
 
 /// Tournaments of more contestants than this have their outcome drawn directly, unless most of them win.
 constexpr std::uint32_t held_contestants_max = 64;

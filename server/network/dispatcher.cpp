@@ -151,6 +151,7 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
     , shut_down_{std::move(shut_down)}
     , metrics_{std::move(metrics)}
     , exports_{outbox, limit_counters}
+    , breedings_{outbox, limit_counters}
     , leases_{context,
               [this](const std::string& world) {
                   limit_counters_.met(Limit::Lease);
@@ -409,6 +410,8 @@ void Dispatcher::query(Session& session, v1::Request request) {
             session.expect(bytes);
         return;
     }
+    case v1::Request::kGetBreeding:
+        return breeding(session, request);
     case v1::Request::kGetMetrics: {
         v1::Response response = response_to(id);
         *response.mutable_metrics() = metrics_();
@@ -555,18 +558,32 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
     if (request.has_continue_export())
         return exports_.go_on(session, id, request.continue_export());
-    auto found = [this, id, request, weak = session.weak_from_this()](const base::Result<storage::Past>& run) {
-        outbox_.answer([this, id, request, run, weak] {
+    find_run(session, request, request.export_run().world(), [this, id, request](Session& asking, const auto& run) {
+        exports_.begin(asking, id, run.past, wanted(request.export_run()));
+    });
+}
+
+void Dispatcher::breeding(Session& session, const v1::Request& request) {
+    find_run(session, request, request.get_breeding().world(), [this, request](Session& asking, auto run) {
+        breedings_.ask(asking, request.request_id(), request.get_breeding(), std::move(run));
+    });
+}
+
+void Dispatcher::find_run(Session& session, const v1::Request& request, const std::string& world, Found then) {
+    const std::uint64_t id = request.request_id();
+    auto found = [this, id, name = name_of(request), then = std::move(then),
+                  weak = session.weak_from_this()](const base::Result<runtime::FoundRun>& run) {
+        outbox_.answer([id, name, then, run, weak] {
             const auto asking = weak.lock();
             if (!asking)
                 return;
             if (run)
-                exports_.begin(*asking, id, *run, wanted(request.export_run()));
+                then(*asking, *run);
             else
-                asking->answer(protocol::refusing(id, protocol::with_paths(run.error(), "export_run")));
+                asking->answer(protocol::refusing(id, protocol::with_paths(run.error(), name)));
         });
     };
-    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(request.export_run().world()), std::move(found)}))
+    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(world), std::move(found)}))
         session.answer(protocol::refusing(id, busy()));
 }
 
@@ -592,6 +609,7 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
 
 void Dispatcher::forget(const Session& session) {
     exports_.forget(session);
+    breedings_.forget(session);
     mailbox_.push(runtime::PastMail{runtime::OwnerGone{session.number()}, {}});
 }
 

@@ -6,6 +6,7 @@
 //              laboratory there, and comes back through the outbox.
 #pragma once
 
+#include "server/network/breedings.h"
 #include "server/network/exports.h"
 #include "server/network/leases.h"
 #include "server/network/limits.h"
@@ -51,6 +52,11 @@ class Dispatcher {
     void subscription(Session& session, const v1::Request& request);
     void past(Session& session, const v1::Request& request);
     void export_text(Session& session, const v1::Request& request);
+    void breeding(Session& session, const v1::Request& request);
+    /// Finds the file of a world's run for `then`, which runs here if the session is still there. A refusal is
+    /// answered.
+    using Found = std::function<void(Session&, runtime::FoundRun)>;
+    void find_run(Session& session, const v1::Request& request, const std::string& world, Found then);
     void renew_lease(Session& session, const v1::Request& request);
 
     /// The encoded response to a command, here, once it cannot be lost any more. refused: nullptr if it was applied.
@@ -80,6 +86,7 @@ class Dispatcher {
     std::function<void()> shut_down_;
     std::function<v1::Metrics()> metrics_;
     Exports exports_;
+    Breedings breedings_;
     Leases leases_;
     Retries retries_;
     const std::string own_key_; // client_key of the server's own commands

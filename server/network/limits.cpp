@@ -3,6 +3,7 @@
 #include "proto/wire/framing.h"
 #include "proto/wire/tiles.h"
 #include "server/base/assert.h"
+#include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/queries.h"
 #include "server/runtime/export_thread.h"
@@ -70,6 +71,8 @@ constexpr LimitRow table[] = {
      "generations of statistics kept of each world", "the oldest are forgotten; a `History` begins after them"},
     {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,
      "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
+    {Limit::BreedingRows, "breeding_rows_max", protocol::breeding_rows_max, "rows of each list of a `Breeding`",
+     "cut; who asks says where the next answer begins"},
     {Limit::ClientBufferBytes, "client_buffer_bytes_max", client_buffer_bytes_max,
      "what waits or is got together for all clients, and what they have sent of frames that are not whole",
      "the sessions with the most are closed"},

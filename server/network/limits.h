@@ -67,6 +67,7 @@ enum class Limit : std::uint8_t {
     ClientKeys,
     HistoryGenerationsKept,
     HistoryGenerations,
+    BreedingRows,
     ClientBufferBytes,
     QueuedResponseBytes,
     QueuedEventBytes,

@@ -72,10 +72,14 @@ struct PastMail {
     PastReply reply; // none for OwnerGone
 };
 
+struct FoundRun {
+    storage::Past past;
+    std::uint64_t generation = 0; // in which the world was when its run was asked for
+};
 /// Where a world's run is told, once all of it until now is on the disk, or cannot get there.
 struct FindRun {
     std::string world;
-    std::function<void(const base::Result<storage::Past>&)> found; // called on the simulation thread
+    std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread
 };
 
 using Mail = std::variant<CommandMail, QueryMail, PastMail, FindRun>;

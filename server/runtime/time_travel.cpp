@@ -78,10 +78,10 @@ void TimeTravel::find_run(const FindRun& mail) {
     const auto entry = std::as_const(laboratory_).find(mail.world);
     if (!entry)
         return mail.found(entry.error());
-    look_at((*entry)->name,
-            [found = mail.found](const Result<simulation::Recording>& there, const storage::Past& past) {
-                found(there ? Result<storage::Past>{past} : there.error());
-            });
+    look_at((*entry)->name, [found = mail.found, generation = (*entry)->world.moment().generation](
+                                const Result<simulation::Recording>& there, const storage::Past& past) {
+        found(there ? Result<FoundRun>{FoundRun{past, generation}} : there.error());
+    });
 }
 
 Result<storage::Past> TimeTravel::past_of(const std::string& world) const {

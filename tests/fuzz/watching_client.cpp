@@ -22,7 +22,7 @@ bool goes_to_the_simulation(const v1::Request& request) {
     case protocol::RequestKind::Command:
         return true;
     case protocol::RequestKind::Query:
-        return !request.has_describe() && !request.has_get_metrics();
+        return !request.has_describe() && !request.has_get_metrics() && !request.has_get_breeding();
     case protocol::RequestKind::Subscription:
         return request.has_subscribe_snapshots() || request.has_subscribe_events();
     default:

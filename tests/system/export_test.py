@@ -13,7 +13,7 @@ WHATS = {"generations": c.RUN_TABLE_GENERATIONS, "organisms": c.RUN_TABLE_ORGANI
 INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION, RESOURCE_EXHAUSTED = 3, 5, 9, 8
 
 
-class Export(past.Case):
+class Runs(past.Case):
     def serve(self, *options):
         server = self.server("--data", self.folder, "--speed", "max", *options)
         client = self.client(server)
@@ -41,6 +41,8 @@ class Export(past.Case):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
+
+class Export(Runs):
     def evoctl(self, server, *words, status=0):
         done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", "export", *words],
                               capture_output=True, text=True)

@@ -24,7 +24,7 @@ std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t dra
     std::vector<std::uint64_t> counts(64);
     for (std::uint32_t i = 0; i < draws; ++i) {
         base::RandomStream random = stream_of(seed, i);
-        ++counts.at(crossover.draw(random));
+        ++counts.at(crossover.draw(random).value_or(0));
     }
     return counts;
 }

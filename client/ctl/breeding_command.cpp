@@ -1,0 +1,188 @@
+// breeding: how a generation was bred.
+#include "client/ctl/caller.h"
+#include "client/ctl/text.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace evod::ctl {
+
+namespace {
+
+using Align = Table::Align;
+
+// Generations that are not held any more are simulated again first.
+constexpr std::chrono::minutes answer_timeout{30};
+
+struct BreedingOptions {
+    std::optional<std::uint64_t> generation;
+    std::uint32_t island = 0;
+    std::uint32_t from = 0;
+    int rows = 10;
+};
+
+std::string heading(const v1::Breeding& bred) {
+    const auto count = [](std::uint32_t number, const char* one, const char* many) {
+        return std::to_string(number) + " " + (number == 1 ? one : many);
+    };
+    std::string text =
+        "generation " + std::to_string(bred.generation()) + " of island " + std::to_string(bred.island()) + ": of " +
+        count(bred.contender_count(), "organism", "organisms") + ", " + count(bred.pick_count(), "pick", "picks") +
+        " were made; then came " + std::to_string(bred.elite_count()) + " elite, " +
+        count(bred.survivor_count() - bred.elite_count(), "other survivor", "other survivors") + ", " +
+        count(bred.descendant_count() - bred.survivor_count(), "child", "children") + "\n";
+    std::string choices; // as they held
+    for (const auto& parameter : bred.parameters()) {
+        if (parameter.value().has_choice() && parameter.name() != "emigrants" &&
+            parameter.name() != "immigrants_replace") {
+            choices += (choices.empty() ? "" : ", ") + parameter.name() + "=" + parameter.value().choice();
+        }
+    }
+    return text + choices + "\n";
+}
+
+/// "and 15 more: see them with --from 10"
+std::string more_text(std::uint64_t first, int shown, std::uint32_t count) {
+    const std::uint64_t next = first + static_cast<std::uint64_t>(shown);
+    return next >= count ? "" : "and " + std::to_string(count - next) + " more: --from " + std::to_string(next) + "\n";
+}
+
+std::string contender_text(const v1::Breeding& bred, const BreedingOptions& options) {
+    Table table{{{"ORGANISM", Align::Right},
+                 {"FITNESS", Align::Right},
+                 {"RANK", Align::Right},
+                 {"WEIGHT", Align::Right},
+                 {"SLOT, TURNS"},
+                 {"EXPECTED", Align::Right},
+                 {"PICKED", Align::Right},
+                 {"CAME FROM"}}};
+    const int shown = std::min(options.rows, bred.contenders_size());
+    for (int i = 0; i < shown; ++i) {
+        const auto& c = bred.contenders(i);
+        table.add({std::to_string(options.from + static_cast<std::uint32_t>(i)), fixed(c.fitness(), 2),
+                   std::to_string(c.rank()), fixed(c.weight(), 3),
+                   c.slot_end() > 0 ? fixed(c.slot_begin(), 4) + "–" + fixed(c.slot_end(), 4) : "",
+                   fixed(c.expected_copies(), 2), std::to_string(c.copies()),
+                   c.has_migrant() ? "island " + std::to_string(c.migrant().island()) + ", organism " +
+                                         std::to_string(c.migrant().organism())
+                                   : ""});
+    }
+    return "\ncontenders\n" + table.to_text() + more_text(options.from, shown, bred.contender_count());
+}
+
+std::string pick_text(const v1::Breeding& bred, const BreedingOptions& options) {
+    Table table{{{"PICK", Align::Right}, {"ORGANISM", Align::Right}, {"HOW"}}};
+    const int shown = std::min(options.rows, bred.picks_size());
+    for (int i = 0; i < shown; ++i) {
+        const auto& pick = bred.picks(i);
+        std::string how;
+        if (pick.has_turns()) {
+            how = "the wheel stopped at " + fixed(pick.turns(), 4) + " turns";
+        } else if (pick.has_tournament()) {
+            how = "won tournament " + std::to_string(pick.tournament());
+            for (int k = 0; k < pick.contestants_size(); ++k) {
+                how += (k == 0 ? " of " : ", ") + std::to_string(pick.contestants(k));
+            }
+        }
+        table.add({std::to_string(options.from + static_cast<std::uint32_t>(i)), std::to_string(pick.organism()), how});
+    }
+    return "\npicks\n" + table.to_text() + more_text(options.from, shown, bred.pick_count());
+}
+
+std::string name_of(v1::MutationKind kind) {
+    switch (kind) {
+    case v1::MUTATION_KIND_CREEP:
+        return "creep";
+    case v1::MUTATION_KIND_RESET:
+        return "reset";
+    case v1::MUTATION_KIND_BIT_FLIP:
+        return "bit flip";
+    case v1::MUTATION_KIND_CLAMP:
+        return "onto its bound";
+    default:
+        return "mutation " + std::to_string(kind);
+    }
+}
+
+/// What became of its genes after the parents': "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
+std::string changes_of(const v1::Descendant& descendant, const v1::WorldInfo& world) {
+    std::string text;
+    if (descendant.has_rearrangement()) {
+        text = descendant.rearrangement().method();
+        for (const std::uint32_t gene : descendant.rearrangement().order()) {
+            text += " " + std::to_string(gene);
+        }
+    }
+    for (const auto& mutation : descendant.mutations()) {
+        const auto gene = static_cast<int>(mutation.gene());
+        text += (text.empty() ? "" : "; ") +
+                (gene < world.gene_names_size() ? world.gene_names(gene) : std::to_string(gene)) + " " +
+                fixed(mutation.before(), 2) + " → " + fixed(mutation.after(), 2) + " " + name_of(mutation.kind());
+    }
+    return text;
+}
+
+std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world, const BreedingOptions& options) {
+    Table table{{{"ID", Align::Right}, {"KIND"}, {"PARENTS"}, {"GENES OF"}, {"CHANGES"}}};
+    const int shown = std::min(options.rows, bred.descendants_size());
+    for (int i = 0; i < shown; ++i) {
+        const auto& d = bred.descendants(i);
+        const bool child = d.kind() == v1::DESCENDANT_KIND_CHILD;
+        std::string genes_of;
+        for (int gene = 0; child && gene < d.genes_size(); ++gene) {
+            genes_of += (d.from_second() >> gene & 1) != 0 ? '2' : '1';
+        }
+        table.add({std::to_string(d.id()),
+                   child                                   ? "child"
+                   : d.kind() == v1::DESCENDANT_KIND_ELITE ? "elite"
+                                                           : "survivor",
+                   std::to_string(d.first_parent()) + (child ? ", " + std::to_string(d.second_parent()) : ""),
+                   child && !d.crossed() ? genes_of + " uncrossed" : genes_of, changes_of(d, world)});
+    }
+    return "\ndescendants; GENES OF: 1 the first parent, 2 the second\n" + table.to_text() +
+           more_text(options.from, shown, bred.descendant_count());
+}
+
+void breeding(const Common& common, const BreedingOptions& options) {
+    Caller caller{common};
+    v1::Request request;
+    auto& wanted = *request.mutable_get_breeding();
+    wanted.set_world(common.world);
+    wanted.set_island(options.island);
+    if (options.generation) {
+        wanted.set_generation(*options.generation);
+    }
+    wanted.set_first_contender(options.from);
+    wanted.set_first_pick(options.from);
+    wanted.set_first_descendant(options.from);
+    const v1::Breeding bred = caller.call(std::move(request), answer_timeout).breeding();
+    print(common, bred, [&] {
+        return heading(bred) + contender_text(bred, options) + pick_text(bred, options) +
+               descendant_text(bred, caller.world(common.world), options);
+    });
+}
+
+} // namespace
+
+void add_breeding_command(CLI::App& app, const Common& common, Selected& selected) {
+    auto* command =
+        app.add_subcommand("breeding", "How a generation was bred: the picks, the pairs, what became of their genes")
+            ->group("Look");
+    auto options = std::make_shared<BreedingOptions>();
+    command->add_option("--generation", options->generation, "Of the parents; without it the last that was bred from")
+        ->check(at_least_one);
+    command->add_option("--island", options->island, "Island, from 0")->check(whole_number);
+    command->add_option("--from", options->from, "Where each list begins")->check(whole_number)->capture_default_str();
+    command
+        ->add_option("--rows", options->rows, "How many of each list are printed, at most 1000; of JSON, all that come")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->footer("Examples:\n  evoctl breeding\n  evoctl breeding --generation 3 --rows 50\n"
+                    "  evoctl breeding --json | jq '.descendants[] | select(.mutations)'");
+    command->callback([&, options] { selected = [&, options] { breeding(common, *options); }; });
+}
+
+} // namespace evod::ctl

@@ -1,0 +1,94 @@
+#include "server/evolution/breeding.h"
+
+namespace evod::evolution {
+namespace {
+
+/// `share` of `count`, to the nearest, half up; at least 1.
+std::uint32_t share_of(std::uint32_t count, double share) {
+    return std::max(1u, std::min(count, static_cast<std::uint32_t>(share * count + 0.5)));
+}
+
+/// The elite, at least one, then the picks in order, of which each of the elite has used up one, if it was picked.
+std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite, std::span<const std::uint32_t> picks,
+                                            std::size_t population) {
+    std::vector<std::uint32_t> survivors(elite.begin(), elite.end());
+    std::vector<bool> has_a_pick_to_use(population);
+    for (const std::uint32_t organism : elite)
+        has_a_pick_to_use[organism] = true;
+    for (const std::uint32_t organism : picks) {
+        if (survivors.size() >= picks.size())
+            break;
+        if (has_a_pick_to_use[organism])
+            has_a_pick_to_use[organism] = false;
+        else
+            survivors.push_back(organism);
+    }
+    return survivors;
+}
+
+/// The elite, then the others of the best `count` in index order.
+std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_first, std::uint32_t elite,
+                                           std::uint32_t count) {
+    std::vector<std::uint32_t> survivors(best_first.begin(), best_first.begin() + elite);
+    std::vector<bool> stays(best_first.size());
+    for (const std::uint32_t organism : best_first.subspan(elite, count - elite))
+        stays[organism] = true;
+    survivors.reserve(count);
+    for (std::uint32_t organism = 0; organism < stays.size(); ++organism)
+        if (stays[organism])
+            survivors.push_back(organism);
+    return survivors;
+}
+
+} // namespace
+
+Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameters& parameters) {
+    const std::uint32_t common = std::min(present, wanted);
+    const std::uint32_t elite = std::min(parameters.elite_count, common);
+    std::uint32_t survivors = 0;
+    switch (parameters.population_model) {
+    case PopulationModel::Hybrid:
+        survivors = share_of(wanted, parameters.survivors);
+        break;
+    case PopulationModel::Generational:
+        break;
+    case PopulationModel::SteadyState:
+        survivors = common - std::min(parameters.replaced_count, common);
+        break;
+    }
+    survivors = std::max(survivors, elite);
+    return {.elite = elite, .survivors = survivors, .children = wanted - survivors};
+}
+
+Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters) {
+    if (parameters.population_model == PopulationModel::Hybrid)
+        return {.wanted = places.survivors, .pool = present};
+    return {.wanted = places.children > 0 ? std::max(2u, places.children) : 0,
+            .pool = share_of(present, parameters.survivors)};
+}
+
+base::RandomKey selection_key(const BreedingKey& key) {
+    return {key.seed, base::Purpose::Selection, key.island, key.generation};
+}
+
+Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
+              base::Executor& executor) {
+    const auto present = static_cast<std::uint32_t>(ranking.fitness().size());
+    Choice choice;
+    const Places& places = choice.places = share_places(present, wanted, parameters);
+    const Picks picks = picks_for(places, present, parameters);
+    if (picks.wanted > 0)
+        choice.picks = select(ranking, picks, parameters, selection_key(key), executor);
+    const bool hybrid = parameters.population_model == PopulationModel::Hybrid;
+    if (hybrid && places.elite == 0)
+        choice.picks_survive = true;
+    else if (hybrid)
+        choice.others = elite_then_picks(ranking.best_first().first(places.elite), choice.picks, present);
+    else if (places.survivors > 0)
+        choice.others = elite_then_best(ranking.best_first(), places.elite, places.survivors);
+    choice.pairs = pair_up(hybrid ? choice.survivors() : choice.picks, (places.children + 1) / 2,
+                           {key.seed, base::Purpose::Pairing, key.island, key.generation}, executor);
+    return choice;
+}
+
+} // namespace evod::evolution

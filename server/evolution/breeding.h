@@ -1,0 +1,104 @@
+// Breeding, step by step: who is chosen, and what becomes of the genes of each. next_generation() takes the steps for
+// everyone; a breeding record takes them again for those it tells of.
+//
+// Threads      none of its own; after it is made, a Descent may be asked by several.
+// Determinism  every draw is keyed, so a step comes to the same whoever takes it, and in whatever order.
+#pragma once
+
+#include "server/evolution/crossover.h"
+#include "server/evolution/mutation.h"
+#include "server/evolution/next_generation.h"
+#include "server/evolution/ranking.h"
+#include "server/evolution/rearranging.h"
+#include "server/evolution/selection.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace evod::evolution {
+
+/// Who stays and who mates.
+struct Choice {
+    Places places;
+    std::vector<std::uint32_t> picks; // of the selection, in the order in which they were made
+    std::vector<Parents> pairs;       // for two children each; the last may have room for only one
+
+    /// Shape (places.survivors): who is kept in each place.
+    std::span<const std::uint32_t> survivors() const { return picks_survive ? picks : others; }
+    bool picks_survive = false;
+    std::vector<std::uint32_t> others; // the survivors, if they are not just the picks
+};
+
+/// How many picks the selection makes, and from whom. wanted 0: it is not asked.
+Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
+
+/// What select() is given.
+base::RandomKey selection_key(const BreedingKey& key);
+
+Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
+              base::Executor& executor);
+
+/// Does to a chromosome what happens to it, and tells nobody.
+struct Untold {
+    static void rearrange(const RearrangingMutation& by, Genes genes, base::RandomStream& random) {
+        by.apply(genes, random);
+    }
+    static unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) {
+        return by.apply(genes, random);
+    }
+    static unsigned clamp(Genes genes, const GeneBounds& bounds) { return evolution::clamp(genes, bounds); }
+};
+
+/// What becomes of the genes of those that stay and those that mate.
+class Descent {
+  public:
+    /// present  the parents' generation; outlives this.
+    Descent(const GeneMatrix& present, const Parameters& parameters, const BreedingKey& key)
+        : present_{present}
+        , survivor_key_{key.seed, base::Purpose::SurvivorMutation, key.island, key.generation}
+        , crossover_key_{key.seed, base::Purpose::Crossover, key.island, key.generation}
+        , rearranging_key_{key.seed, base::Purpose::Rearranging, key.island, key.generation}
+        , mutation_key_{key.seed, base::Purpose::Mutation, key.island, key.generation}
+        , crossover_{parameters}
+        , rearranging_{parameters}
+        , mutation_{parameters}
+        , bounds_{gene_bounds(parameters)} {}
+
+    // by  does what happens to the chromosome: Untold, or one that tells of it.
+
+    /// One that stays, in its place of the next generation. Returns how many genes were clamped.
+    template <class By>
+    unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
+        std::ranges::copy(column(present_, organism), genes.begin());
+        if (!mutates)
+            return by.clamp(genes, bounds_);
+        base::RandomStream rearranging{survivor_key_, place, 0}, mutation{survivor_key_, place, 1};
+        by.rearrange(rearranging_, genes, rearranging);
+        return by.mutate(mutation_, genes, mutation);
+    }
+
+    /// Of the first child of a pair; the second one's is the complement. Nothing: no crossover.
+    std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
+        base::RandomStream random{crossover_key_, pair_index};
+        return crossover_.draw(random);
+    }
+
+    /// One child of two parents, in its place. Returns how many genes were clamped.
+    template <class By>
+    unsigned beget(const Parents& pair, GeneMask mask, std::uint32_t place, Genes child, By&& by) const {
+        cross(column(present_, pair.first), column(present_, pair.second), mask, child);
+        base::RandomStream rearranging{rearranging_key_, place}, mutation{mutation_key_, place};
+        by.rearrange(rearranging_, child, rearranging);
+        return by.mutate(mutation_, child, mutation);
+    }
+
+  private:
+    const GeneMatrix& present_;
+    base::RandomKey survivor_key_, crossover_key_, rearranging_key_, mutation_key_;
+    Crossover crossover_;
+    RearrangingMutation rearranging_;
+    ValueMutation mutation_;
+    GeneBounds bounds_;
+};
+
+} // namespace evod::evolution

@@ -1,0 +1,158 @@
+#include "server/evolution/breeding_record.h"
+
+#include "server/base/assert.h"
+#include "server/evolution/breeding.h"
+#include "server/evolution/scaling.h"
+#include "server/evolution/selection_law.h"
+#include "server/evolution/tournament.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace evod::evolution {
+namespace {
+
+using Contender = BreedingRecord::Contender;
+using Pick = BreedingRecord::Pick;
+using Descendant = BreedingRecord::Descendant;
+
+/// Rows first … end − 1 of a list of `count`.
+struct Rows {
+    std::uint32_t first, end;
+    Rows(std::uint32_t wanted_first, std::uint32_t count, std::uint32_t count_max)
+        : first{std::min(wanted_first, count)}, end{first + std::min(count - first, count_max)} {}
+};
+
+Chromosome chromosome(const GeneMatrix& genes, std::uint32_t organism) {
+    return genes.col(organism);
+}
+
+bool spins_a_wheel(const Parameters& parameters) {
+    return parameters.selection == SelectionMethod::Roulette ||
+           parameters.selection == SelectionMethod::StochasticUniversal;
+}
+
+std::vector<Contender> contenders_of(Ranking& ranking, std::span<const std::uint32_t> picks, const Picks& asked,
+                                     const Parameters& parameters, const Rows& rows) {
+    const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
+    std::vector<std::uint32_t> ranks(population), copies(population);
+    for (std::uint32_t rank = 0; rank < population; ++rank)
+        ranks[ranking.best_first()[rank]] = rank;
+    for (const std::uint32_t organism : picks)
+        ++copies[organism];
+    const std::vector<double> weights = scaled_fitness(ranking, parameters);
+    std::optional<Wheel> wheel;
+    if (spins_a_wheel(parameters))
+        wheel.emplace(weights);
+    const SelectionLaw law{population, asked, parameters};
+
+    std::vector<Contender> contenders;
+    for (std::uint32_t i = rows.first; i < rows.end; ++i) {
+        Contender& contender = contenders.emplace_back();
+        contender.fitness = ranking.fitness()[i];
+        contender.rank = ranks[i];
+        contender.weight = weights[i];
+        if (wheel) {
+            const std::span<const double> ends = wheel->slot_ends();
+            contender.slot_begin = i == 0 ? 0 : ends[i - 1] / ends.back();
+            contender.slot_end = ends[i] / ends.back();
+        }
+        contender.expected_copies = law.expected_copies(ranks[i], wheel ? wheel->share(i) : 0);
+        contender.copies = copies[i];
+    }
+    return contenders;
+}
+
+std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t population,
+                           const Parameters& parameters, const base::RandomKey& key, const Rows& rows,
+                           base::Executor& executor) {
+    const auto wanted = static_cast<std::uint32_t>(picked.size());
+    std::vector<double> turns;
+    if (parameters.selection == SelectionMethod::Roulette)
+        turns = roulette_turns(wanted, key, executor);
+    if (parameters.selection == SelectionMethod::StochasticUniversal) {
+        base::RandomStream random = selection_stream(key);
+        turns = universal_turns(wanted, random, executor);
+    }
+    const Tournament tournament = tournament_of(parameters);
+    std::vector<Pick> picks;
+    for (std::uint32_t i = rows.first; i < rows.end; ++i) {
+        Pick& pick = picks.emplace_back();
+        pick.organism = picked[i];
+        if (!turns.empty())
+            pick.turns = turns[i];
+        if (parameters.selection != SelectionMethod::Tournament)
+            continue;
+        pick.tournament = i / winners_of_each(population, tournament, wanted);
+        const std::uint32_t contestants =
+            tournament.replacement ? tournament.size : std::min(tournament.size, population);
+        if (contestants <= held_contestants_max)
+            pick.contestants = contestants_of(*pick.tournament, population, tournament, wanted, key);
+    }
+    return picks;
+}
+
+/// Does to a chromosome what happens to it, and writes it down.
+struct Telling {
+    Descendant& of;
+
+    void rearrange(const RearrangingMutation& by, Genes genes, base::RandomStream& random) const {
+        base::RandomStream same = random;
+        std::array<std::uint32_t, gene_count> order{};
+        std::iota(order.begin(), order.end(), 0u);
+        if (by.apply(genes, random) && by.apply(GeneOrder{order}, same))
+            of.order = order;
+    }
+    unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) const {
+        return by.apply(genes, random, of.changes);
+    }
+    unsigned clamp(Genes genes, const GeneBounds& bounds) const { return evolution::clamp(genes, bounds, of.changes); }
+};
+
+} // namespace
+
+BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
+                               std::uint32_t wanted, const BreedingKey& key, const WantedRows& rows,
+                               base::Executor& executor) {
+    const auto present = static_cast<std::uint32_t>(fitness.size());
+    EVOD_ASSERT(present >= 1 && wanted >= 1);
+    EVOD_ASSERT(genes.cols() == static_cast<Eigen::Index>(fitness.size()));
+    Ranking ranking{fitness, executor};
+    const Choice choice = choose(ranking, parameters, wanted, key, executor);
+    const auto pick_count = static_cast<std::uint32_t>(choice.picks.size());
+
+    BreedingRecord record;
+    record.places = choice.places;
+    record.contender_count = present;
+    record.pick_count = pick_count;
+    record.contenders = contenders_of(ranking, choice.picks, picks_for(choice.places, present, parameters), parameters,
+                                      {rows.first_contender, present, rows.count_max});
+    record.picks = picks_of(choice.picks, present, parameters, selection_key(key),
+                            {rows.first_pick, pick_count, rows.count_max}, executor);
+
+    const Descent descent{genes, parameters, key};
+    const Rows descendants{rows.first_descendant, wanted, rows.count_max};
+    for (std::uint32_t place = descendants.first; place < descendants.end; ++place) {
+        Descendant& told = record.descendants.emplace_back();
+        told.id = place;
+        const Genes made{told.genes.data(), gene_count};
+        if (place < choice.places.survivors) {
+            const std::uint32_t organism = choice.survivors()[place];
+            told.parents = {organism, organism};
+            descent.keep(organism, place, parameters.mutate_survivors && place >= choice.places.elite, made,
+                         Telling{told});
+        } else {
+            const std::uint32_t child = place - choice.places.survivors;
+            told.parents = choice.pairs[child / 2];
+            const std::optional<GeneMask> mask = descent.draw_mask(child / 2);
+            told.crossed = mask.has_value();
+            told.from_second = (child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0)) & all_genes;
+            descent.beget(told.parents, told.from_second, place, made, Telling{told});
+        }
+        told.first_genes = chromosome(genes, told.parents.first);
+        told.second_genes = chromosome(genes, told.parents.second);
+    }
+    return record;
+}
+
+} // namespace evod::evolution

@@ -1,0 +1,44 @@
+// Selection law: how often each organism is picked on average, by the method that picks.
+//
+// Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361; for tournaments with several
+//              winners, the mean of a binomial or hypergeometric number that is cut off at the number of winners.
+#pragma once
+
+#include "server/evolution/parameters.h"
+#include "server/evolution/selection.h"
+
+#include <cstdint>
+
+namespace evod::evolution {
+
+struct Tournament;
+
+class SelectionLaw {
+  public:
+    /// population  organisms to pick from, >= 1.
+    /// picks       as select() is given them.
+    SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
+        : population_{population}, picks_{picks}, parameters_{parameters} {}
+
+    /// Of all the picks.
+    ///
+    /// rank   0 is the fittest.
+    /// share  of the wheel, where one is spun; the other methods ignore it.
+    double expected_copies(std::uint32_t rank, double share) const;
+
+  private:
+    double expected_wins(std::uint32_t rank) const;
+
+    std::uint32_t population_;
+    Picks picks_;
+    Parameters parameters_;
+};
+
+/// Winners of one tournament whose rank is at most `rank`, on average: as many of its contestants as are so good, but
+/// no more than win.
+///
+/// tournament  size, without replacement at most the population; winners at most its size.
+/// cost        grows with the root of the size.
+double expected_winners_up_to(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
+
+} // namespace evod::evolution

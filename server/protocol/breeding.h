@@ -1,0 +1,18 @@
+// How a generation was bred, as clients read it.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "server/evolution/breeding_record.h"
+#include "server/simulation/parameters.h"
+
+namespace evod::protocol {
+
+/// Rows of each list of a Breeding.
+constexpr std::uint32_t breeding_rows_max = 1000;
+
+evolution::WantedRows wanted_rows(const v1::GetBreeding& request);
+
+/// parameters  as they held.
+v1::Breeding to_proto(const evolution::BreedingRecord& record, const simulation::Parameters& parameters);
+
+} // namespace evod::protocol

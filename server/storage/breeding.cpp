@@ -1,0 +1,105 @@
+#include "server/storage/breeding.h"
+
+#include "server/evolution/migration.h"
+#include "server/storage/generation_reader.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace evod::storage {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
+    const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
+    return {.code = RefusalCode::NotFound,
+            .message = std::string{"no such "} + field + " has bred in this run: there are " + there_are,
+            .violations = {{field, there_are, std::to_string(got)}}};
+}
+
+/// The generation of the parents.
+Result<std::uint64_t> generation_of(RunFile& file, const WantedBreeding& wanted) {
+    const std::uint64_t first = file.identity().first_generation, last = file.last_generation();
+    if (last <= first)
+        return Refusal{.code = RefusalCode::FailedPrecondition,
+                       .message = "no generation of this run has bred yet: it is in its first",
+                       .violations = {}};
+    const std::uint64_t generation = wanted.generation.value_or(std::clamp(wanted.seen_from, first + 1, last) - 1);
+    if (generation < first || generation >= last)
+        return no_such("generation", first, last - 1, generation);
+    return generation;
+}
+
+/// Lets those migrate who did, and tells who came to the island.
+std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const simulation::Parameters& parameters,
+                                        base::Seed seed, std::uint32_t island) {
+    const std::uint64_t generation = parents.ended->generation;
+    if (!evolution::migration_due(generation, parameters))
+        return {};
+    std::vector<std::span<const double>> fitness;
+    std::vector<evolution::IslandPopulation> populations;
+    for (std::size_t i = 0; i < parents.begun.born.size(); ++i) {
+        fitness.emplace_back(parents.ended->outcomes[i].fitness);
+        populations.push_back({&parents.begun.born[i].genes, parents.ended->outcomes[i].fitness});
+    }
+    std::vector<evolution::Migrant> migrants = choose_migrants(fitness, parameters, seed, generation);
+    evolution::migrate(migrants, populations);
+    std::erase_if(migrants, [&](const evolution::Migrant& migrant) { return migrant.to != island; });
+    return migrants;
+}
+
+bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descendants,
+                const evolution::NextGeneration& stored) {
+    return std::ranges::all_of(descendants, [&](const auto& told) {
+        return told.id < stored.parents.size() && told.parents == stored.parents[told.id] &&
+               (told.genes == stored.genes.col(told.id)).all();
+    });
+}
+
+} // namespace
+
+Result<Bred> breeding_of(RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
+                         const std::stop_token& stop) {
+    if (auto refused = file.other_model())
+        return *refused;
+    const auto generation = generation_of(file, wanted);
+    if (!generation)
+        return generation.error();
+    GenerationReader reader{file, executor, stop};
+    auto parents = reader.read(*generation);
+    if (!parents)
+        return parents.error();
+    const auto children = reader.read(*generation + 1);
+    if (!children)
+        return children.error();
+    const auto damaged = [&](const char* what) {
+        return Refusal{.code = RefusalCode::DataLoss,
+                       .message = file.path() + " is damaged: generation " + std::to_string(*generation) + what,
+                       .violations = {}};
+    };
+    const std::size_t islands = parents->begun.born.size();
+    if (wanted.island >= islands)
+        return no_such("island", 0, islands - 1, wanted.island);
+    if (!parents->ended || children->begun.born.size() != islands)
+        return damaged(" has bred another one, of which the file cannot tell");
+
+    Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
+    const base::Seed seed = file.identity().seed;
+    const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
+    bred.record = evolution::record_breeding(
+        parents->ended->outcomes[bred.island].fitness, parents->begun.born[bred.island].genes, bred.parameters,
+        bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,
+        executor);
+    for (const evolution::Migrant& migrant : migrants)
+        if (migrant.replaces - wanted.rows.first_contender < bred.record.contenders.size())
+            bred.record.contenders[migrant.replaces - wanted.rows.first_contender].migrant = migrant;
+    if (!are_stored(bred.record.descendants, children->begun.born[bred.island]))
+        return damaged(" has bred other descendants than those that are stored");
+    return bred;
+}
+
+} // namespace evod::storage

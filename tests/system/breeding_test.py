@@ -1,0 +1,225 @@
+"""How generations were bred: GetBreeding and evoctl breeding, against the tables of the run's file. EVOD and EVOCTL name
+the programs, MESSAGES the folder of the message classes."""
+import csv
+import io
+import json
+import subprocess
+import sys
+import unittest
+
+import export_test
+from past_test import CREATE, EVOCTL, c, plain, w
+
+NOT_FOUND, FAILED_PRECONDITION = 5, 9
+
+
+def ask(**wanted):
+    return c.GetBreeding(**{"world": "w", **wanted})
+
+
+def genes_of(descendant):
+    """What the record says became of the parents' genes."""
+    genes = [second if descendant.from_second >> gene & 1 else first
+             for gene, (first, second) in enumerate(zip(descendant.first_genes, descendant.second_genes))]
+    if descendant.HasField("rearrangement"):
+        genes = [genes[gene] for gene in descendant.rearrangement.order]
+    for mutation in descendant.mutations:
+        assert genes[mutation.gene] == mutation.before
+        genes[mutation.gene] = mutation.after
+    return genes
+
+
+class Breeding(export_test.Runs):
+    def breeding(self, client, **wanted):
+        return client.call(get_breeding=ask(**wanted)).breeding
+
+    def parameters(self, bred):
+        return {p.name: getattr(p.value, p.value.WhichOneof("value")) for p in bred.parameters}
+
+    def organisms(self, *words):
+        """Rows of the table by generation, island and organism."""
+        rows = csv.DictReader(io.StringIO(self.evod_export("--what", "organisms", *words)))
+        return {(int(r["generation"]), int(r["island"]), int(r["organism"])): r for r in rows}
+
+    def check(self, bred, table):
+        """A breeding says what the table of organisms says."""
+        generation, island = bred.generation, bred.island
+        self.assertEqual(len(bred.contenders), bred.contender_count)
+        self.assertEqual(len(bred.picks), bred.pick_count)
+        self.assertEqual(len(bred.descendants), bred.descendant_count)
+        homes = []
+        for organism, contender in enumerate(bred.contenders):
+            home = (contender.migrant.island, contender.migrant.organism) if contender.HasField("migrant") else \
+                (island, organism)
+            homes.append(home)
+            self.assertEqual(contender.fitness, float(table[generation, *home]["fitness"]))
+            self.assertEqual(contender.copies, sum(pick.organism == organism for pick in bred.picks))
+        order = sorted(range(len(homes)), key=lambda i: (-bred.contenders[i].fitness, i))
+        self.assertEqual([bred.contenders[organism].rank for organism in order], list(range(len(order))))
+        self.assertAlmostEqual(sum(contender.expected_copies for contender in bred.contenders), bred.pick_count)
+        names = list(table[generation, island, 0])[6:12]
+        for number, descendant in enumerate(bred.descendants):
+            row = table[generation + 1, island, number]
+            self.assertEqual(descendant.id, number)
+            self.assertEqual((descendant.first_parent, descendant.second_parent),
+                             (int(row["parent_first"]), int(row["parent_second"])))
+            kinds = {"elite": c.DESCENDANT_KIND_ELITE, "survivor": c.DESCENDANT_KIND_SURVIVOR,
+                     "child": c.DESCENDANT_KIND_CHILD}
+            self.assertEqual(descendant.kind, kinds[row["origin"]])
+            self.assertEqual([plain.numpy.float32(row[name]) for name in names], list(descendant.genes))
+            self.assertEqual(genes_of(descendant), list(descendant.genes))
+            for genes, parent in ((descendant.first_genes, descendant.first_parent),
+                                  (descendant.second_genes, descendant.second_parent)):
+                of_parent = table[generation, *homes[parent]]
+                self.assertEqual([plain.numpy.float32(of_parent[name]) for name in names], list(genes))
+        for pick in bred.picks:
+            if pick.HasField("turns"):
+                self.assertLessEqual(bred.contenders[pick.organism].slot_begin, pick.turns + 1e-12)
+                self.assertGreaterEqual(bred.contenders[pick.organism].slot_end, pick.turns - 1e-12)
+            if pick.contestants:
+                best = min(pick.contestants, key=lambda contestant: bred.contenders[contestant].rank)
+                self.assertEqual(best, pick.organism)
+
+    def test_every_generation_of_every_island_is_as_the_tables_say(self):
+        server, client = self.serve()
+        self.run_world(client, 5, mutate_survivors=True, elite_count=1, rearranging="swap", rearrange_chance=0.5,
+                       bit_flip_chance=0.02, crossover_chance=0.7)
+        told = {(generation, island): self.breeding(client, generation=generation, island=island)
+                for generation in range(1, 5) for island in range(2)}
+        table = self.organisms()
+        for bred in told.values():
+            self.check(bred, table)
+        migrants = {key for key, bred in told.items() for contender in bred.contenders if contender.HasField("migrant")}
+        self.assertEqual(migrants, {(generation, island) for generation in (2, 4) for island in range(2)})
+        self.assertEqual(self.breeding(client, island=1), told[4, 1])
+
+        # The same of the past, where the last is the one before what is shown; and of a file that is served again.
+        look = client.call(open_past=c.OpenPast(world="w", at=c.RunMoment(generation=3))).world.name
+        self.assertEqual(self.breeding(client, world=look), told[2, 0])
+        self.assertEqual(self.breeding(client, world=look, generation=4), told[4, 0])
+        server.end()
+        replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
+        self.assertEqual(self.breeding(replayed, generation=1, island=1), told[1, 1])
+
+    def test_every_method_of_selection_tells_its_picks(self):
+        _, client = self.serve()
+        methods = {"roulette": ["turns"], "stochastic_universal": ["turns"], "tournament": ["tournament"], "random": [],
+                   "truncation": []}
+        self.run_world(client, 1)
+        for number, (method, fields) in enumerate(methods.items(), 1):
+            client.call(set_parameters=plain.set_parameters("w", selection=method))
+            client.call(run=c.Run(world="w", generations=1))
+            plain.until(lambda: client.world("w").generation == number + 1 and
+                        client.world("w").state == w.RUN_STATE_WAITING, "a generation")
+            bred = self.breeding(client)
+            self.assertEqual((bred.generation, self.parameters(bred)["selection"]), (number, method))
+            self.check(bred, self.organisms())
+            for pick in bred.picks:
+                self.assertEqual([name for name in ("turns", "tournament") if pick.HasField(name)], fields)
+                self.assertEqual(len(pick.contestants), 3 if method == "tournament" else 0)
+
+    def test_the_parameters_are_those_that_held_at_the_breeding(self):
+        _, client = self.serve()
+        self.recorded(client)  # changes them at tick 250, in the third generation, which ends with tick 360
+        table = None
+        for generation, expected in ((1, (12, 0.15)), (2, (12, 0.15)), (3, (15, 0.5))):
+            bred = self.breeding(client, generation=generation)
+            table = table or self.organisms()
+            self.assertEqual((bred.descendant_count, self.parameters(bred)["mutation_chance"]), expected)
+            self.check(bred, table)
+
+    def test_a_world_that_runs_tells_of_what_has_only_just_been_bred(self):
+        _, client = self.serve()
+        self.run_world(client, 2)
+        client.call(run=c.Run(world="w"))
+        for _ in range(20):
+            generation = client.world("w").generation
+            self.assertGreaterEqual(self.breeding(client).generation, generation - 1)
+        client.call(pause=c.Pause(world="w"))
+        self.assertEqual(self.breeding(client).generation, client.world("w").generation - 1)
+
+    def test_what_was_not_kept_is_simulated_again(self):
+        _, client = self.serve("--keep-every", "10")
+        self.run_world(client, 24, fitness="gene_sum")
+        told = [self.breeding(client, generation=generation, island=1) for generation in (1, 9, 10, 14, 23)]
+        table = self.organisms()  # after what was told, which waits for the file
+        for bred in told:
+            self.check(bred, table)
+
+    def test_many_rows_come_in_parts(self):
+        _, client = self.serve()
+        self.run_world(client, 2, fitness="gene_sum", population_size=1500, island_count=1)
+        first = self.breeding(client)
+        self.assertEqual((len(first.contenders), len(first.picks), len(first.descendants)), (1000, 750, 1000))
+        rest = self.breeding(client, first_contender=1000, first_pick=700, first_descendant=1000)
+        self.assertEqual((len(rest.contenders), len(rest.picks), len(rest.descendants)), (500, 50, 500))
+        self.assertEqual(list(rest.picks), list(first.picks)[700:])
+        self.assertEqual(sum(contender.copies for bred in (first, rest) for contender in bred.contenders), 750)
+        first.MergeFrom(c.Breeding(contenders=rest.contenders, descendants=rest.descendants))
+        self.check(first, self.organisms())
+        beyond = self.breeding(client, first_contender=2**32 - 1, first_pick=1500, first_descendant=1500)
+        self.assertEqual((len(beyond.contenders), len(beyond.picks), len(beyond.descendants)), (0, 0, 0))
+        self.assertEqual(client.welcome.limits.breeding_rows_max, 1000)
+
+    def test_all_that_are_asked_at_once_are_answered(self):
+        server, client = self.serve()
+        self.run_world(client, 4)
+        expected = self.breeding(client)
+        gone = self.client(server)
+        for _ in range(8):
+            gone.ask(get_breeding=ask())
+        gone.socket.close()
+        others = [self.client(server) for _ in range(6)]
+        asked = [(other, other.ask(get_breeding=ask())) for other in others for _ in range(8)]
+        for other, request_id in asked:
+            while request_id not in other.responses:
+                other.step()
+            self.assertEqual(other.responses[request_id].breeding, expected)
+
+    def test_what_is_wrong_is_named(self):
+        _, client = self.serve()
+        client.call(create_world=c.CreateWorld(name="w", seed=5, parameters=plain.assignments(**CREATE)))
+        client.call(FAILED_PRECONDITION, get_breeding=ask())
+        client.call(FAILED_PRECONDITION, get_breeding=ask(generation=1))
+        client.run_to(250, "w")
+        for field, allowed, wanted in (("generation", "1 to 2", {"generation": 0}), ("generation", "1 to 2", {"generation": 3}),
+                                       ("island", "0 to 1", {"island": 2}), ("world", None, {"world": "nobody"})):
+            status = client.call(NOT_FOUND, get_breeding=ask(**wanted)).status
+            self.assertEqual([violation.field for violation in status.violations], ["get_breeding." + field])
+            self.assertIn(allowed, (None, status.violations[0].allowed))
+
+    def test_a_server_that_keeps_no_runs_says_so(self):
+        client = self.client(self.server("--keep-nothing"))
+        status = client.call(FAILED_PRECONDITION, get_breeding=c.GetBreeding()).status
+        self.assertIn("--keep-nothing", status.message)
+
+    def test_evoctl_prints_it_for_people_and_for_programs(self):
+        server, client = self.serve()
+        self.run_world(client, 3, selection="tournament")
+
+        def evoctl(*words, status=0):
+            done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", *words],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+            return done.stderr if status else done.stdout
+
+        bred = self.breeding(client, island=1)
+        text = evoctl("breeding", "--island", "1", "--rows", "12")
+        self.assertIn("generation 2 of island 1: of 12 organisms, 6 picks were made; then came 0 elite, 6 other survivors, "
+                      "6 children", text)
+        self.assertIn("selection=tournament", text)
+        for pick in bred.picks:
+            self.assertIn(f"won tournament {pick.tournament} of {', '.join(map(str, pick.contestants))}\n", text)
+        for child in bred.descendants[6:]:
+            self.assertRegex(text, rf"\n *{child.id}  child +{child.first_parent}, {child.second_parent} ")
+        self.assertEqual(evoctl("breeding", "--rows", "4", "--from", "3").count("more: --from 7"), 2)  # not of 6 picks
+        told = json.loads(evoctl("--json", "breeding", "--generation", "1"))
+        self.assertEqual(len(told["descendants"]), 12)
+        self.assertEqual(told["descendants"][7]["first_parent"],
+                         self.breeding(client, generation=1).descendants[7].first_parent)
+        self.assertIn("allowed 1 to 2", evoctl("breeding", "--generation", "9", status=1))
+        self.assertIn("--rows", evoctl("breeding", "--rows", "0", status=2))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

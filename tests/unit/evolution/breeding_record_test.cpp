@@ -1,0 +1,284 @@
+#include "server/evolution/breeding_record.h"
+
+#include "server/base/inline_executor.h"
+#include "server/evolution/selection_law.h"
+#include "server/evolution/tournament.h"
+#include "tests/unit/evolution/draws.h"
+#include "tests/unit/evolution/stage_choices.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace evod::evolution {
+namespace {
+
+constexpr WantedRows all_rows{.count_max = ~0u};
+
+/// What went into a breeding, and what came of it.
+struct Case {
+    std::vector<double> fitness;
+    GeneMatrix genes;
+    Parameters parameters;
+    std::uint32_t wanted;
+    BreedingKey key;
+
+    Case(const Parameters& chosen, std::uint32_t present, std::uint32_t wanted_, std::uint64_t seed)
+        : genes{initial_population(present, {}, base::Seed{seed}, 0)}
+        , parameters{chosen}
+        , wanted{wanted_}
+        , key{.seed = base::Seed{seed}, .island = 3, .generation = 7} {
+        base::RandomStream random = stream_of(seed);
+        for (std::uint32_t i = 0; i < present; ++i)
+            fitness.push_back(random.below(100) / 4.0 - 5); // with ties, and some of it negative
+    }
+    NextGeneration next() const {
+        base::InlineExecutor executor;
+        return next_generation(fitness, genes, parameters, wanted, key, executor);
+    }
+    BreedingRecord record(const WantedRows& rows = all_rows) const {
+        base::InlineExecutor executor;
+        return record_breeding(fitness, genes, parameters, wanted, key, rows, executor);
+    }
+};
+
+/// The genes of a descendant, made of those of its parents by what the record tells and nothing else.
+std::array<float, gene_count> made_of(const BreedingRecord::Descendant& told) {
+    std::array<float, gene_count> mixed{}, genes{};
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        mixed[gene] = (told.from_second >> gene & 1) != 0 ? told.second_genes[gene] : told.first_genes[gene];
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        genes[gene] = mixed[told.order ? (*told.order)[gene] : gene];
+    for (const GeneChange& change : told.changes) {
+        EXPECT_EQ(genes[change.gene], change.before);
+        genes[change.gene] = change.after;
+    }
+    return genes;
+}
+
+class EveryChoice : public testing::TestWithParam<StageChoice> {};
+
+TEST_P(EveryChoice, HasTheDescendantsOfTheNextGenerationBitForBit) {
+    for (const auto& [present, wanted] :
+         {std::pair{1u, 1u}, {1u, 4u}, {2u, 3u}, {7u, 20u}, {150u, 150u}, {301u, 40u}}) {
+        const Case bred{GetParam(), present, wanted, 881 + present};
+        const NextGeneration next = bred.next();
+        const BreedingRecord record = bred.record();
+        ASSERT_EQ(record.contender_count, present);
+        ASSERT_EQ(record.places.elite, next.elite_count);
+        ASSERT_EQ(record.places.survivors, next.survivor_count);
+        ASSERT_EQ(record.descendants.size(), wanted);
+        std::uint64_t clamped = 0;
+        for (std::uint32_t id = 0; id < wanted; ++id) {
+            const auto& told = record.descendants[id];
+            ASSERT_EQ(told.id, id);
+            ASSERT_EQ(told.parents, next.parents[id]);
+            ASSERT_TRUE((told.first_genes == bred.genes.col(told.parents.first)).all());
+            ASSERT_TRUE((told.second_genes == bred.genes.col(told.parents.second)).all());
+            ASSERT_TRUE(std::ranges::equal(told.genes, column(next.genes, id))) << "descendant " << id;
+            ASSERT_TRUE(std::ranges::equal(made_of(told), column(next.genes, id))) << "descendant " << id;
+            clamped +=
+                static_cast<std::uint64_t>(std::ranges::count(told.changes, ChangeKind::Clamp, &GeneChange::kind));
+        }
+        EXPECT_EQ(clamped, next.clamped_count);
+    }
+}
+
+TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
+    const Case bred{GetParam(), 150, 130, 882};
+    const BreedingRecord record = bred.record();
+    const Parameters& p = bred.parameters;
+    ASSERT_EQ(record.picks.size(), record.pick_count);
+    std::map<std::uint32_t, std::uint32_t> copies;
+    for (const auto& pick : record.picks) {
+        ++copies[pick.organism];
+        const auto& contender = record.contenders[pick.organism];
+        const bool wheel =
+            p.selection == SelectionMethod::Roulette || p.selection == SelectionMethod::StochasticUniversal;
+        ASSERT_EQ(pick.turns.has_value(), wheel);
+        ASSERT_EQ(pick.tournament.has_value(), p.selection == SelectionMethod::Tournament);
+        if (wheel) {
+            // Places on the wheel are products there and quotients here, so they may differ by a rounding.
+            ASSERT_GE(*pick.turns, contender.slot_begin - 1e-12);
+            ASSERT_LE(*pick.turns, contender.slot_end + 1e-12);
+        }
+        if (pick.tournament && p.tournament_size <= held_contestants_max) {
+            ASSERT_EQ(pick.contestants.size(), p.tournament_size);
+            ASSERT_EQ(std::ranges::count(pick.contestants, pick.organism) > 0, true);
+            const auto fitter = std::ranges::count_if(
+                pick.contestants, [&](std::uint32_t other) { return record.contenders[other].rank < contender.rank; });
+            ASSERT_LT(fitter, p.tournament_winners);
+        } else {
+            ASSERT_TRUE(pick.contestants.empty());
+        }
+    }
+    double expected = 0;
+    std::vector<bool> ranked(bred.fitness.size());
+    for (std::uint32_t i = 0; i < record.contender_count; ++i) {
+        const auto& contender = record.contenders[i];
+        EXPECT_EQ(contender.copies, copies[i]);
+        EXPECT_EQ(contender.fitness, bred.fitness[i]);
+        EXPECT_GE(contender.expected_copies, 0);
+        expected += contender.expected_copies;
+        ASSERT_FALSE(ranked[contender.rank]);
+        ranked[contender.rank] = true;
+        for (std::uint32_t j = 0; j < i; ++j)
+            ASSERT_EQ(record.contenders[j].rank < contender.rank, bred.fitness[j] >= bred.fitness[i]);
+    }
+    EXPECT_NEAR(expected, record.pick_count, 1e-6);
+    // All that bred were picked, or were kept for being among the best.
+    for (const auto& told : record.descendants)
+        if (told.id >= record.places.elite && p.population_model == PopulationModel::Hybrid) {
+            const auto was_elite = [&](std::uint32_t organism) {
+                return record.contenders[organism].rank < record.places.elite;
+            };
+            EXPECT_TRUE(copies[told.parents.first] > 0 || was_elite(told.parents.first));
+            EXPECT_TRUE(copies[told.parents.second] > 0 || was_elite(told.parents.second));
+        } else if (told.id >= record.places.survivors) {
+            EXPECT_TRUE(copies[told.parents.first] > 0 && copies[told.parents.second] > 0);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(BreedingRecord, EveryChoice, testing::ValuesIn(stage_choices()), [](const auto& choice) {
+    std::string name = choice.param.name;
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    return name;
+});
+
+TEST(BreedingRecord, OfGenesOutsideTheirBoundsTellsOfTheEliteToo) {
+    StageChoice choice;
+    choice.elite_count = 3;
+    choice.impulse_max = 90; // those of the population go up to 120
+    const Case bred{choice, 40, 40, 883};
+    const BreedingRecord record = bred.record();
+    const auto clamps =
+        std::accumulate(record.descendants.begin(), record.descendants.begin() + record.places.survivors,
+                        std::size_t{0}, [](std::size_t sum, const auto& told) { return sum + told.changes.size(); });
+    EXPECT_GT(clamps, 0u);
+    for (std::uint32_t id = 0; id < record.places.survivors; ++id)
+        for (const GeneChange& change : record.descendants[id].changes) {
+            EXPECT_EQ(change.kind, ChangeKind::Clamp);
+            EXPECT_EQ(change.gene, static_cast<unsigned>(Impulse));
+            EXPECT_EQ(change.after, 90.0f);
+        }
+}
+
+RC_GTEST_PROP(BreedingRecord, APartIsThatPartOfTheWhole, ()) {
+    const auto choices = stage_choices();
+    const Parameters choice = *rc::gen::elementOf(choices);
+    const auto present = *rc::gen::inRange(1u, 60u), wanted = *rc::gen::inRange(1u, 60u);
+    const Case bred{choice, present, wanted, *rc::gen::inRange<std::uint64_t>(0, 1000)};
+    const WantedRows rows{.first_contender = *rc::gen::inRange(0u, 70u),
+                          .first_pick = *rc::gen::inRange(0u, 70u),
+                          .first_descendant = *rc::gen::inRange(0u, 70u),
+                          .count_max = *rc::gen::inRange(0u, 70u)};
+    const BreedingRecord whole = bred.record(), part = bred.record(rows);
+    const auto size_of = [&](std::size_t all, std::uint32_t first) {
+        return std::min<std::size_t>(all - std::min<std::size_t>(first, all), rows.count_max);
+    };
+    RC_ASSERT(part.contenders.size() == size_of(whole.contenders.size(), rows.first_contender));
+    RC_ASSERT(part.picks.size() == size_of(whole.picks.size(), rows.first_pick));
+    RC_ASSERT(part.descendants.size() == size_of(whole.descendants.size(), rows.first_descendant));
+    for (std::size_t i = 0; i < part.contenders.size(); ++i) {
+        RC_ASSERT(part.contenders[i].fitness == whole.contenders[rows.first_contender + i].fitness);
+        RC_ASSERT(part.contenders[i].copies == whole.contenders[rows.first_contender + i].copies);
+        RC_ASSERT(part.contenders[i].slot_end == whole.contenders[rows.first_contender + i].slot_end);
+    }
+    for (std::size_t i = 0; i < part.picks.size(); ++i) {
+        RC_ASSERT(part.picks[i].organism == whole.picks[rows.first_pick + i].organism);
+        RC_ASSERT(part.picks[i].turns == whole.picks[rows.first_pick + i].turns);
+        RC_ASSERT(part.picks[i].contestants == whole.picks[rows.first_pick + i].contestants);
+    }
+    for (std::size_t i = 0; i < part.descendants.size(); ++i) {
+        const auto &told = part.descendants[i], &of_whole = whole.descendants[rows.first_descendant + i];
+        RC_ASSERT(told.id == of_whole.id);
+        RC_ASSERT(told.parents == of_whole.parents);
+        RC_ASSERT(told.from_second == of_whole.from_second);
+        RC_ASSERT(told.crossed == of_whole.crossed);
+        RC_ASSERT(told.order == of_whole.order);
+        RC_ASSERT(told.changes == of_whole.changes);
+        RC_ASSERT((told.genes == of_whole.genes).all());
+    }
+}
+
+// ---- the law ---------------------------------------------------------------------------------------------------
+
+TEST(SelectionLaw, OfASingleWinnerIsTheClosedForm) {
+    // ((n-r)^k - (n-r-1)^k) / n^k with replacement; C(n-r-1, k-1) / C(n, k) without.
+    constexpr std::uint32_t n = 20;
+    for (const std::uint32_t k : {1u, 2u, 3u, 7u, 20u, 200u}) {
+        Parameters parameters;
+        parameters.selection = SelectionMethod::Tournament;
+        parameters.tournament_size = k;
+        const SelectionLaw law{n, {.wanted = 100, .pool = n}, parameters};
+        for (std::uint32_t r = 0; r < n; ++r)
+            EXPECT_NEAR(law.expected_copies(r, 0),
+                        100 * (std::pow((n - r) / 20.0, k) - std::pow((n - r - 1) / 20.0, k)), 1e-9);
+        parameters.tournament_replacement = false;
+        const SelectionLaw without{n, {.wanted = 100, .pool = n}, parameters};
+        double none_better = 1; // no contestant has rank 0 ... r - 1
+        for (std::uint32_t r = 0; r < n; ++r) {
+            const double hit = std::min(1.0, static_cast<double>(std::min(k, n)) / (n - r));
+            EXPECT_NEAR(without.expected_copies(r, 0), 100 * none_better * hit, 1e-9);
+            none_better *= 1 - hit;
+        }
+    }
+}
+
+TEST(SelectionLaw, IsTheMeanOfManySelections) {
+    // Copies of each organism over many selections against the law: chi-square over the organisms. Picks of one
+    // selection exclude each other where nobody is drawn twice, which makes the statistic smaller, never larger.
+    constexpr std::uint32_t population = 12, rounds = 4000;
+    for (const StageChoice& choice : stage_choices()) {
+        if (choice.selection == SelectionMethod::Truncation)
+            continue;
+        StageChoice held = choice;
+        held.tournament_size = std::min(held.tournament_size, 9u);
+        held.elite_count = 0;
+        std::vector<std::uint64_t> copies(population);
+        std::vector<double> law(population);
+        double picks = 0;
+        for (std::uint32_t round = 0; round < rounds; ++round) {
+            Case bred{held, population, population, 884};
+            for (double& fitness : bred.fitness)
+                fitness += 6;
+            bred.key.generation = round + 1;
+            const BreedingRecord record = bred.record({.count_max = population});
+            picks = record.pick_count;
+            for (std::uint32_t i = 0; i < population; ++i) {
+                copies[i] += record.contenders[i].copies;
+                law[i] = record.contenders[i].expected_copies / picks;
+            }
+        }
+        EXPECT_GT(p_value_of_law(copies, law), alpha) << choice.name;
+    }
+}
+
+TEST(SelectionLaw, OfTournamentsWithSeveralWinnersAddsUpAtAnySize) {
+    for (const bool replacement : {true, false})
+        for (const std::uint32_t size : {5u, 64u, 1000u, 1'000'000u})
+            for (const std::uint32_t winners : {1u, 3u, size / 2}) {
+                Parameters parameters;
+                parameters.selection = SelectionMethod::Tournament;
+                parameters.tournament_size = size;
+                parameters.tournament_winners = winners;
+                parameters.tournament_replacement = replacement;
+                const SelectionLaw law{50, {.wanted = 31, .pool = 50}, parameters};
+                double sum = 0, before = 31;
+                for (std::uint32_t rank = 0; rank < 50; ++rank) {
+                    const double copies = law.expected_copies(rank, 0);
+                    EXPECT_LE(copies, before + 1e-9);
+                    before = copies;
+                    sum += copies;
+                }
+                EXPECT_NEAR(sum, 31, 1e-8);
+            }
+}
+
+} // namespace
+} // namespace evod::evolution
