@@ -18,6 +18,8 @@
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace evod::network {
@@ -364,6 +366,26 @@ void Dispatcher::query(Session& session, v1::Request request) {
         else
             refuse(response, protocol::with_paths(result.error(), name));
     };
+    // The rows of a long answer are copied there and made into a message here.
+    const auto ask_for_rows = [&](std::ptrdiff_t bytes, auto find, auto put_rows) {
+        using Rows = typename std::invoke_result_t<decltype(find), const simulation::Laboratory&>::value_type;
+        auto rows = std::make_shared<std::optional<Rows>>();
+        const bool asked = ask(
+            session, id,
+            [name, find, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
+                if (auto found = find(laboratory))
+                    *rows = *std::move(found);
+                else
+                    refuse(response, protocol::with_paths(found.error(), name));
+            },
+            [bytes, put_rows, rows](Session& asking, v1::Response& response) {
+                asking.expect(-bytes);
+                if (*rows)
+                    put_rows(**rows, response);
+            });
+        if (asked)
+            session.expect(bytes);
+    };
     switch (request.request_case()) {
     case v1::Request::kListWorlds:
         return ask(session, id, [](const simulation::Laboratory& laboratory, v1::Response& response) {
@@ -383,32 +405,34 @@ void Dispatcher::query(Session& session, v1::Request request) {
         return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
             put(protocol::get_organism(laboratory, request.get_organism()), response, &v1::Response::mutable_organism);
         });
-    case v1::Request::kGetHistory: {
-        // The rows are copied there and made into messages here, for there can be many.
-        auto rows = std::make_shared<protocol::HistoryRows>();
-        constexpr std::ptrdiff_t bytes = protocol::history_statistics_max * sizeof(simulation::GenerationStatistics);
-        const bool asked = ask(
-            session, id,
-            [name, request, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
-                if (auto found = protocol::get_history(laboratory, request.get_history()))
-                    *rows = *std::move(found);
-                else
-                    refuse(response, protocol::with_paths(found.error(), name));
+    case v1::Request::kGetHistory:
+        return ask_for_rows(
+            protocol::history_statistics_max * sizeof(simulation::GenerationStatistics),
+            [request](const simulation::Laboratory& laboratory) {
+                return protocol::get_history(laboratory, request.get_history());
             },
-            [this, rows](Session& asking, v1::Response& response) {
-                asking.expect(-bytes);
-                if (response.status().code() != v1::CODE_OK)
-                    return;
-                if (rows->begins_late)
+            [this](const protocol::HistoryRows& rows, v1::Response& response) {
+                if (rows.begins_late)
                     limit_counters_.met(Limit::HistoryGenerationsKept);
-                if (rows->next_generation)
+                if (rows.next_generation)
                     limit_counters_.met(Limit::HistoryGenerations);
-                *response.mutable_history() = protocol::to_proto(*rows);
+                *response.mutable_history() = protocol::to_proto(rows);
             });
-        if (asked)
-            session.expect(bytes);
-        return;
-    }
+    case v1::Request::kGetPopulation:
+        return ask_for_rows(
+            protocol::population_rows_max * protocol::population_row_bytes,
+            [request](const simulation::Laboratory& laboratory) {
+                return protocol::get_population(laboratory, request.get_population());
+            },
+            [this](const protocol::PopulationRows& rows, v1::Response& response) {
+                if (rows.first + rows.genes.size() < rows.organism_count)
+                    limit_counters_.met(Limit::PopulationRows);
+                *response.mutable_population() = protocol::to_proto(rows);
+            });
+    case v1::Request::kGetMotion:
+        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
+            put(protocol::get_motion(laboratory, request.get_motion()), response, &v1::Response::mutable_motion);
+        });
     case v1::Request::kGetMetrics: {
         v1::Response response = response_to(id);
         *response.mutable_metrics() = metrics_();

@@ -70,6 +70,8 @@ constexpr LimitRow table[] = {
      "generations of statistics kept of each world", "the oldest are forgotten; a `History` begins after them"},
     {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,
      "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
+    {Limit::PopulationRows, "population_rows_max", protocol::population_rows_max, "organisms in a `Population`",
+     "cut: ask again from the next organism"},
     {Limit::ClientBufferBytes, "client_buffer_bytes_max", client_buffer_bytes_max,
      "what waits or is got together for all clients, and what they have sent of frames that are not whole",
      "the sessions with the most are closed"},

@@ -67,6 +67,7 @@ enum class Limit : std::uint8_t {
     ClientKeys,
     HistoryGenerationsKept,
     HistoryGenerations,
+    PopulationRows,
     ClientBufferBytes,
     QueuedResponseBytes,
     QueuedEventBytes,

@@ -92,6 +92,12 @@ evolution::Outcome World::outcome() const {
     return generation_over_ ? evolution::outcome(progress_, parameters_.active) : evolution::Outcome::Running;
 }
 
+std::vector<Intention> World::intentions(const Island& island, base::Range ids) const {
+    if (generation_over_)
+        return std::vector<Intention>(ids.end - ids.begin);
+    return island.intentions(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
+}
+
 std::uint64_t World::alive_count() const {
     std::uint64_t alive = 0;
     for (const Island& island : islands_)

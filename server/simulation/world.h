@@ -96,6 +96,9 @@ class World {
     std::span<const Island> islands() const { return islands_; }
     /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
     bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
+    /// What organisms [ids.begin, ids.end) of an island are about to do, from what lies there now; None for the dead,
+    /// for all where the generation is over, and where there are no bodies.
+    std::vector<Intention> intentions(const Island& island, base::Range ids) const;
     /// Organisms alive on all islands.
     std::uint64_t alive_count() const;
 
