@@ -147,12 +147,15 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
                           .first = query.first_organism(),
                           .genes = {},
                           .parents = {},
+                          .founders = {},
                           .intentions = world.intentions(island, ids)};
     answer.genes.reserve(ids.end - ids.begin);
     for (std::size_t id = ids.begin; id < ids.end; ++id)
         answer.genes.emplace_back(born.genes.col(static_cast<Eigen::Index>(id)));
     if (!born.parents.empty())
         answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
+    if (const auto founders = world.founders(island); !founders.empty())
+        answer.founders.assign(founders.begin() + ids.begin, founders.begin() + ids.end);
     return answer;
 }
 
@@ -167,6 +170,7 @@ v1::Population to_proto(const PopulationRows& rows) {
         append_column(*population.mutable_genes(), rows.genes, [gene](const auto& genes) { return genes(gene); });
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.first; });
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.second; });
+    append_column(*population.mutable_founders(), rows.founders, [](std::uint32_t founder) { return founder; });
     using simulation::Intention;
     for (const Intention& intention : rows.intentions)
         population.mutable_choices()->push_back(static_cast<char>(intention.choice));

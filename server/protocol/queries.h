@@ -36,10 +36,11 @@ struct PopulationRows {
     std::uint32_t organism_count, first;
     std::vector<evolution::Chromosome> genes;
     std::vector<evolution::Parents> parents; // empty in the first generation
+    std::vector<std::uint32_t> founders;     // empty where the world does not know
     std::vector<simulation::Intention> intentions;
 };
 constexpr std::size_t population_row_bytes =
-    sizeof(evolution::Chromosome) + sizeof(evolution::Parents) + sizeof(simulation::Intention);
+    sizeof(evolution::Chromosome) + sizeof(evolution::Parents) + sizeof(std::uint32_t) + sizeof(simulation::Intention);
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
 v1::Population to_proto(const PopulationRows& rows);
 

@@ -1692,7 +1692,7 @@ class Queries(WithServer):
         columns = lambda data, kind, count: numpy.frombuffer(data, kind).reshape(count, -1)
         return types.SimpleNamespace(
             told=told, genes=columns(told.genes, "<f4", 6), parents=columns(told.parents, "<u4", 2),
-            choices=numpy.frombuffer(told.choices, "u1"), forces=columns(told.forces, "<f4", 2),
+            founders=numpy.frombuffer(told.founders, "<u4"), choices=numpy.frombuffer(told.choices, "u1"), forces=columns(told.forces, "<f4", 2),
             targets=columns(told.targets, "<f4", 2))
 
     def compare_with_organisms(self, world, island=0):
@@ -1727,6 +1727,7 @@ class Queries(WithServer):
         self.client.run_to(300, world)
         later = self.compare_with_organisms(world, 1)
         self.assertEqual((later.genes == at_first.genes).all(), True)
+        self.assertEqual(list(later.founders), list(range(50, 100)))
         self.assertEqual(set(later.choices), {w.CHOICE_NONE, w.CHOICE_WANDER, w.CHOICE_SEEK, w.CHOICE_FLEE},
                          "some have died, and the living do everything that there is")
         self.client.run_to(360, world)
@@ -1737,6 +1738,7 @@ class Queries(WithServer):
         bred = self.compare_with_organisms(world, 1)
         self.assertEqual((bred.told.generation, bred.told.generation_tick, bred.parents.shape), (2, 1, (2, 50)))
         self.assertLess(bred.parents.max(), 50)
+        self.assertEqual(list(bred.founders), list(50 + bred.parents[0]))
         for island, first, field, allowed in ((2, 0, "island", "0 to 1"), (0, 50, "first_organism", "0 to 49")):
             status = self.client.call(NOT_FOUND, get_population=c.GetPopulation(
                 world=world, island=island, first_organism=first)).status
