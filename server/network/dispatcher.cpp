@@ -18,6 +18,8 @@
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <algorithm>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace evod::network {
@@ -365,6 +367,26 @@ void Dispatcher::query(Session& session, v1::Request request) {
         else
             refuse(response, protocol::with_paths(result.error(), name));
     };
+    // The rows of a long answer are copied there and made into a message here.
+    const auto ask_for_rows = [&](std::ptrdiff_t bytes, auto find, auto put_rows) {
+        using Rows = typename std::invoke_result_t<decltype(find), const simulation::Laboratory&>::value_type;
+        auto rows = std::make_shared<std::optional<Rows>>();
+        const bool asked = ask(
+            session, id,
+            [name, find, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
+                if (auto found = find(laboratory))
+                    *rows = *std::move(found);
+                else
+                    refuse(response, protocol::with_paths(found.error(), name));
+            },
+            [bytes, put_rows, rows](Session& asking, v1::Response& response) {
+                asking.expect(-bytes);
+                if (*rows)
+                    put_rows(**rows, response);
+            });
+        if (asked)
+            session.expect(bytes);
+    };
     switch (request.request_case()) {
     case v1::Request::kListWorlds:
         return ask(session, id, [](const simulation::Laboratory& laboratory, v1::Response& response) {
@@ -384,34 +406,36 @@ void Dispatcher::query(Session& session, v1::Request request) {
         return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
             put(protocol::get_organism(laboratory, request.get_organism()), response, &v1::Response::mutable_organism);
         });
-    case v1::Request::kGetHistory: {
-        // Messages are made of it here, for they can be many. As long as they may become waits for the client from now on.
-        auto part = std::make_shared<protocol::HistoryPart>();
-        constexpr std::ptrdiff_t bytes = protocol::history_statistics_max * sizeof(simulation::GenerationStatistics);
-        const bool asked = ask(
-            session, id,
-            [name, request, part](const simulation::Laboratory& laboratory, v1::Response& response) {
-                if (auto found = protocol::get_history(laboratory, request.get_history()))
-                    *part = *std::move(found);
-                else
-                    refuse(response, protocol::with_paths(found.error(), name));
+    case v1::Request::kGetHistory:
+        return ask_for_rows(
+            protocol::history_statistics_max * sizeof(simulation::GenerationStatistics),
+            [request](const simulation::Laboratory& laboratory) {
+                return protocol::get_history(laboratory, request.get_history());
             },
-            [this, part](Session& asking, v1::Response& response) {
-                asking.expect(-bytes);
-                if (response.status().code() != v1::CODE_OK)
-                    return;
-                if (part->begins_late)
+            [this](const protocol::HistoryPart& part, v1::Response& response) {
+                if (part.begins_late)
                     limit_counters_.met(Limit::HistoryGenerationsKept);
-                if (part->next_generation)
+                if (part.next_generation)
                     limit_counters_.met(Limit::HistoryGenerations);
-                *response.mutable_history() = protocol::to_proto(*part);
+                *response.mutable_history() = protocol::to_proto(part);
             });
-        if (asked)
-            session.expect(bytes);
-        return;
-    }
     case v1::Request::kGetBreeding:
         return breeding(session, request);
+    case v1::Request::kGetPopulation:
+        return ask_for_rows(
+            protocol::population_rows_max * protocol::population_row_bytes,
+            [request](const simulation::Laboratory& laboratory) {
+                return protocol::get_population(laboratory, request.get_population());
+            },
+            [this](const protocol::PopulationRows& rows, v1::Response& response) {
+                if (rows.first + rows.genes.size() < rows.organism_count)
+                    limit_counters_.met(Limit::PopulationRows);
+                *response.mutable_population() = protocol::to_proto(rows);
+            });
+    case v1::Request::kGetMotion:
+        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
+            put(protocol::get_motion(laboratory, request.get_motion()), response, &v1::Response::mutable_motion);
+        });
     case v1::Request::kGetMetrics: {
         v1::Response response = response_to(id);
         *response.mutable_metrics() = metrics_();

@@ -73,6 +73,8 @@ constexpr LimitRow table[] = {
      "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
     {Limit::BreedingRows, "breeding_rows_max", protocol::breeding_rows_max, "rows of each list of a `Breeding`",
      "cut; who asks says where the next answer begins"},
+    {Limit::PopulationRows, "population_rows_max", protocol::population_rows_max, "organisms in a `Population`",
+     "cut: ask again from the next organism"},
     {Limit::ClientBufferBytes, "client_buffer_bytes_max", client_buffer_bytes_max,
      "what waits or is got together for all clients, and what they have sent of frames that are not whole",
      "the sessions with the most are closed"},

@@ -68,6 +68,7 @@ enum class Limit : std::uint8_t {
     HistoryGenerationsKept,
     HistoryGenerations,
     BreedingRows,
+    PopulationRows,
     ClientBufferBytes,
     QueuedResponseBytes,
     QueuedEventBytes,

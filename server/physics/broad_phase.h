@@ -64,6 +64,9 @@ class Strips {
     void follow_reordering();
 
     std::uint32_t strip_count() const { return strips_; }
+    double strip_height_px() const {
+        return static_cast<double>(std::uint64_t{1} << scale_bits) / static_cast<double>(strip_scale_) / units_per_px;
+    }
     /// Where in order() the circles of a strip stand.
     base::Range strip(std::uint32_t strip) const {
         const std::size_t cell = std::size_t{strip} * columns_;

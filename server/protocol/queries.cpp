@@ -1,10 +1,12 @@
 #include "server/protocol/queries.h"
 
+#include "proto/wire/little_endian.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/worlds.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace evod::protocol {
@@ -15,6 +17,33 @@ base::Refusal no_such(const char* what, std::string field, std::uint64_t count, 
             .message = std::string{"there is no such "} + what,
             .violations = {
                 {std::move(field), count == 0 ? "none" : "0 to " + std::to_string(count - 1), std::to_string(got)}}};
+}
+
+/// An island of a world, by the names of a query.
+struct Found {
+    const simulation::World& world;
+    const simulation::Island& island;
+};
+base::Result<Found> find_island(const simulation::Laboratory& laboratory, const std::string& world,
+                                std::uint32_t island, const char* field) {
+    const auto entry = laboratory.find(lookup_name(world));
+    if (!entry)
+        return entry.error();
+    const auto islands = (*entry)->world.islands();
+    if (island >= islands.size())
+        return no_such("island", field, islands.size(), island);
+    return Found{(*entry)->world, islands[island]};
+}
+
+/// One number of 4 bytes of each row, little-endian, after what is there.
+template <class Rows, class Of>
+void append_column(std::string& bytes, const Rows& rows, Of&& of) {
+    std::size_t at = bytes.size();
+    bytes.resize(at + rows.size() * sizeof(std::uint32_t));
+    for (const auto& row : rows) {
+        wire::store(std::bit_cast<std::uint32_t>(of(row)), &bytes[at]);
+        at += sizeof(std::uint32_t);
+    }
 }
 
 } // namespace
@@ -52,17 +81,13 @@ base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& labora
 }
 
 base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query) {
-    const auto entry = laboratory.find(lookup_name(query.world()));
-    if (!entry)
-        return entry.error();
-    const simulation::World& world = (*entry)->world;
-    if (query.island() >= world.islands().size())
-        return no_such("island", "get_organism.island", world.islands().size(), query.island());
-    const simulation::Island& island = world.islands()[query.island()];
-    const auto born = static_cast<std::uint64_t>(island.born().genes.cols());
+    const auto found = find_island(laboratory, query.world(), query.island(), "get_organism.island");
+    if (!found)
+        return found.error();
+    const auto born = static_cast<std::uint64_t>(found->island.born().genes.cols());
     if (query.organism() >= born)
         return no_such("organism", "get_organism.organism", born, query.organism());
-    return organism_info(world, island, query.organism());
+    return organism_info(found->world, found->island, query.organism());
 }
 
 base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query) {
@@ -105,6 +130,84 @@ v1::History to_proto(const HistoryPart& part) {
     if (part.next_generation)
         history.set_next_generation(*part.next_generation);
     return history;
+}
+
+base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query) {
+    const auto found = find_island(laboratory, query.world(), query.island(), "get_population.island");
+    if (!found)
+        return found.error();
+    const auto& [world, island] = *found;
+    const evolution::NextGeneration& born = island.born();
+    const auto count = static_cast<std::size_t>(born.genes.cols());
+    const std::size_t first = query.first_organism();
+    if (first >= count)
+        return no_such("organism", "get_population.first_organism", count, first);
+    const base::Range ids{first, std::min(count, first + population_rows_max)};
+    PopulationRows answer{.generation = world.moment().generation,
+                          .generation_tick = world.moment().generation_tick,
+                          .organism_count = static_cast<std::uint32_t>(count),
+                          .first = query.first_organism(),
+                          .genes = {},
+                          .parents = {},
+                          .founders = {},
+                          .intentions = world.intentions(island, ids)};
+    answer.genes.reserve(ids.end - ids.begin);
+    for (std::size_t id = ids.begin; id < ids.end; ++id)
+        answer.genes.emplace_back(born.genes.col(static_cast<Eigen::Index>(id)));
+    if (!born.parents.empty())
+        answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
+    if (const auto founders = world.founders(island); !founders.empty())
+        answer.founders.assign(founders.begin() + ids.begin, founders.begin() + ids.end);
+    return answer;
+}
+
+v1::Population to_proto(const PopulationRows& rows) {
+    v1::Population population;
+    population.set_generation(rows.generation);
+    population.set_generation_tick(rows.generation_tick);
+    population.set_organism_count(rows.organism_count);
+    population.set_first(rows.first);
+    population.set_count(static_cast<std::uint32_t>(rows.genes.size()));
+    for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+        append_column(*population.mutable_genes(), rows.genes, [gene](const auto& genes) { return genes(gene); });
+    append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.first; });
+    append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.second; });
+    append_column(*population.mutable_founders(), rows.founders, [](std::uint32_t founder) { return founder; });
+    using simulation::Intention;
+    for (const Intention& intention : rows.intentions)
+        population.mutable_choices()->push_back(static_cast<char>(intention.choice));
+    const auto append = [&rows](std::string& bytes, auto of) { append_column(bytes, rows.intentions, of); };
+    append(*population.mutable_forces(), [](const Intention& i) { return i.force_x; });
+    append(*population.mutable_forces(), [](const Intention& i) { return i.force_y; });
+    const auto px = [](physics::Coordinate units) { return static_cast<float>(physics::to_px(units)); };
+    append(*population.mutable_targets(), [px](const Intention& i) { return px(i.target_x); });
+    append(*population.mutable_targets(), [px](const Intention& i) { return px(i.target_y); });
+    return population;
+}
+
+base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query) {
+    const auto found = find_island(laboratory, query.world(), query.island(), "get_motion.island");
+    if (!found)
+        return found.error();
+    const auto& [world, island] = *found;
+    const simulation::Parameters& parameters = world.parameters().active;
+    const auto report = island.motion_report(parameters);
+    v1::Motion motion;
+    motion.set_tick(world.moment().tick);
+    motion.set_tick_s(parameters.tick_s);
+    motion.set_body_count(report.body_count);
+    motion.set_kinetic_energy(report.kinetic_energy);
+    motion.set_momentum_x(report.momentum_x);
+    motion.set_momentum_y(report.momentum_y);
+    motion.set_touching_count(report.touching_count);
+    motion.set_deepest_overlap_px(report.deepest_overlap_px);
+    motion.set_deepest_overlap_share(report.deepest_overlap_share);
+    motion.set_fastest_px_s(report.fastest_px_s);
+    motion.set_fastest_step_share(report.fastest_step);
+    motion.set_cell_px(report.strip_px);
+    motion.set_too_fast_count(island.counts().too_fast_count);
+    motion.set_speed_limit_count(island.counts().speed_limit_count);
+    return motion;
 }
 
 base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, const v1::SubscribeSnapshots& request) {

@@ -13,6 +13,9 @@ namespace evod::protocol {
 /// Answers to a history query at most so many GenerationStatistics, but a whole generation at least.
 constexpr std::size_t history_statistics_max = 1000;
 
+/// Organisms in an answer to a population query at most.
+constexpr std::size_t population_rows_max = 10'000;
+
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory);
 base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& laboratory, const v1::GetParameters& query);
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query);
@@ -27,6 +30,22 @@ struct HistoryPart {
 };
 base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query);
 v1::History to_proto(const HistoryPart& part);
+
+/// Organisms of an island, copied as they lie for the same reason.
+struct PopulationRows {
+    std::uint64_t generation, generation_tick;
+    std::uint32_t organism_count, first;
+    std::vector<evolution::Chromosome> genes;
+    std::vector<evolution::Parents> parents; // empty in the first generation
+    std::vector<std::uint32_t> founders;     // empty where the world does not know
+    std::vector<simulation::Intention> intentions;
+};
+constexpr std::size_t population_row_bytes =
+    sizeof(evolution::Chromosome) + sizeof(evolution::Parents) + sizeof(std::uint32_t) + sizeof(simulation::Intention);
+base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query);
+v1::Population to_proto(const PopulationRows& rows);
+
+base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query);
 
 /// The world that is to be watched, as found by name.
 struct Watched {

@@ -170,6 +170,12 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     const auto shape = simulation::body_shape(born.genes(evolution::BodySize, id), parameters);
     to.set_radius_px(shape.radius_px);
     to.set_mass_kg(shape.mass_kg);
+    const simulation::Intention intention = world.intentions(island, {id, id + 1}).front();
+    to.set_choice(static_cast<v1::Choice>(intention.choice));
+    to.set_force_x(intention.force_x);
+    to.set_force_y(intention.force_y);
+    to.set_target_x_px(physics::to_px(intention.target_x));
+    to.set_target_y_px(physics::to_px(intention.target_y));
     const simulation::Fate& fate = island.fate();
     to.set_food_eaten(fate.food_eaten[id]);
     to.set_poison_eaten(fate.poison_eaten[id]);

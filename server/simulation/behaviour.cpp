@@ -1,6 +1,78 @@
 #include "server/simulation/behaviour.h"
 
+#include "server/base/assert.h"
+
+#include <algorithm>
+
 namespace evod::simulation {
+namespace {
+
+ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick) {
+    return {.always_flee = rules.flee_rule == FleeRule::Always,
+            .lookahead_s = rules.lookahead_s,
+            .certain_impulse = rules.certain_impulse,
+            .force_per_unit = rules.force_per_unit,
+            .pair_counter = key.pair_counter(tick),
+            .pair_key = key.pair_key()};
+}
+
+/// The columns of a few bodies, copied out of all. What is not filled in is not read.
+struct FewOrganisms {
+    static constexpr std::size_t room = physics::circles_per_block;
+    struct View {
+        std::array<std::int32_t, room> x{}, y{};
+        std::array<float, room> radius{};
+        std::array<ItemQuery, room> queries;
+        std::array<TwoNearest, room> nearest;
+
+        void look(const Items& items, std::size_t count) {
+            items_kernels().two_nearest(items.grid(), queries.data(), nearest.data(), count);
+            for (std::size_t k = 0; k < count; ++k) {
+                x[k] = nearest[k].x;
+                y[k] = nearest[k].y;
+            }
+        }
+        ViewColumns columns() {
+            return {.others = nullptr, .x = x.data(), .y = y.data(), .radius = radius.data(), .item_radius = 0};
+        }
+    };
+    std::array<std::int32_t, room> x{}, y{};
+    std::array<float, room> velocity_x{}, velocity_y{}, normal_speed{}, impulse{};
+    std::array<std::uint32_t, room> id{};
+    View food, poison;
+
+    void put(std::size_t k, const physics::Circles& bodies, const Living& living, std::uint32_t body) {
+        x[k] = bodies.x[body];
+        y[k] = bodies.y[body];
+        velocity_x[k] = bodies.velocity_x[body];
+        velocity_y[k] = bodies.velocity_y[body];
+        id[k] = bodies.id[body];
+        normal_speed[k] = living.normal_speed[body];
+        impulse[k] = living.impulse[body];
+        food.radius[k] = living.food_radius[body];
+        poison.radius[k] = living.poison_radius[body];
+        food.queries[k] = {x[k], y[k], food.radius[k]};
+        poison.queries[k] = {x[k], y[k], poison.radius[k]};
+    }
+    OrganismColumns columns() {
+        return {.x = x.data(),
+                .y = y.data(),
+                .velocity_x = velocity_x.data(),
+                .velocity_y = velocity_y.data(),
+                .body_radius = nullptr,
+                .id = id.data(),
+                .health = nullptr,
+                .loss_per_tick = nullptr,
+                .normal_speed = normal_speed.data(),
+                .impulse = impulse.data(),
+                .seen_x = nullptr,
+                .seen_y = nullptr,
+                .food = food.columns(),
+                .poison = poison.columns()};
+    }
+};
+
+} // namespace
 
 OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight& sight, const Items& food,
                                  const Items& poison) {
@@ -24,14 +96,33 @@ OrganismColumns organism_columns(physics::Circles& bodies, Living& living, Sight
 
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces) {
-    organism_kernels().choose(columns, block.begin, block.end,
-                              {.always_flee = rules.flee_rule == FleeRule::Always,
-                               .lookahead_s = rules.lookahead_s,
-                               .certain_impulse = rules.certain_impulse,
-                               .force_per_unit = rules.force_per_unit,
-                               .pair_counter = key.pair_counter(tick),
-                               .pair_key = key.pair_key()},
-                              forces.x.data(), forces.y.data());
+    organism_kernels().choose(columns, block.begin, block.end, choice_rules(rules, key, tick), forces.x.data(),
+                              forces.y.data());
+}
+
+void foresee(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+             const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
+             std::span<const std::uint32_t> who, std::span<Intention> intentions) {
+    EVOD_ASSERT(who.size() == intentions.size());
+    FewOrganisms few;
+    ChosenForces forces;
+    std::array<std::int32_t, FewOrganisms::room> choices;
+    for (std::size_t begin = 0; begin < who.size(); begin += FewOrganisms::room) {
+        const std::size_t count = std::min(who.size() - begin, FewOrganisms::room);
+        for (std::size_t k = 0; k < count; ++k)
+            few.put(k, bodies, living, who[begin + k]);
+        few.food.look(food, count);
+        few.poison.look(poison, count);
+        organism_kernels().foretell(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),
+                                    forces.y.data(), choices.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto choice = static_cast<Choice>(choices[k]);
+            const auto [x, y] = choice == Choice::Flee   ? Place{few.poison.x[k], few.poison.y[k]}
+                                : choice == Choice::Seek ? Place{few.food.x[k], few.food.y[k]}
+                                                         : Place{few.x[k], few.y[k]};
+            intentions[begin + k] = {choice, forces.x[k], forces.y[k], x, y};
+        }
+    }
 }
 
 } // namespace evod::simulation

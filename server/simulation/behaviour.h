@@ -20,6 +20,7 @@
 #include "server/simulation/sight.h"
 
 #include <array>
+#include <span>
 
 namespace evod::simulation {
 
@@ -42,5 +43,18 @@ struct ChosenForces {
 /// The loss of health that a tick costs, and the choice of the organisms of a block, whose views are good.
 void live_and_choose(const OrganismColumns& columns, const BehaviourRules& rules, const base::RandomKey& key,
                      std::uint32_t tick, base::Range block, ChosenForces& forces);
+
+/// What an organism is about to do.
+struct Intention {
+    Choice choice = Choice::None;                   // None: there is no such organism
+    float force_x = 0, force_y = 0;                 // kg px/s²
+    physics::Coordinate target_x = 0, target_y = 0; // of the food or poison; its own place where it wanders
+};
+
+/// What the bodies `who` would choose in `tick` if nothing reappeared before it; changes nothing. Not void ones.
+/// intentions  shape (who).
+void foresee(const physics::Circles& bodies, const Living& living, const Items& food, const Items& poison,
+             const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick,
+             std::span<const std::uint32_t> who, std::span<Intention> intentions);
 
 } // namespace evod::simulation

@@ -39,6 +39,13 @@ ItemRules item_rules(const Parameters& p) {
             .respawn_ticks = static_cast<std::uint32_t>(std::clamp(ticks, 1.0, 1e9))};
 }
 
+BehaviourRules behaviour_rules(const Parameters& p) {
+    return {.flee_rule = p.flee_rule,
+            .lookahead_s = static_cast<float>(p.steering_lookahead_s),
+            .certain_impulse = static_cast<float>(p.flee_certain_impulse),
+            .force_per_unit = static_cast<float>(p.force_per_unit)};
+}
+
 } // namespace
 
 void Island::begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred,
@@ -143,10 +150,7 @@ void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base
             sight_.notice_poison(bodies_, stepper_.near(), living_, poison_, executor);
         });
 
-    const BehaviourRules rules{.flee_rule = parameters.flee_rule,
-                               .lookahead_s = static_cast<float>(parameters.steering_lookahead_s),
-                               .certain_impulse = static_cast<float>(parameters.flee_certain_impulse),
-                               .force_per_unit = static_cast<float>(parameters.force_per_unit)};
+    const BehaviourRules rules = behaviour_rules(parameters);
     const std::size_t block_count = physics::block_count(bodies_.size());
     const std::size_t grain = physics::blocks_per_piece(bodies_.size());
     stepper_.begin(bodies_, boxes_, area_, step_parameters_);
@@ -508,6 +512,25 @@ std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t 
             fitness[id] = function(born_.genes.col(static_cast<Eigen::Index>(id)));
     });
     return fitness;
+}
+
+std::vector<Intention> Island::intentions(const Parameters& parameters, std::uint32_t tick, base::Range ids) const {
+    std::vector<std::uint32_t> who;
+    for (std::size_t id = ids.begin; id < ids.end; ++id)
+        if (const auto body = body_of(static_cast<std::uint32_t>(id)))
+            who.push_back(static_cast<std::uint32_t>(*body));
+    std::vector<Intention> of_living(who.size());
+    foresee(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick, who, of_living);
+    std::vector<Intention> intentions(ids.end - ids.begin);
+    for (std::size_t k = 0; k < who.size(); ++k)
+        intentions[bodies_.id[who[k]] - ids.begin] = of_living[k];
+    return intentions;
+}
+
+physics::MotionReport Island::motion_report(const Parameters& parameters) const {
+    if (!has_bodies())
+        return {};
+    return physics::report_motion(bodies_, boxes_, area_, parameters.tick_s, stepper_.near());
 }
 
 std::optional<std::size_t> Island::body_of(std::uint32_t id) const {

@@ -19,6 +19,7 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/next_generation.h"
 #include "server/physics/bodies.h"
+#include "server/physics/motion_report.h"
 #include "server/physics/step.h"
 #include "server/simulation/behaviour.h"
 #include "server/simulation/feeding.h"
@@ -58,8 +59,15 @@ class Island {
     /// or the function of the chromosome.
     std::vector<double> fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const;
 
+    /// What organisms [ids.begin, ids.end) would do in `tick` of the generation, if nothing reappeared before it; None
+    /// for the dead and where there are no bodies.
+    std::vector<Intention> intentions(const Parameters& parameters, std::uint32_t tick, base::Range ids) const;
+
     /// The index in bodies() of a living organism; nullopt if it is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
+
+    /// How the living and the crates move and overlap; all zeros where there are no bodies.
+    physics::MotionReport motion_report(const Parameters& parameters) const;
 
     std::uint32_t index() const { return index_; }
     base::Seed seed() const { return seed_; }

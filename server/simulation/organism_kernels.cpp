@@ -40,14 +40,17 @@ Offset offset_to_nearest(const ViewColumns& view, std::size_t i, Integers x, Int
     return {dx, dy, dx * dx + dy * dy};
 }
 
-void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
-            float* force_x, float* force_y) {
+/// foretold: health is not lost, and choices are told.
+template <bool foretold>
+inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+                        float* force_x, float* force_y, std::int32_t* choices) {
     for (std::size_t i = begin; i < end; i += lanes) {
         prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.body_radius, columns.id,
                        columns.health, columns.loss_per_tick, columns.normal_speed, columns.impulse);
         prefetch_view_ahead(i, columns.food);
         prefetch_view_ahead(i, columns.poison);
-        store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
+        if constexpr (!foretold)
+            store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
 
         const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
         const Offset food = offset_to_nearest(columns.food, i, x, y),
@@ -73,7 +76,21 @@ void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
         const Directions random = directions(words.first);
         store(force_x + (i - begin), straight ? way_x * share : random.x * size);
         store(force_y + (i - begin), straight ? way_y * share : random.y * size);
+        if constexpr (foretold)
+            store(choices + (i - begin), flees       ? all_lanes(static_cast<std::int32_t>(Choice::Flee))
+                                         : sees_food ? all_lanes(static_cast<std::int32_t>(Choice::Seek))
+                                                     : all_lanes(static_cast<std::int32_t>(Choice::Wander)));
     }
+}
+
+void choose(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+            float* force_x, float* force_y) {
+    choose_each<false>(columns, begin, end, rules, force_x, force_y, nullptr);
+}
+
+void foretell(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+              float* force_x, float* force_y, std::int32_t* choices) {
+    choose_each<true>(columns, begin, end, rules, force_x, force_y, choices);
 }
 
 /// Whether the items of the view may be touched.
@@ -125,6 +142,6 @@ HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t b
 } // namespace
 
 extern const OrganismKernels EVOD_KERNEL(organism_kernels);
-const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, follow, hash};
+const OrganismKernels EVOD_KERNEL(organism_kernels) = {find_stale, choose, foretell, follow, hash};
 
 } // namespace evod::simulation

@@ -42,6 +42,9 @@ struct FoundIndices {
     std::size_t count = 0;
 };
 
+/// What an organism does in a tick; the numbers are those of the protocol.
+enum class Choice : std::uint8_t { None, Wander, Seek, Flee };
+
 struct HashWords {
     std::uint64_t low, high;
 };
@@ -55,6 +58,10 @@ struct OrganismKernels {
     /// force_x, force_y  of the organisms from `begin` on, padded; kg px/s².
     void (*choose)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                    float* force_x, float* force_y);
+    /// The same choice without the loss, and which it was: nothing is changed.
+    /// choices  as the forces; a Choice each.
+    void (*foretell)(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
+                     float* force_x, float* force_y, std::int32_t* choices);
     /// Brings views up to date with where the organisms now are: their `others` become less by the way since, and −1
     /// where the nearest item may be another. Finds who may touch items: all that do, and others.
     void (*follow)(const OrganismColumns& columns, std::size_t begin, std::size_t end, FoundIndices& at_food,

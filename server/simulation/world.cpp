@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -39,7 +40,9 @@ World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_s
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
         before.pop_back();
-    return World{seed_, opening, std::move(born), std::move(before), executor, first_population_};
+    World world{seed_, opening, std::move(born), std::move(before), executor, first_population_};
+    world.founders_ = founders_;
+    return world;
 }
 
 void World::reset(base::Seed seed) {
@@ -77,11 +80,36 @@ void World::make_islands() {
 void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
     opening_ = {moment_, parameters_, progress_};
     fitness_.clear();
+    find_founders(bred);
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i)
             islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
     });
     update_hash();
+}
+
+void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
+    if (moment_.generation == 1) {
+        founders_.clear();
+        std::uint32_t number = 0;
+        for (const evolution::NextGeneration& first : bred) {
+            founders_.emplace_back(static_cast<std::size_t>(first.genes.cols()));
+            std::iota(founders_.back().begin(), founders_.back().end(), number);
+            number += static_cast<std::uint32_t>(first.genes.cols());
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < founders_.size(); ++i) {
+        std::vector<std::uint32_t> of_bred;
+        of_bred.reserve(bred[i].parents.size());
+        for (const evolution::Parents& parents : bred[i].parents)
+            of_bred.push_back(founders_[i][parents.first]);
+        founders_[i] = std::move(of_bred);
+    }
+}
+
+std::span<const std::uint32_t> World::founders(const Island& island) const {
+    return founders_.empty() ? std::span<const std::uint32_t>{} : founders_[island.index()];
 }
 
 void World::request_parameters(const Parameters& requested) {
@@ -90,6 +118,12 @@ void World::request_parameters(const Parameters& requested) {
 
 evolution::Outcome World::outcome() const {
     return generation_over_ ? evolution::outcome(progress_, parameters_.active) : evolution::Outcome::Running;
+}
+
+std::vector<Intention> World::intentions(const Island& island, base::Range ids) const {
+    if (generation_over_)
+        return std::vector<Intention>(ids.end - ids.begin);
+    return island.intentions(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
 }
 
 std::uint64_t World::alive_count() const {
@@ -140,6 +174,9 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
         populations.push_back({&migrated[i], fitness_[i]});
     }
     evolution::migrate(migrants, populations);
+    if (const auto before = founders_; !before.empty())
+        for (const evolution::Migrant& migrant : migrants)
+            founders_[migrant.to][migrant.replaces] = before[migrant.from][migrant.organism];
 
     MigrationHappened happened{.generation = moment_.generation, .edges = {}};
     for (const evolution::Migrant& migrant : migrants) { // ordered by (to, from)

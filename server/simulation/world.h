@@ -112,8 +112,15 @@ class World {
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
+    /// By id, to whom of the first generation the first parents of an island's organisms lead back, from island to
+    /// island too; those are numbered from 0, island after island. Empty unless this world, or the one that it was made
+    /// from, was there from its first generation on.
+    std::span<const std::uint32_t> founders(const Island& island) const;
     /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
     bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
+    /// What organisms [ids.begin, ids.end) of an island are about to do, from what lies there now; None for the dead,
+    /// for all where the generation is over, and where there are no bodies.
+    std::vector<Intention> intentions(const Island& island, base::Range ids) const;
     /// Organisms alive on all islands.
     std::uint64_t alive_count() const;
 
@@ -136,6 +143,8 @@ class World {
     void close_generation(const std::vector<GenerationStatistics>& statistics);
     /// What breeds: the chromosomes of the generation that is over, or, where migrants came, `migrated`.
     std::vector<const evolution::GeneMatrix*> parents(std::vector<evolution::GeneMatrix>& migrated);
+    /// Of who has been bred, or is the first.
+    void find_founders(const std::vector<evolution::NextGeneration>& bred);
     void update_hash();
 
     base::Seed seed_;
@@ -148,7 +157,8 @@ class World {
     Opening opening_;
     History history_;
     std::vector<EventKind> events_;
-    std::vector<std::vector<double>> fitness_; // of the generation that is over: per island, by id
+    std::vector<std::vector<std::uint32_t>> founders_; // per island, by id; no part of the state; none: nobody knows
+    std::vector<std::vector<double>> fitness_;         // of the generation that is over: per island, by id
     evolution::Progress progress_;
     std::vector<std::uint8_t> died_out_; // in the present tick, per island; working memory, kept warm
 };

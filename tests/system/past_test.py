@@ -141,6 +141,19 @@ class OpenPast(Case):
         self.assertEqual({row.generation for row in statistics.last}, {1})
         self.assertEqual(len(viewer.call(get_history=c.GetHistory(world=past)).history.generations), 2)
         viewer.call(get_organism=c.GetOrganism(world=past, organism=3))
+        told = viewer.call(get_population=c.GetPopulation(world=past)).population
+        self.assertEqual((told.generation, told.generation_tick, len(told.parents)), (2, 1, 8 * told.organism_count))
+        viewer.call(seek=c.Seek(world=past, to=at(tick=421)))  # where the run is
+        for name, request in (("population", {"get_population": c.GetPopulation}), ("motion", {"get_motion": c.GetMotion})):
+            then, now = (getattr(viewer.call(**{key: kind(world=world) for key, kind in request.items()}), name)
+                         for world in (past, "w"))
+            if name == "population":  # whoever was not there in the first generation does not know the founders
+                self.assertEqual((len(then.founders), len(now.founders)), (0, 4 * now.organism_count))
+                now.ClearField("founders")
+            else:  # as high as it was when contacts were last looked for afresh
+                then.ClearField("cell_px")
+                now.ClearField("cell_px")
+            self.assertEqual(then, now, "to the last bit")
 
     def test_what_has_been_cannot_be_changed(self):
         viewer = self.client(self.served)

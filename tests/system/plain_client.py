@@ -25,6 +25,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 evod_path, messages_path, protocol_path = sys.argv[1:4]
@@ -1714,6 +1715,138 @@ class Queries(WithServer):
         status = self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, organism=50)).status
         self.assertEqual([(v.field, v.allowed) for v in status.violations], [("get_organism.organism", "0 to 49")])
         self.client.call(NOT_FOUND, get_organism=c.GetOrganism(world=world, island=1))
+
+    def population(self, world, island=0, first=0, client=None):
+        """Part of a population, with its columns as arrays."""
+        told = (client or self.client).call(
+            get_population=c.GetPopulation(world=world, island=island, first_organism=first)).population
+        columns = lambda data, kind, count: numpy.frombuffer(data, kind).reshape(count, -1)
+        return types.SimpleNamespace(
+            told=told, genes=columns(told.genes, "<f4", 6), parents=columns(told.parents, "<u4", 2),
+            founders=numpy.frombuffer(told.founders, "<u4"), choices=numpy.frombuffer(told.choices, "u1"), forces=columns(told.forces, "<f4", 2),
+            targets=columns(told.targets, "<f4", 2))
+
+    def compare_with_organisms(self, world, island=0):
+        """Every row of a population is what GetOrganism tells."""
+        all_of_them = self.population(world, island)
+        told = all_of_them.told
+        self.assertEqual((told.first, told.count), (0, told.organism_count))
+        for column in (all_of_them.genes, all_of_them.forces, all_of_them.targets):
+            self.assertEqual(column.shape[1], told.count)
+        for i in range(told.count):
+            one = self.client.call(get_organism=c.GetOrganism(world=world, island=island, organism=i)).organism
+            self.assertEqual(one.generation, told.generation)
+            self.assertEqual(list(all_of_them.genes[:, i]), list(one.genes))
+            parents = list(all_of_them.parents[:, i]) if told.parents else []
+            self.assertEqual(list(dict.fromkeys(parents)), list(one.parents))
+            self.assertEqual(all_of_them.choices[i], one.choice)
+            self.assertEqual(list(all_of_them.forces[:, i]), [one.force_x, one.force_y])
+            self.assertEqual(list(all_of_them.targets[:, i]), [numpy.float32(one.target_x_px), numpy.float32(one.target_y_px)])
+            self.assertEqual(one.choice == w.CHOICE_NONE, not one.alive)
+            if one.choice == w.CHOICE_WANDER:
+                self.assertEqual((one.target_x_px, one.target_y_px), (one.x_px, one.y_px))
+            elif one.choice != w.CHOICE_NONE:  # what it acts on is as far as it sees, or nearer
+                seen = one.genes[4 if one.choice == w.CHOICE_SEEK else 5]
+                self.assertLessEqual(math.hypot(one.target_x_px - one.x_px, one.target_y_px - one.y_px), seen + 0.01)
+        return all_of_them
+
+    def test_a_population_is_its_organisms(self):
+        world = self.new_world(generation_s=6, island_count=2, poison_count=200)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        at_first = self.compare_with_organisms(world, 1)
+        self.assertEqual((at_first.told.generation, at_first.told.generation_tick, at_first.told.parents), (1, 0, b""))
+        self.client.run_to(300, world)
+        later = self.compare_with_organisms(world, 1)
+        self.assertEqual((later.genes == at_first.genes).all(), True)
+        self.assertEqual(list(later.founders), list(range(50, 100)))
+        self.assertEqual(set(later.choices), {w.CHOICE_NONE, w.CHOICE_WANDER, w.CHOICE_SEEK, w.CHOICE_FLEE},
+                         "some have died, and the living do everything that there is")
+        self.client.run_to(360, world)
+        over = self.population(world, 1)  # nobody is about to do anything in the generation that is over
+        self.assertEqual(set(over.choices), {w.CHOICE_NONE})
+        self.assertFalse(over.forces.any() or over.targets.any())
+        self.client.run_to(361, world)
+        bred = self.compare_with_organisms(world, 1)
+        self.assertEqual((bred.told.generation, bred.told.generation_tick, bred.parents.shape), (2, 1, (2, 50)))
+        self.assertLess(bred.parents.max(), 50)
+        self.assertEqual(list(bred.founders), list(50 + bred.parents[0]))
+        for island, first, field, allowed in ((2, 0, "island", "0 to 1"), (0, 50, "first_organism", "0 to 49")):
+            status = self.client.call(NOT_FOUND, get_population=c.GetPopulation(
+                world=world, island=island, first_organism=first)).status
+            self.assertEqual([(v.field, v.allowed) for v in status.violations], [("get_population." + field, allowed)])
+
+    def test_a_population_without_bodies_has_nothing_to_do(self):
+        world = self.new_world(fitness="gene_sum")
+        told = self.population(world)
+        self.assertEqual(told.genes.shape, (6, 50))
+        self.assertEqual(set(told.choices), {w.CHOICE_NONE})
+        self.assertEqual(self.client.call(get_motion=c.GetMotion(world=world)).motion.body_count, 0)
+
+    def test_organisms_do_what_they_are_said_to_be_about_to_do(self):
+        world = self.new_world(respawn=False)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        for tick in (0, 60, 300):
+            self.client.run_to(tick, world)
+            organisms = lambda: [self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
+                                 for i in range(50)]
+            before, told = organisms(), self.population(world)
+            self.client.run_to(tick + 1, world)
+            pushed = [(i, o) for i, o in enumerate(organisms()) if o.alive and before[i].alive]
+            self.assertGreater(len(pushed), 30)
+            as_told = sum(
+                math.isclose(o.velocity_x_px_s, 0.999 * (before[i].velocity_x_px_s + told.forces[0, i] / o.mass_kg / 60),
+                             rel_tol=1e-4, abs_tol=1e-4) and
+                math.isclose(o.velocity_y_px_s, 0.999 * (before[i].velocity_y_px_s + told.forces[1, i] / o.mass_kg / 60),
+                             rel_tol=1e-4, abs_tol=1e-4) for i, o in pushed)
+            self.assertGreaterEqual(as_told, 0.8 * len(pushed), "all but those that have bounced")
+
+    def test_a_large_population_comes_in_parts(self):
+        rows = self.client.welcome.limits.population_rows_max
+        world = self.new_world(population_size=2 * rows + 7, fitness="gene_sum")
+        parts, first = [], 0
+        while not parts or first < parts[-1].told.organism_count:
+            parts.append(self.population(world, first=first))
+            self.assertEqual(parts[-1].told.first, first)
+            first += parts[-1].told.count
+        self.assertEqual([part.told.count for part in parts], [rows, rows, 7])
+        genes = numpy.concatenate([part.genes for part in parts], axis=1)
+        for i in (0, rows - 1, rows, 2 * rows + 6):
+            one = self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
+            self.assertEqual(list(genes[:, i]), list(one.genes))
+        middle = self.population(world, first=rows - 3)
+        self.assertTrue((middle.genes == genes[:, rows - 3:2 * rows - 3]).all())
+
+    def test_motion_is_that_of_the_organisms(self):
+        world = self.new_world(respawn=False)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        motion = lambda: self.client.call(get_motion=c.GetMotion(world=world)).motion
+        at_rest = motion()
+        self.assertEqual((at_rest.tick, at_rest.body_count, at_rest.kinetic_energy, at_rest.fastest_px_s), (0, 50, 0, 0))
+        self.client.run_to(200, world)
+        told = motion()
+        alive = [o for o in (self.client.call(get_organism=c.GetOrganism(world=world, organism=i)).organism
+                             for i in range(50)) if o.alive]
+        speed = lambda o: math.hypot(o.velocity_x_px_s, o.velocity_y_px_s)
+        self.assertEqual((told.tick, told.body_count), (200, len(alive)))
+        self.assertAlmostEqual(told.tick_s, 1 / 60)
+        self.assertAlmostEqual(told.kinetic_energy, sum(o.mass_kg * speed(o) ** 2 / 2 for o in alive), delta=0.1)
+        self.assertAlmostEqual(told.momentum_x, sum(o.mass_kg * o.velocity_x_px_s for o in alive), delta=0.01)
+        self.assertAlmostEqual(told.momentum_y, sum(o.mass_kg * o.velocity_y_px_s for o in alive), delta=0.01)
+        self.assertAlmostEqual(told.fastest_px_s, max(map(speed, alive)), places=3)
+        self.assertAlmostEqual(told.fastest_step_share, max(speed(o) / 60 / o.radius_px for o in alive), places=3)
+        depths = [max(0, a.radius_px + b.radius_px - math.hypot(a.x_px - b.x_px, a.y_px - b.y_px))
+                  for a, b in itertools.combinations(alive, 2)]
+        self.assertAlmostEqual(told.deepest_overlap_px, max(depths), places=3)
+        self.assertGreaterEqual(told.cell_px, 2 * max(o.radius_px for o in alive))
+        self.client.call(NOT_FOUND, get_motion=c.GetMotion(world=world, island=1))
+
+    def test_ticks_too_long_for_their_speeds_are_counted(self):
+        world = self.new_world(tick_s=0.05, max_speed_px_s=3000, force_per_unit=100, respawn=False)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.run_to(60, world)
+        told = self.client.call(get_motion=c.GetMotion(world=world)).motion
+        self.assertGreater(told.too_fast_count, 0)
+        self.assertGreater(told.fastest_step_share, 1)
 
     def test_the_dead_can_be_asked_about(self):
         world = self.new_world(food_count=0, poison_count=0, generation_s=600)

@@ -2,11 +2,14 @@
 
 #include "server/base/inline_executor.h"
 #include "tests/support/chi_square.h"
+#include "tests/unit/simulation/meadow.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace evod::simulation {
 namespace {
@@ -224,6 +227,90 @@ TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
     choose(none, none, 9);
     for (std::size_t i = 1; i < bodies.size(); ++i)
         EXPECT_EQ(forces.x[i], before.x[bodies.id[i]]);
+}
+
+TEST_F(OneOrganism, TellsWhatItIsAboutToDoAndDoesIt) {
+    living.impulse[0] = 200;
+    const auto expect = [&](const Items& foods, const Items& poisons, Choice choice, const Items* target) {
+        const Coordinate x = bodies.x[0], y = bodies.y[0];
+        const float health = living.health[0];
+        const std::uint32_t who[] = {0};
+        Intention told[1];
+        foresee(bodies, living, foods, poisons, rules, key, 5, who, told);
+        EXPECT_EQ(living.health[0], health);
+        const Force done = choose(foods, poisons, 5);
+        EXPECT_EQ(told->choice, choice);
+        EXPECT_EQ(told->force_x, done.x);
+        EXPECT_EQ(told->force_y, done.y);
+        EXPECT_EQ(told->target_x, target ? target->all()[0].x : x);
+        EXPECT_EQ(told->target_y, target ? target->all()[0].y : y);
+    };
+    put_beside(food, 20, 10);
+    expect(food, none, Choice::Seek, &food);
+    put_beside(poison, 3, -8);
+    expect(none, poison, Choice::Flee, &poison);
+    expect(food, poison, Choice::Flee, &poison);
+    expect(none, none, Choice::Wander, nullptr);
+    put_beside(food, 0, 0); // steered to, though the way there has no length
+    expect(food, none, Choice::Seek, &food);
+    living.impulse[0] = 0; // never flees
+    put_beside(poison, 3, -8);
+    expect(none, poison, Choice::Wander, nullptr);
+}
+
+TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
+    Meadow meadow;
+    meadow.area = {to_units(1600.0), to_units(1200.0)};
+    base::RandomStream random{base::RandomKey{base::Seed{3}, base::Purpose::ScenarioTest, 0, 0}, 0};
+    const auto place = [&] { return Place{to_units(random.uniform(20, 1580)), to_units(random.uniform(20, 1180))}; };
+    for (int i = 0; i < 700; ++i) {
+        const Place at = place();
+        evolution::Chromosome genes;
+        for (auto& gene : genes)
+            gene = static_cast<float>(random.uniform(60, 120));
+        meadow.add_organism(at.x, at.y, genes);
+    }
+    std::vector<Place> foods(200), poisons(200);
+    std::ranges::generate(foods, place);
+    std::ranges::generate(poisons, place);
+    meadow.put_items(foods, poisons, 4, true);
+    meadow.begin();
+    meadow.bodies.remove(5); // who is gone is not asked for
+    meadow.sight.remove(5);
+
+    std::vector<std::uint32_t> who; // more than a block of them, from the last to the first
+    for (std::uint32_t i = 700; i-- > 0;)
+        if (i != 5)
+            who.push_back(i);
+    std::array<int, 4> counts{};
+    for (int tick = 0; tick < 40; ++tick) {
+        meadow.perceive();
+        std::vector<Intention> told(who.size());
+        foresee(meadow.bodies, meadow.living, meadow.food, meadow.poison, meadow.rules, meadow.key, meadow.tick, who,
+                told);
+        std::vector<float> x(meadow.bodies.x.size()), y(x);
+        for (std::size_t block = 0; block < physics::block_count(700); ++block) {
+            ChosenForces forces;
+            const base::Range range = physics::circles_of_block(700, block);
+            auto copy = meadow.living; // whose health is lost instead
+            live_and_choose(organism_columns(meadow.bodies, copy, meadow.sight, meadow.food, meadow.poison),
+                            meadow.rules, meadow.key, meadow.tick, range, forces);
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                x[i] = forces.x[i - range.begin];
+                y[i] = forces.y[i - range.begin];
+            }
+        }
+        for (std::size_t k = 0; k < who.size(); ++k) {
+            ASSERT_EQ(told[k].force_x, x[who[k]]) << "body " << who[k] << " in tick " << meadow.tick;
+            ASSERT_EQ(told[k].force_y, y[who[k]]) << "body " << who[k] << " in tick " << meadow.tick;
+            ++counts[static_cast<std::size_t>(told[k].choice)];
+        }
+        meadow.act();
+        meadow.eat();
+    }
+    EXPECT_EQ(counts[0], 0);
+    for (const int choice : {1, 2, 3})
+        EXPECT_GT(counts[static_cast<std::size_t>(choice)], 100) << "choice " << choice;
 }
 
 } // namespace

@@ -202,6 +202,51 @@ TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
     }
 }
 
+TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
+    // All are survivors and nothing changes a chromosome, so everybody has that of a founder.
+    parameters.island_count = 3;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 2;
+    parameters.mutation_chance = 0;
+    parameters.survivors = 1;
+    World world = make();
+    std::vector<evolution::Chromosome> first;
+    for (const Island& island : world.islands())
+        for (std::uint32_t id = 0; id < 12; ++id) {
+            EXPECT_EQ(world.founders(island)[id], first.size());
+            first.emplace_back(island.born().genes.col(id));
+        }
+    bool came_from_elsewhere = false;
+    const auto expect_founders = [&](const World& of) {
+        for (const Island& island : of.islands()) {
+            ASSERT_EQ(of.founders(island).size(), 12u);
+            for (std::uint32_t id = 0; id < 12; ++id) {
+                const std::uint32_t founder = of.founders(island)[id];
+                EXPECT_TRUE((island.born().genes.col(id) == first[founder]).all())
+                    << "organism " << id << " of generation " << of.moment().generation;
+                came_from_elsewhere |= founder / 12 != island.index();
+            }
+        }
+    };
+    for (int generation = 0; generation < 8; ++generation) {
+        world.advance_tick(executor);
+        expect_founders(world);
+    }
+    EXPECT_TRUE(came_from_elsewhere);
+    expect_founders(world.at_its_opening(executor));
+
+    std::vector<evolution::NextGeneration> born;
+    for (const Island& island : world.islands())
+        born.push_back(island.born());
+    World later{base::Seed{5}, world.opening(), std::move(born), {}, executor};
+    later.advance_tick(executor);
+    later.turn_over(executor);
+    EXPECT_TRUE(later.founders(later.islands()[0]).empty()) << "who came later does not know";
+    later.reset(base::Seed{6});
+    EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
+}
+
 TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
     const auto outcome_with = [&](std::vector<Assignment> assignments) {
         World world{*assign(parameters, assignments), base::Seed{5}};
