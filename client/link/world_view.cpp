@@ -37,6 +37,12 @@ float between(float from, float to, double blend) {
 } // namespace
 
 void WorldView::add(std::shared_ptr<const wire::Picture> picture, Clock::time_point arrived) {
+    if (previous_ && picture->about.tick() == latest_->about.tick() && follows(picture->about, latest_->about)) {
+        match_ = match(picture->organisms.id, previous_->organisms.id);
+        crate_match_ = match(picture->crates.id, previous_->crates.id);
+        latest_ = std::move(picture);
+        return;
+    }
     if (latest_ && follows(picture->about, latest_->about)) {
         glide_ = std::min(std::chrono::duration<double>{arrived - latest_arrived_}, glide_max);
         match_ = match(picture->organisms.id, latest_->organisms.id);

@@ -25,12 +25,14 @@ class WorldView {
     };
 
     /// Pictures more simulated seconds apart than this are not blended: the straight way between them means nothing.
-    static constexpr double blended_s_max = 0.5;
+    /// 60 times as fast as real time, at 30 pictures a second.
+    static constexpr double blended_s_max = 2;
     /// The way from one picture to the next takes as long as lay between their arrivals, and no longer than this: a
     /// world that was paused shows its next tick now.
     static constexpr std::chrono::duration<double> glide_max{0.25};
 
-    /// A picture of another run, generation or time back stands alone: nobody glides from one life to the next.
+    /// A picture of another run, generation or time back stands alone: nobody glides from one life to the next. One of
+    /// the same tick, in which more or something else is seen, takes the place of the latest.
     void add(std::shared_ptr<const wire::Picture> picture, Clock::time_point arrived);
 
     /// Forgets everything: another world or island is shown.

@@ -50,6 +50,12 @@ void Camera::pan(Point pixels) {
     fitted_ = false;
 }
 
+void Camera::look_at(Point world) {
+    centre_ = world;
+    stay_on_island();
+    fitted_ = false;
+}
+
 void Camera::zoom_at(Point screen, double factor) {
     const Point held = to_world(screen);
     zoom_ = std::clamp(zoom_ * factor, zoom_min(), zoom_max);

@@ -40,6 +40,9 @@ class Camera {
     /// Moves the picture by so many pixels, as a hand moves paper; the middle of the viewport stays on the island.
     void pan(Point pixels);
 
+    /// Puts a place of the world, on the island, into the middle of the viewport.
+    void look_at(Point world);
+
     /// Enlarges by `factor` around what is seen at `screen`, which stays there; within zoom_min() to zoom_max.
     void zoom_at(Point screen, double factor);
 

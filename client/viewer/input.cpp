@@ -21,6 +21,11 @@ constexpr KeyBinding key_bindings[] = {
     {Key::W, Action::NextWorld},
     {Key::F, Action::Fit},
     {Key::Home, Action::Fit},
+    {Key::C, Action::NextColouring},
+    {Key::V, Action::Radii},
+    {Key::G, Action::Forces},
+    {Key::T, Action::Trails},
+    {Key::L, Action::Follow},
     {Key::S, Action::Screenshot},
     {Key::H, Action::Help},
     {Key::F1, Action::Help},
@@ -49,6 +54,10 @@ constexpr HelpLine lines[] = {
     {"Wheel", "zoom at the cursor"},
     {"Drag   arrow keys", "move the picture"},
     {"F   Home", "show the whole island"},
+    {"Click", "select an organism; beside them: nobody"},
+    {"L", "follow who is selected; again: no more"},
+    {"C", "colour by a gene, health, family, nothing"},
+    {"V   G   T", "show how far they see, forces, trails"},
     {"S", "save the picture as PNG"},
     {"H   F1", "show or hide this help"},
     {"Q   Esc", "quit; the worlds run on"},
@@ -56,6 +65,7 @@ constexpr HelpLine lines[] = {
 
 constexpr double zoom_of_one_notch = 1.2;
 constexpr double pan_pixels_per_s = 700;
+constexpr double click_pixels_max = 4;
 
 } // namespace
 
@@ -92,6 +102,7 @@ std::optional<Action> Input::handle(const sf::Event& event, Captured captured, C
     case sf::Event::LostFocus: // the releases will be told to somebody else
         held_.clear();
         dragging_ = false;
+        pressed_at_.reset();
         break;
     case sf::Event::KeyPressed:
         if (!captured.keyboard) {
@@ -113,14 +124,20 @@ std::optional<Action> Input::handle(const sf::Event& event, Captured captured, C
     case sf::Event::MouseButtonPressed:
         dragging_ = !captured.mouse && event.mouseButton.button != sf::Mouse::Right;
         mouse_ = Point{double(event.mouseButton.x), double(event.mouseButton.y)};
+        pressed_at_ = dragging_ && event.mouseButton.button == sf::Mouse::Left ? mouse_ : std::nullopt;
         break;
     case sf::Event::MouseButtonReleased:
         dragging_ = false;
+        clicked_ = std::exchange(pressed_at_, std::nullopt);
         break;
     case sf::Event::MouseMoved: {
         const Point now{double(event.mouseMove.x), double(event.mouseMove.y)};
+        if (pressed_at_ && std::hypot(now.x - pressed_at_->x, now.y - pressed_at_->y) < click_pixels_max) {
+            break; // a hand that clicks trembles
+        }
         if (dragging_ && mouse_) {
             camera.pan({now.x - mouse_->x, now.y - mouse_->y});
+            pressed_at_.reset();
         }
         mouse_ = now;
         break;

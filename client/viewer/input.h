@@ -15,6 +15,7 @@
 #include <set>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -31,6 +32,11 @@ enum class Action {
     NextWorld,
     Fit,
     Screenshot,
+    NextColouring,
+    Radii,
+    Forces,
+    Trails,
+    Follow,
     Help,
     Close, // the help, or else the window
     Quit,
@@ -61,11 +67,15 @@ class Input {
     /// Where the mouse is, if it is in the window and not moving the picture.
     std::optional<Point> pointed_at() const { return dragging_ ? std::nullopt : mouse_; }
 
+    /// Where a button was pressed and let go without moving the picture, once.
+    std::optional<Point> take_click() { return std::exchange(clicked_, std::nullopt); }
+
   private:
     std::optional<Action> press(const sf::Event::KeyEvent& key);
 
     std::set<sf::Keyboard::Key> held_;
     std::optional<Point> mouse_;
+    std::optional<Point> pressed_at_, clicked_;
     bool dragging_ = false;
 };
 

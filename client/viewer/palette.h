@@ -1,9 +1,13 @@
 // Palette: every colour of the window.
 //
 // Food and poison differ in lightness as well as in hue, so that they can be told apart without seeing red and green.
+// What stands for a number comes from a ramp, which gets lighter all the way; what stands for a kind from Okabe and
+// Ito.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace evod::viewer {
 
@@ -25,6 +29,13 @@ constexpr Colour crate_edge{104, 74, 38};
 constexpr Colour obstacle{92, 94, 100};
 constexpr Colour health{20, 20, 24};
 
+constexpr Colour organism_outline{20, 20, 24};
+constexpr Colour selected{255, 255, 255};
+constexpr Colour food_radius{30, 110, 40, 150};
+constexpr Colour poison_radius{196, 22, 36, 150};
+constexpr Colour trail{70, 30, 100};
+constexpr Colour unknown{140, 140, 144}; // what has no value, or is of no family that has a colour
+
 constexpr Colour strip{230, 230, 232};
 constexpr Colour strip_edge{150, 150, 154};
 constexpr Colour text{24, 24, 28};
@@ -35,6 +46,35 @@ constexpr Colour stopped{168, 84, 0};
 constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
+
+/// Colours of rising numbers.
+enum class Ramp { Viridis, Cividis };
+constexpr std::array<Ramp, 2> ramps{Ramp::Viridis, Ramp::Cividis};
+std::string_view name_of(Ramp ramp);
+
+/// The colour of a share of the ramp; below 0 and above 1 its ends, of what is not a number `unknown`.
+///
+/// Source   every 15th of the 256 colours of matplotlib, between them straight. Viridis: S. van der Walt and N. Smith,
+///          2015. Cividis: Nuñez, Anderton & Renslow 2018, PLoS ONE 13(7), doi:10.1371/journal.pone.0199239.
+Colour at(Ramp ramp, double share);
+
+/// Colours of kinds, which can be told apart with every kind of colour vision.
+///
+/// Source   Okabe & Ito 2002, "Color Universal Design", without the black, which is the walls'.
+constexpr std::array<Colour, 7> kinds{{
+    {230, 159, 0},  // orange
+    {86, 180, 233}, // sky blue
+    {0, 158, 115},  // bluish green
+    {240, 228, 66}, // yellow
+    {0, 114, 178},  // blue
+    {213, 94, 0},   // vermilion
+    {204, 121, 167} // reddish purple
+}};
+
+// What an organism is about to do.
+constexpr Colour wanders{90, 90, 96};
+constexpr Colour seeks = kinds[4];
+constexpr Colour flees = kinds[5];
 
 } // namespace palette
 } // namespace evod::viewer

@@ -1,17 +1,21 @@
-// Scene: an island as it is seen: walls, food, poison, crates, obstacles, and organisms with their health above them.
+// Scene: an island as it is seen: walls, food, poison, crates, obstacles, organisms with their health above them, and
+// what the Sight adds to it: colours, radii, forces, trails, densities.
 //
-// Two halves. What goes where is computed by pure functions; Scene keeps the shapes on the graphics card and draws
-// them. Items are uploaded with each picture, organisms and crates, which glide from one picture to the next, each
-// time.
+// Two halves. What goes where is computed by pure functions (marks.h); Scene keeps the shapes on the graphics card and
+// draws them, all of a kind in one call. Items are uploaded with each picture, organisms and crates, which glide from
+// one picture to the next, each time.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
 
 #include "client/link/world_view.h"
 #include "client/viewer/camera.h"
+#include "client/viewer/marks.h"
 #include "client/viewer/shapes.h"
+#include "client/viewer/sight.h"
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -35,25 +39,50 @@ std::optional<std::size_t> organism_at(Point screen, const wire::Picture& pictur
 
 class Scene {
   public:
+    /// Organisms that stand out, by index in the picture.
+    struct Marked {
+        std::optional<std::size_t> pointed_at, selected;
+    };
+
     /// Draws the latest picture of `view`, its organisms and crates at `blend`; nothing but the background without one.
-    ///
-    /// pointed_at  index of the organism to stand out
     void draw(link::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
-              std::optional<std::size_t> pointed_at);
+              const Sight& sight, const Marked& marked);
+
+    /// What the densities that were drawn last mean; nullopt if none were.
+    const std::optional<Scale>& density_scale() const { return density_scale_; }
+    double density_cell_px() const { return density_cell_px_; }
 
     /// Adds the health of the organisms that are seen. To be called after draw(), with the same view, blend and camera.
     void draw_labels(link::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font);
 
   private:
     void upload_picture(const std::shared_ptr<const wire::Picture>& picture, const Camera& camera);
+    void draw_items(const wire::Picture& picture);
+    void draw_organisms(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_density(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_radii(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_forces(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_trails(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
     void set_circles(Layer& layer, const wire::ItemPicture& items, float radius);
     void set_boxes(Layer& layer, const wire::BoxPicture& boxes, const std::vector<float>& x,
                    const std::vector<float>& y);
 
     ShapePainter painter_;
-    Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_;
+    Layer walls_, food_, poison_, obstacles_, crates_, organisms_, pointed_at_, selected_;
+    Layer dots_, density_, radii_, arrows_, targets_, trail_ends_;
+    /// The ways from one picture of the trails to the next, uploaded once.
+    struct Ways {
+        std::shared_ptr<const wire::Picture> from, to;
+        std::unique_ptr<Layer> layer;
+    };
+    std::deque<Ways> ways_;
     std::shared_ptr<const wire::Picture> uploaded_;
-    std::vector<Shape> shapes_;         // being put together
+    std::optional<Scale> density_scale_;
+    double density_cell_px_ = 1;
+    std::vector<Shape> shapes_; // being put together
+    std::vector<Line> lines_;
+    std::vector<Colour> colours_;
+    ColouredLines arrow_lines_, target_lines_;
     std::vector<std::size_t> labelled_; // organisms that are seen
 };
 

@@ -16,20 +16,36 @@ namespace {
 // Positions are taken relative to the camera's centre before they are enlarged: their difference is exact where their
 // product with the zoom would not be.
 constexpr const char* vertex_source = R"(#version 330 core
-uniform samplerBuffer shapes;        // centre, half size
+uniform samplerBuffer shapes;        // centre, half size; of lines and arrows: from where to where
+uniform samplerBuffer colours;
+uniform int form;                    // Form
+uniform bool coloured;               // each shape has a colour of its own
 uniform vec2 pixel_size;             // of one pixel, in units of the clip space
 uniform vec2 origin;                 // of the viewport's middle, in pixels
 uniform vec2 centre;
-uniform float zoom, half_pixels_min;
-out vec2 place;                      // from the shape's centre, in pixels
+uniform float zoom, half_pixels_min, line_pixels;
+uniform vec4 fill;
+out vec2 place;                      // from the shape's centre, in pixels, along its own axes
 flat out vec2 half_size;
+flat out vec4 own_fill;
 void main() {
-    vec4 shape = texelFetch(shapes, gl_VertexID / 3);
+    int index = gl_VertexID / 3;
+    vec4 shape = texelFetch(shapes, index);
+    own_fill = coloured ? texelFetch(colours, index) : fill;
+    vec2 middle = (shape.xy - centre) * zoom, along = vec2(1.0, 0.0), around = vec2(1.0);
     half_size = max(shape.zw * zoom, vec2(half_pixels_min));
+    if (form >= 2) {
+        vec2 way = (shape.zw - shape.xy) * zoom;
+        float pixels = length(way);
+        middle += way / 2.0;
+        along = pixels > 0.0 ? way / pixels : along;
+        half_size = vec2(pixels, line_pixels) / 2.0;
+        around += form == 3 ? vec2(line_pixels, 5.0) : vec2(line_pixels);
+    }
     int corner_index = gl_VertexID % 3; // of one triangle, which holds the rectangle around the shape
     vec2 corner = vec2(corner_index == 1, corner_index == 2) * 4.0 - 1.0;
-    place = corner * (half_size + 1.0);
-    vec2 pixel = origin + (shape.xy - centre) * zoom + place;
+    place = corner * (half_size + around);
+    vec2 pixel = origin + middle + along * place.x + vec2(-along.y, along.x) * place.y;
     gl_Position = vec4(pixel.x * pixel_size.x - 1.0, 1.0 - pixel.y * pixel_size.y, 0.0, 1.0);
 }
 )";
@@ -38,16 +54,31 @@ void main() {
 constexpr const char* fragment_source = R"(#version 330 core
 in vec2 place;
 flat in vec2 half_size;
-uniform bool round_shape;
-uniform vec4 fill, edge;
+flat in vec4 own_fill;
+uniform int form;
+uniform vec4 edge;
 uniform float edge_pixels;
 out vec4 colour;                     // its alpha multiplied in
-void main() {
+float outside_of() {
     vec2 beyond = abs(place) - half_size;
-    float outside = round_shape ? length(place) - half_size.x : max(beyond.x, beyond.y);
+    if (form == 0) {
+        return length(place) - half_size.x;
+    }
+    if (form == 1) {
+        return max(beyond.x, beyond.y);
+    }
+    float outside = length(vec2(max(beyond.x, 0.0), place.y)) - half_size.y;
+    if (form == 3) {
+        float head = min(9.0, half_size.x), behind_tip = half_size.x - place.x;
+        outside = min(outside, max((abs(place.y) - behind_tip / 2.0) * 0.894, behind_tip - head));
+    }
+    return outside;
+}
+void main() {
+    float outside = outside_of();
     float whole = clamp(0.5 - outside, 0.0, 1.0);
     float inner = clamp(0.5 - outside - edge_pixels, 0.0, 1.0);
-    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(fill.rgb, 1.0) * fill.a * inner;
+    colour = vec4(edge.rgb, 1.0) * edge.a * (whole - inner) + vec4(own_fill.rgb, 1.0) * own_fill.a * inner;
 }
 )";
 
@@ -71,24 +102,43 @@ void set_colour(int location, Colour colour) {
 
 } // namespace
 
-Layer::Layer() {
-    glGenBuffers(1, &buffer_);
-    glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
-    glGenTextures(1, &texture_);
-    glBindTexture(GL_TEXTURE_BUFFER, texture_);
-    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer_);
+Layer::Column::Column(unsigned format) {
+    glGenBuffers(1, &buffer);
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer);
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, format, buffer);
     glBindTexture(GL_TEXTURE_BUFFER, 0);
 }
 
-Layer::~Layer() {
-    glDeleteTextures(1, &texture_);
-    glDeleteBuffers(1, &buffer_);
+Layer::Column::~Column() {
+    glDeleteTextures(1, &texture);
+    glDeleteBuffers(1, &buffer);
 }
 
-void Layer::set(std::span<const Shape> shapes) {
-    count_ = shapes.size();
-    glBindBuffer(GL_TEXTURE_BUFFER, buffer_);
-    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(shapes.size_bytes()), shapes.data(), GL_STREAM_DRAW);
+void Layer::Column::set(std::span<const std::byte> bytes) {
+    glBindBuffer(GL_TEXTURE_BUFFER, buffer);
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes.size()), bytes.data(), GL_STREAM_DRAW);
+}
+
+Layer::Layer() : shapes_{GL_RGBA32F}, colours_{GL_RGBA8} {}
+
+void Layer::set(std::span<const Shape> shapes, std::span<const Colour> colours) {
+    upload(std::as_bytes(shapes), colours);
+}
+
+void Layer::set(std::span<const Line> lines, std::span<const Colour> colours) {
+    upload(std::as_bytes(lines), colours);
+}
+
+void Layer::upload(std::span<const std::byte> shapes, std::span<const Colour> colours) {
+    static_assert(sizeof(Shape) == 16 && sizeof(Line) == 16 && sizeof(Colour) == 4);
+    count_ = shapes.size() / sizeof(Shape);
+    coloured_ = !colours.empty();
+    shapes_.set(shapes);
+    if (coloured_) {
+        colours_.set(std::as_bytes(colours));
+    }
 }
 
 ShapePainter::ShapePainter() {
@@ -106,11 +156,17 @@ ShapePainter::ShapePainter() {
     origin_ = uniform("origin");
     centre_ = uniform("centre");
     zoom_ = uniform("zoom");
-    round_ = uniform("round_shape");
+    form_ = uniform("form");
+    coloured_ = uniform("coloured");
     fill_ = uniform("fill");
     edge_ = uniform("edge");
     edge_pixels_ = uniform("edge_pixels");
     half_pixels_min_ = uniform("half_pixels_min");
+    line_pixels_ = uniform("line_pixels");
+    glUseProgram(program_);
+    glUniform1i(uniform("shapes"), 0);
+    glUniform1i(uniform("colours"), 1);
+    glUseProgram(0);
 }
 
 ShapePainter::~ShapePainter() {
@@ -146,16 +202,24 @@ void ShapePainter::draw(const Layer& layer, const Look& look) {
     if (layer.count_ == 0) {
         return;
     }
-    glUniform1i(round_, look.round);
+    glUniform1i(form_, static_cast<int>(look.form));
+    glUniform1i(coloured_, layer.coloured_);
     set_colour(fill_, look.fill);
     set_colour(edge_, look.edge);
     glUniform1f(edge_pixels_, look.edge_pixels);
     glUniform1f(half_pixels_min_, look.half_pixels_min);
-    glBindTexture(GL_TEXTURE_BUFFER, layer.texture_);
+    glUniform1f(line_pixels_, look.line_pixels);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_BUFFER, layer.colours_.texture);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_BUFFER, layer.shapes_.texture);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(3 * layer.count_));
 }
 
 void ShapePainter::end() {
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_BUFFER, 0);
     glBindVertexArray(0);
     glUseProgram(0);

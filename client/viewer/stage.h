@@ -6,9 +6,11 @@
 
 #include "client/viewer/camera.h"
 #include "client/viewer/gui.h"
+#include "client/viewer/minimap.h"
 #include "client/viewer/overlay.h"
 #include "client/viewer/panels/panels.h"
 #include "client/viewer/scene.h"
+#include "client/viewer/sight.h"
 #include "client/viewer/watch.h"
 
 #include <SFML/Graphics/Image.hpp>
@@ -37,12 +39,20 @@ class Stage {
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
+    Sight& sight() { return sight_; }
+
+    /// Selects who was seen there in the picture that was drawn last, and shows the panel that tells of it; nobody,
+    /// where nobody is.
+    void select_at(Watch& watch, const Camera& camera, Point screen);
 
   private:
     Gui gui_;
     Scene scene_;
     Overlay overlay_;
     Panels panels_;
+    Sight sight_;
+    Minimap minimap_;
+    double blend_ = 1; // of the picture that was drawn last
     Clock::time_point drawn_{};
 };
 

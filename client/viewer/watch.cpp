@@ -26,7 +26,26 @@ void Watch::subscribe() {
     subscription.set_world(wanted_.world);
     subscription.set_island(wanted_.island);
     subscription.set_rate_hz(wanted_.rate_hz);
+    if (pictures_view_) {
+        *subscription.mutable_view() = *pictures_view_;
+    }
     pictures_ = connection_.subscribe(subscription);
+}
+
+/// Once a second of everything, as densities, beside a view; and nothing without one.
+void Watch::subscribe_overview() {
+    if (overview_) {
+        connection_.unsubscribe(*std::exchange(overview_, std::nullopt));
+        overview_picture_ = nullptr;
+    }
+    if (pictures_view_) {
+        evod::v1::SubscribeSnapshots subscription;
+        subscription.set_world(wanted_.world);
+        subscription.set_island(wanted_.island);
+        subscription.set_rate_hz(1);
+        subscription.mutable_view()->set_detail(evod::v1::DETAIL_DENSITY);
+        overview_ = connection_.subscribe(subscription);
+    }
 }
 
 void Watch::look_at(std::string world, std::uint32_t island) {
@@ -38,10 +57,24 @@ void Watch::look_at(std::string world, std::uint32_t island) {
     wanted_.world = std::move(world);
     wanted_.island = island;
     selected_.reset();
+    pictures_view_.reset();
+    subscribe_overview();
     view_.clear();
     connection_.unsubscribe(pictures_);
     subscribe();
     ask_state();
+}
+
+void Watch::set_view(std::optional<evod::v1::View> view) {
+    const bool had_one = pictures_view_.has_value();
+    pictures_view_ = std::move(view);
+    if (had_one && pictures_view_) {
+        connection_.set_view(pictures_, *pictures_view_);
+    } else if (had_one || pictures_view_) { // a subscription has views for as long as it lives, or none
+        connection_.unsubscribe(pictures_);
+        subscribe();
+        subscribe_overview();
+    }
 }
 
 void Watch::turn_islands(int by) {
@@ -114,6 +147,9 @@ bool Watch::update(link::WorldView::Clock::time_point now) {
     new_events_ = connection_.take_events();
     for (const evod::v1::Event& event : new_events_) {
         take_event(event);
+    }
+    if (auto overview = overview_ ? connection_.take_picture(*overview_, wanted_.island) : nullptr) {
+        overview_picture_ = std::move(overview);
     }
     auto picture = connection_.take_picture(pictures_, wanted_.island);
     if (!picture) {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -54,6 +55,8 @@ class Watch {
 
     // What is looked at.
     void turn_islands(int by);
+    /// What of the island is shown; nullopt, as at first and with each new place: everything, in whole pictures.
+    void set_view(std::optional<evod::v1::View> view);
     void next_world();
 
     /// The organism that panels tell of and the camera may follow: an id of the generation that runs.
@@ -63,6 +66,8 @@ class Watch {
     // What is known.
     link::WorldView& view() { return view_; }
     const wire::Picture* picture() const { return view_.latest().get(); }
+    /// How many there are where on all of the island, now and then, while a view is set; else null.
+    const wire::Picture* overview() const { return overview_picture_.get(); }
     const RunControl& control() const { return control_; }
     /// Of the generation before, on this island; null in the first.
     const evod::v1::GenerationStatistics* last_generation() const;
@@ -87,6 +92,7 @@ class Watch {
     };
 
     void subscribe();
+    void subscribe_overview();
     void look_at(std::string world, std::uint32_t island);
     void send(std::optional<evod::v1::Request> request);
     void ask_state();
@@ -100,6 +106,9 @@ class Watch {
     Wanted wanted_;
     link::Connection connection_;
     link::SubscriptionHandle pictures_, events_;
+    std::optional<link::SubscriptionHandle> overview_;
+    std::shared_ptr<const wire::Picture> overview_picture_;
+    std::optional<evod::v1::View> pictures_view_;
     link::WorldView view_;
     RunControl control_;
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island

@@ -12,6 +12,10 @@ namespace {
 // The screen paces the window where it can; this is for where it cannot, and too short to miss a beat at 60 Hz.
 constexpr std::chrono::milliseconds frame_min{15};
 
+void toggle(bool& shown) {
+    shown = !shown;
+}
+
 } // namespace
 
 sf::ContextSettings context_settings() {
@@ -57,6 +61,9 @@ void Window::handle_events() {
         if (const auto action = input_.handle(event, stage_.gui().captured(), camera_)) {
             carry_out(*action);
         }
+        if (const auto click = input_.take_click()) {
+            stage_.select_at(watch_, camera_, *click);
+        }
     }
 }
 
@@ -84,6 +91,16 @@ void Window::carry_out(Action action) {
         return watch_.next_world();
     case Action::Fit:
         return camera_.fit();
+    case Action::NextColouring:
+        return stage_.sight().next_colouring();
+    case Action::Radii:
+        return toggle(stage_.sight().shown.radii);
+    case Action::Forces:
+        return toggle(stage_.sight().shown.forces);
+    case Action::Trails:
+        return toggle(stage_.sight().shown.trails);
+    case Action::Follow:
+        return stage_.sight().toggle_following(watch_);
     case Action::Screenshot:
         return save_screenshot();
     case Action::Help:

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "client/viewer/gui.h"
+#include "client/viewer/sight.h"
 #include "client/viewer/watch.h"
 
 #include <string_view>
@@ -17,6 +18,7 @@ class Panel {
         Watch& watch;
         const Gui& gui;
         link::WorldView::Clock::time_point now;
+        Sight& sight;
     };
 
     virtual ~Panel() = default;

@@ -1,5 +1,8 @@
 #include "client/viewer/panels/panels.h"
 
+#include "client/viewer/panels/organism_panel.h"
+#include "client/viewer/panels/view_panel.h"
+
 #include <imgui.h>
 
 #include <string>
@@ -8,11 +11,19 @@ namespace evod::viewer {
 
 Panels::Panels() {
     // places_.push_back({std::make_unique<ParametersPanel>()});
+    places_.push_back({std::make_unique<ViewPanel>()});
+    places_.push_back({std::make_unique<OrganismPanel>()});
 }
 
 void Panels::toggle(std::size_t index) {
     if (index < places_.size()) {
         places_[index].shown = !places_[index].shown;
+    }
+}
+
+void Panels::show(std::string_view title) {
+    for (Place& place : places_) {
+        place.shown = place.shown || place.panel->title() == title;
     }
 }
 

@@ -6,6 +6,7 @@
 #include "client/viewer/panels/panel.h"
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace evod::viewer {
@@ -16,6 +17,9 @@ class Panels {
 
     /// Shows or hides panel `index`; one that is not there is nothing.
     void toggle(std::size_t index);
+
+    /// Shows the panel of that title.
+    void show(std::string_view title);
 
     /// Between Gui::begin() and Gui::draw().
     void build(Panel::Context context);

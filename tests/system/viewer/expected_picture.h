@@ -35,7 +35,8 @@ class ExpectedPicture {
         std::string first; // "at (12, 40): expected …, is …"
     };
 
-    ExpectedPicture(const wire::Picture& picture, const Camera& camera)
+    /// organisms  by index in the picture: discs of these colours with a thin line around them; empty: rings
+    ExpectedPicture(const wire::Picture& picture, const Camera& camera, const std::vector<Colour>& organisms = {})
         : camera_{camera}
         , left_{static_cast<unsigned>(camera.viewport().left)}
         , top_{static_cast<unsigned>(camera.viewport().top)}
@@ -62,7 +63,11 @@ class ExpectedPicture {
         items(picture.food, palette::food);
         const auto& all = picture.organisms;
         for (std::size_t i = 0; i < all.x_px.size(); ++i) {
-            circle(all.x_px[i], all.y_px[i], all.radius_px[i], 2, palette::organism, {});
+            if (organisms.empty()) {
+                circle(all.x_px[i], all.y_px[i], all.radius_px[i], 2, palette::organism, {});
+            } else {
+                circle(all.x_px[i], all.y_px[i], all.radius_px[i], 1, palette::organism_outline, organisms[i]);
+            }
         }
         for (std::size_t i = 0; i < all.x_px.size(); ++i) { // numbers are above everything
             const Point centre = camera_.to_screen({all.x_px[i], all.y_px[i]});
@@ -71,6 +76,12 @@ class ExpectedPicture {
             const double top = below ? centre.y + radius : centre.y - radius - 17;
             paint(centre.x - 32, top, centre.x + 32, top + 17, [](double, double) { return open; });
         }
+    }
+
+    /// Leaves open what is in a rectangle of the screen, where something is written.
+    void leave_open(const Rectangle& written) {
+        paint(written.left, written.top, written.left + written.width, written.top + written.height,
+              [](double, double) { return open; });
     }
 
     Mismatch compare(const sf::Image& image) const {

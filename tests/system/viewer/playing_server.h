@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/unit/link/fake_server.h"
+#include "tests/unit/viewer/population_pages.h"
 
 #include <atomic>
 #include <string>
@@ -49,6 +50,12 @@ class PlayingServer {
                 session.answer_subscription(request, 8);
                 continue;
             }
+            if (request.has_get_population()) {
+                // Ten of them: those that the picture shows, and dead ones.
+                *answer.mutable_response()->mutable_population() = page_of(0, 10, 10, picture_.generation());
+                session.send(answer);
+                continue;
+            }
             command_count_ += !request.has_get_statistics();
             auto& statistics = *answer.mutable_response()->mutable_statistics();
             auto& world = *statistics.mutable_world();
@@ -57,6 +64,8 @@ class PlayingServer {
             world.set_tick(picture_.tick());
             world.set_state(picture_.state());
             *world.mutable_speed() = picture_.speed();
+            world.add_gene_names("impulse");
+            world.add_gene_names("food_radius");
             auto& last = *statistics.add_last();
             last.set_island(picture_.island());
             last.set_generation(picture_.generation() - 1);

@@ -71,7 +71,17 @@ TEST(WorldView, DoesNotBlendLivesOrLongLeaps) {
     EXPECT_TRUE(alone_after([](auto& about) { about.set_world("another"); }));
     EXPECT_TRUE(alone_after([](auto& about) { about.set_island(1); }));
     EXPECT_TRUE(alone_after([](auto& about) { about.set_tick(9); }));
-    EXPECT_TRUE(alone_after([](auto& about) { about.set_simulated_s(1); }));
+    EXPECT_TRUE(alone_after([](auto& about) { about.set_simulated_s(2.5); }));
+}
+
+TEST(WorldView, MoreOfTheSameTickTakesThePlaceOfTheLatest) {
+    WorldView view;
+    view.add(picture(10, {{1, 0, 0}, {2, 0, 0}}), start);
+    view.add(picture(12, {{1, 4, 8}}), start + 40ms);
+    view.add(picture(12, {{1, 4, 8}, {2, 8, 8}, {3, 5, 5}}), start + 50ms); // another region was asked for
+    const double blend = view.blend_at(start + 60ms);
+    EXPECT_DOUBLE_EQ(blend, 0.5);
+    EXPECT_EQ(view.organisms_at(blend).x_px, (std::vector<float>{2, 4, 5}));
 }
 
 TEST(WorldView, BlendsTheCratesThatBothPicturesShow) {

@@ -114,5 +114,18 @@ TEST(Camera, TellsWhatIsVisible) {
     EXPECT_TRUE(camera.visible().contains({500, 500}));
 }
 
+TEST(Camera, LooksAtAPlaceOfTheIsland) {
+    Camera camera;
+    camera.set_viewport({0, 0, 1000, 500});
+    camera.set_island(1000, 500);
+    const double zoom = camera.zoom();
+    camera.look_at({100, 200});
+    EXPECT_EQ(camera.centre(), (Point{100, 200}));
+    EXPECT_EQ(camera.zoom(), zoom);
+    EXPECT_FALSE(camera.fitted());
+    camera.look_at({-50, 9'000});
+    EXPECT_EQ(camera.centre(), (Point{0, 500}));
+}
+
 } // namespace
 } // namespace evod::viewer

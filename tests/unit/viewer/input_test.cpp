@@ -70,6 +70,11 @@ TEST_F(InputTest, EveryKeyOfTheHelpDoesWhatItSays) {
     EXPECT_EQ(handle(press(Key::W)), Action::NextWorld);
     EXPECT_EQ(handle(press(Key::F)), Action::Fit);
     EXPECT_EQ(handle(press(Key::Home)), Action::Fit);
+    EXPECT_EQ(handle(press(Key::C)), Action::NextColouring);
+    EXPECT_EQ(handle(press(Key::V)), Action::Radii);
+    EXPECT_EQ(handle(press(Key::G)), Action::Forces);
+    EXPECT_EQ(handle(press(Key::T)), Action::Trails);
+    EXPECT_EQ(handle(press(Key::L)), Action::Follow);
     EXPECT_EQ(handle(press(Key::S)), Action::Screenshot);
     EXPECT_EQ(handle(press(Key::H)), Action::Help);
     EXPECT_EQ(handle(press(Key::F1)), Action::Help);
@@ -126,6 +131,27 @@ TEST_F(InputTest, DraggingMovesThePictureWithTheMouse) {
     EXPECT_NEAR(after.x - before.x, 30, 1e-9);
     EXPECT_NEAR(after.y - before.y, -20, 1e-9);
     EXPECT_EQ(input.pointed_at(), (Point{500, 500}));
+}
+
+TEST_F(InputTest, AClickIsAPressThatDoesNotMoveThePicture) {
+    const Point centre = camera.centre();
+    handle(button(sf::Event::MouseButtonPressed, sf::Mouse::Left, 100, 100));
+    handle(moved(102, 101)); // a hand trembles
+    EXPECT_EQ(input.take_click(), std::nullopt);
+    handle(button(sf::Event::MouseButtonReleased, sf::Mouse::Left, 102, 101));
+    EXPECT_EQ(input.take_click(), (Point{100, 100}));
+    EXPECT_EQ(input.take_click(), std::nullopt);
+    EXPECT_EQ(camera.centre(), centre);
+
+    handle(button(sf::Event::MouseButtonPressed, sf::Mouse::Left, 100, 100));
+    handle(moved(130, 80));
+    handle(moved(100, 100)); // there and back is no click either
+    handle(button(sf::Event::MouseButtonReleased, sf::Mouse::Left, 100, 100));
+    EXPECT_EQ(input.take_click(), std::nullopt);
+
+    handle(button(sf::Event::MouseButtonPressed, sf::Mouse::Left, 100, 100), {.mouse = true});
+    handle(button(sf::Event::MouseButtonReleased, sf::Mouse::Left, 100, 100));
+    EXPECT_EQ(input.take_click(), std::nullopt) << "it was on a panel";
 }
 
 TEST_F(InputTest, TheWheelZoomsAtTheCursor) {

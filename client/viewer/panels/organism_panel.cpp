@@ -1,0 +1,177 @@
+#include "client/viewer/panels/organism_panel.h"
+
+#include "client/viewer/readout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace evod::viewer {
+
+namespace {
+
+ImU32 ink(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+template <class... Arguments>
+std::string print(const char* format, Arguments... arguments) {
+    char text[128];
+    std::snprintf(text, sizeof text, format, arguments...);
+    return text;
+}
+
+/// A gene between the least and the greatest of the population; a line across the bar is the mean.
+void build_gene(const std::string& name, float value, const Population::Range& range) {
+    constexpr float height = 12;
+    ImGui::TextUnformatted(name.c_str());
+    const std::string text = print("%.1f", double{value});
+    ImGui::SameLine(ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x);
+    ImGui::TextUnformatted(text.c_str());
+    const float width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const auto across = [&](float of) {
+        const float share = range.max > range.min ? (of - range.min) / (range.max - range.min) : 0.5f;
+        return corner.x + std::clamp(share, 0.f, 1.f) * width;
+    };
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(palette::background));
+    list.AddRectFilled(corner, {across(value), corner.y + height}, ink(palette::organism));
+    list.AddLine({across(range.mean), corner.y - 2}, {across(range.mean), corner.y + height + 2}, ink(palette::wall),
+                 2);
+    ImGui::Dummy({width, height});
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+                          double{range.mean});
+    }
+}
+
+void build_health(const std::vector<OrganismStory::Health>& points) {
+    constexpr float height = 70;
+    const float width = ImGui::GetContentRegionAvail().x;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(palette::background));
+    if (points.size() > 1) {
+        float most = 1;
+        for (const auto& point : points) {
+            most = std::max(most, point.health);
+        }
+        most = static_cast<float>(round_up(most));
+        const double begin = points.front().s, long_s = points.back().s - begin;
+        std::vector<ImVec2> line;
+        for (const auto& [s, health] : points) {
+            line.push_back(
+                {corner.x + static_cast<float>((s - begin) / long_s) * width, corner.y + (1 - health / most) * height});
+        }
+        list.AddPolyline(line.data(), static_cast<int>(line.size()), ink(palette::organism), 0, 1.5f);
+        list.AddText(corner, ink(palette::text_quiet), print("%g", double{most}).c_str());
+    }
+    ImGui::Dummy({width, height});
+    ImGui::TextDisabled("%s", points.size() > 1
+                                  ? ("health over " + shown_duration(points.back().s - points.front().s)).c_str()
+                                  : "health, from now on");
+}
+
+} // namespace
+
+std::string shown_fate(const OrganismStory& story) {
+    if (!story.info()) {
+        return "";
+    }
+    const evod::v1::OrganismInfo& info = *story.info();
+    if (!info.alive()) {
+        return print("dead of %s after %.1f s",
+                     info.cause_of_death() == evod::v1::CAUSE_OF_DEATH_POISONED ? "poison" : "hunger", info.lived_s());
+    }
+    return story.ended() ? print("last seen alive, after %.1f s; its generation is over", info.lived_s())
+                         : print("alive for %.1f s, health %.1f", info.lived_s(), info.health());
+}
+
+std::string shown_choice(const evod::v1::OrganismInfo& info) {
+    const std::string place = print(" at (%.0f, %.0f)", info.target_x_px(), info.target_y_px());
+    switch (info.choice()) {
+    case evod::v1::CHOICE_WANDER:
+        return "about to wander";
+    case evod::v1::CHOICE_SEEK:
+        return "about to seek food" + place;
+    case evod::v1::CHOICE_FLEE:
+        return "about to flee from poison" + place;
+    default:
+        return "";
+    }
+}
+
+std::string shown_children(const std::vector<OrganismStory::Child>& children) {
+    constexpr std::size_t shown_max = 40;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(children.size(), shown_max); ++i) {
+        const OrganismStory::Child& child = children[i];
+        text += (i == 0 ? "" : ", ") + std::to_string(child.id) +
+                (child.other_parent ? " (with " + std::to_string(*child.other_parent) + ")"
+                 : child.same_genes ? " (as it was)"
+                                    : " (alone)");
+    }
+    if (children.size() > shown_max) {
+        text += " and " + with_separators(children.size() - shown_max) + " more";
+    }
+    return text.empty() ? "nobody" : text;
+}
+
+void OrganismPanel::build(Context& context) {
+    const OrganismStory* story = context.sight.story();
+    if (story == nullptr) {
+        ImGui::TextWrapped("A click on an organism selects it.");
+        return;
+    }
+    ImGui::Text("Organism %u of generation %s", story->id(), with_separators(story->generation()).c_str());
+    if (!story->info()) {
+        ImGui::TextDisabled("…");
+        return;
+    }
+    const evod::v1::OrganismInfo& info = *story->info();
+    ImGui::TextWrapped("%s", shown_fate(*story).c_str());
+    if (!story->dead() && !story->ended()) {
+        ImGui::TextWrapped("%s", shown_choice(info).c_str());
+        bool following = context.sight.following();
+        if (ImGui::Checkbox("keep it in the middle (L)", &following)) {
+            context.sight.toggle_following(context.watch);
+        }
+    }
+    ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
+    ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
+    ImGui::Separator();
+    build_health(story->health());
+    ImGui::Separator();
+    const auto& names = context.sight.gene_names();
+    for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
+        const float value = info.genes(static_cast<int>(gene));
+        if (gene < story->ranges().size()) {
+            build_gene(names[gene], value, story->ranges()[gene]);
+        } else {
+            ImGui::Text("%s %.1f", names[gene].c_str(), double{value});
+        }
+    }
+    if (story->ranges().empty() && !context.sight.trouble().empty()) {
+        ImGui::TextWrapped("%s.", context.sight.trouble().c_str());
+    }
+    ImGui::Separator();
+    if (info.parents_size() == 2) {
+        ImGui::TextWrapped(info.parents(0) == info.parents(1) ? "Came of %u of the generation before"
+                                                              : "Came of %u and %u of the generation before",
+                           info.parents(0), info.parents(1));
+    } else {
+        ImGui::TextUnformatted("Came of nobody: of the first generation, or set there");
+    }
+    if (story->children()) {
+        ImGui::TextWrapped("Of it came in generation %s: %s", with_separators(story->generation() + 1).c_str(),
+                           shown_children(*story->children()).c_str());
+    } else if (!story->ended()) {
+        ImGui::TextDisabled("Who comes of it is seen in the next generation");
+    } else if (!story->waits_for_children()) {
+        ImGui::TextDisabled("Who came of it went by too fast to be seen");
+    }
+}
+
+} // namespace evod::viewer

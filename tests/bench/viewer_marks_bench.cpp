@@ -1,0 +1,110 @@
+// What one drawn frame costs the processor outside the graphics driver: making the shapes of everything that moves, by
+// what is switched on. No screen is needed. In each frame everybody is seen.
+#include "client/viewer/marks.h"
+
+#include "tests/unit/viewer/population_pages.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+
+namespace evod::viewer {
+namespace {
+
+constexpr double px2_per_organism = 46'080;
+
+std::shared_ptr<const wire::Picture> picture(std::size_t count, std::uint64_t tick) {
+    auto made = std::make_shared<wire::Picture>();
+    const double width = std::sqrt(static_cast<double>(count) * px2_per_organism);
+    made->about.set_width_px(width);
+    made->about.set_height_px(width);
+    made->about.set_tick(tick);
+    made->about.set_generation(1);
+    made->about.set_simulated_s(static_cast<double>(tick) / 60);
+    auto& all = made->organisms;
+    for (std::size_t i = 0; i < count; ++i) {
+        all.id.push_back(static_cast<std::uint32_t>(i));
+        all.x_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i * 977 + tick) * 1.1, width)));
+        all.y_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i * 1583 + tick) * 1.7, width)));
+    }
+    all.radius_px.assign(count, 10);
+    all.health.assign(count, 87);
+    return made;
+}
+
+struct Setting {
+    explicit Setting(std::size_t count) : before{picture(count, 0)}, latest{picture(count, 15)} {
+        const auto start = link::WorldView::Clock::now();
+        view.add(before, start);
+        view.add(latest, start + std::chrono::milliseconds{33});
+        population.add(page_of(0, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count), 1, 6));
+        camera.set_viewport({0, 0, 1280, 652});
+        camera.set_island(latest->about.width_px(), latest->about.height_px());
+    }
+    std::shared_ptr<const wire::Picture> before, latest;
+    link::WorldView view;
+    Population population{6};
+    Camera camera;
+};
+
+template <class Frame>
+void frames(benchmark::State& state, Frame frame) {
+    Setting setting{static_cast<std::size_t>(state.range(0))};
+    double blend = 0;
+    for (auto _ : state) {
+        blend = blend > 0.9 ? 0 : blend + 0.1;
+        const Positions& at = setting.view.organisms_at(blend);
+        frame(setting, at);
+    }
+}
+
+void plain(benchmark::State& state) {
+    std::vector<Shape> shapes;
+    frames(state, [&](Setting& setting, const Positions& at) {
+        shapes.clear();
+        put_discs(at, setting.latest->organisms.radius_px, shapes);
+        benchmark::DoNotOptimize(shapes.data());
+    });
+}
+
+/// Coloured by a gene, with radii, forces and trails: all that can be switched on together.
+void everything(benchmark::State& state) {
+    std::vector<Shape> shapes, rings;
+    std::vector<Colour> colours;
+    std::vector<Line> ways;
+    ColouredLines arrows, targets;
+    frames(state, [&](Setting& setting, const Positions& at) {
+        const auto& organisms = setting.latest->organisms;
+        const Rectangle seen = setting.camera.visible();
+        shapes.clear(), rings.clear(), colours.clear(), ways.clear(), arrows.clear(), targets.clear();
+        put_discs(at, organisms.radius_px, shapes);
+        put_gene_colours(organisms, setting.population, 3, gene_scale(setting.population, 3, palette::Ramp::Viridis),
+                         colours);
+        put_radii(organisms, at, setting.population, 4, seen, rings);
+        put_radii(organisms, at, setting.population, 5, seen, rings);
+        put_forces(organisms, at, setting.population, seen, arrows, targets);
+        put_ways(setting.before->organisms, organisms, at.x_px, at.y_px, ways);
+        benchmark::DoNotOptimize(shapes.data());
+        benchmark::DoNotOptimize(targets.lines.data());
+    });
+}
+
+void density(benchmark::State& state) {
+    std::vector<Shape> shapes;
+    std::vector<Colour> colours;
+    frames(state, [&](Setting& setting, const Positions& at) {
+        shapes.clear(), colours.clear();
+        const DensityGrid grid = density_of(at, setting.camera.visible(), density_cell_px(setting.camera, 5));
+        put_density(grid, density_scale(std::span{&grid, 1}, palette::Ramp::Viridis), shapes, colours);
+        benchmark::DoNotOptimize(shapes.data());
+    });
+}
+
+BENCHMARK(plain)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(everything)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(density)->Arg(10'000)->Arg(100'000)->Unit(benchmark::kMicrosecond);
+
+} // namespace
+} // namespace evod::viewer
