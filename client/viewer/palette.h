@@ -36,5 +36,16 @@ constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
 
+constexpr Colour plot_background{252, 252, 253};
+constexpr Colour plot_grid{226, 226, 230};
+// Series, told apart by those who do not see red and green. Source: Okabe & Ito 2008, "Color universal design".
+constexpr Colour series_blue{0, 114, 178};
+constexpr Colour series_sky{86, 180, 233};
+constexpr Colour series_green{0, 158, 115};
+constexpr Colour series_orange{230, 159, 0};
+constexpr Colour series_vermilion{213, 94, 0};
+constexpr Colour series_purple{204, 121, 167};
+constexpr Colour series_grey{110, 110, 116};
+
 } // namespace palette
 } // namespace evod::viewer
