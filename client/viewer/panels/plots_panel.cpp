@@ -292,9 +292,9 @@ void PlotsPanel::build_comparison(Context& context) {
             }
         }
         ImGui::Separator();
-        ImGui::TextUnformatted("another file:");
-        ImGui::SameLine();
-        if (ImGui::InputText("##path", path_.data(), path_.size(), ImGuiInputTextFlags_EnterReturnsTrue)) {
+        ImGui::SetNextItemWidth(-1);
+        if (ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(), path_.size(),
+                                     ImGuiInputTextFlags_EnterReturnsTrue)) {
             compare_with_file(path_.data());
             ImGui::CloseCurrentPopup();
         }

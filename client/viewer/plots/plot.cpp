@@ -16,6 +16,7 @@ constexpr float gap = 6; // between letters and what they stand beside
 constexpr float tick_pixels = 4;
 constexpr float line_pixels = 1.6f;
 constexpr float dash_pixels = 6, dash_gap_pixels = 4;
+constexpr unsigned dense_alpha = 110;
 constexpr double y_room = 0.04; // of the height, above and below
 constexpr double zoom_of_one_notch = 1.25;
 constexpr double shown_min = 4; // generations, or as much of another x
@@ -31,8 +32,8 @@ struct Box {
 /// Draws one plot on a list, in a box.
 class Drawing {
   public:
-    Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Box box)
-        : list_{list}, font_{font}, plot_{plot}, x_{x}, area_{box} {
+    Drawing(ImDrawList& list, ImFont& font, const Plot& plot, std::string title, Range x, Box box)
+        : list_{list}, font_{font}, plot_{plot}, title_{std::move(title)}, x_{x}, area_{box} {
         lay_out(box);
     }
 
@@ -113,7 +114,7 @@ class Drawing {
             }
             at += width;
         }
-        if (!plot_.title.empty()) {
+        if (!title_.empty()) {
             title_top_ = box.top;
             box.top += letter + 2 * gap;
         }
@@ -150,7 +151,7 @@ class Drawing {
         if (stands_on_zero) {
             y_ = {0, std::max(y_.max, 1e-9)};
         }
-        y_ticks_ = ticks_in(y_, std::max(2, static_cast<int>((area_.bottom - area_.top) / (2.5f * letter))));
+        y_ticks_ = ticks_in(y_, std::max(2, static_cast<int>((area_.bottom - area_.top) / (1.7f * letter))));
         float widest = 0;
         for (const double tick : y_ticks_.at) {
             widest = std::max(widest, width_of(tick_label(tick, y_ticks_.step)));
@@ -191,8 +192,8 @@ class Drawing {
 
     void draw_legend() {
         const float letter = font_.FontSize;
-        if (!plot_.title.empty()) {
-            write(legend_left_, title_top_, palette::text, plot_.title);
+        if (!title_.empty()) {
+            write(legend_left_, title_top_, palette::text, title_);
         }
         float x = legend_left_, y = legend_top_;
         for (const Series& series : plot_.series) {
@@ -234,11 +235,16 @@ class Drawing {
 
     void draw_line(const Series& series, std::span<const Group> groups) {
         std::vector<ImVec2> points;
+        // Where a line goes up and down in every column, nobody sees dashes.
+        const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
         const auto finish = [&] {
             if (points.size() == 1) {
                 list_.AddCircleFilled(points[0], 2, ink(series.colour));
-            } else if (series.kind == Series::Kind::Dashes) {
+            } else if (series.kind == Series::Kind::Dashes && !dense) {
                 draw_dashes(points, ink(series.colour));
+            } else if (series.kind == Series::Kind::Dashes) {
+                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour, dense_alpha), 0,
+                                  1);
             } else {
                 list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour), 0, line_pixels);
             }
@@ -309,6 +315,7 @@ class Drawing {
     ImDrawList& list_;
     ImFont& font_;
     const Plot& plot_;
+    std::string title_; // empty: none
     Range x_, y_;
     Box area_;
     Ticks y_ticks_;
@@ -350,7 +357,7 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     }
     ImFont& font = *ImGui::GetFont();
     const Box box{place.x, place.y, place.x + width, place.y + std::max(height_pixels, 40.0f)};
-    Drawing drawing{*ImGui::GetWindowDrawList(), font, plot, shown_x(plot, view), box};
+    Drawing drawing{*ImGui::GetWindowDrawList(), font, plot, "", shown_x(plot, view), box};
     drawing.draw();
 
     const ImGuiIO& io = ImGui::GetIO();
@@ -387,7 +394,8 @@ sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixe
     list.PushClipRect({0, 0}, {width, height});
     list.AddRectFilled({0, 0}, {width, height}, ink(palette::plot_background));
     constexpr float margin = 14;
-    Drawing drawing{list, font, plot, shown_x(plot, view), {margin, margin, width - margin, height - margin}};
+    Drawing drawing{
+        list, font, plot, plot.title, shown_x(plot, view), {margin, margin, width - margin, height - margin}};
     drawing.draw();
     ImDrawList* const lists[] = {&list};
     ImDrawData data;

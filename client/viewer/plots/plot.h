@@ -37,9 +37,10 @@ struct Series {
 };
 
 struct Plot {
-    std::string title, x_label, y_label; // y_label with its unit
-    std::vector<Series> series;          // the first at the back
-    bool from_zero = false;              // the y axis begins at 0, if nothing is below it
+    std::string title;            // of a picture; in a window its place tells what it is
+    std::string x_label, y_label; // y_label with its unit
+    std::vector<Series> series;   // the first at the back
+    bool from_zero = false;       // the y axis begins at 0, if nothing is below it
 };
 
 /// What of the x axis is shown.
