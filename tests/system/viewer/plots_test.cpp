@@ -12,6 +12,7 @@
 #include <imgui.h>
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -181,6 +182,85 @@ TEST_F(PlotsTest, APictureOfThePlotIsSaved) {
     EXPECT_GT(count(palette::plot_background), 300'000u);
     EXPECT_GT(count(palette::series_vermilion), 200u) << "the line of the best";
     EXPECT_GT(count(palette::series_blue), 200u) << "the line of the mean";
+}
+
+/// A plot that fills the window, and a mouse.
+class PlotUnderTheMouse {
+  public:
+    void frame() {
+        draw_off_screen(width, height, [this] {
+            gui_.begin(width, height, 0.02);
+            ImGui::SetNextWindowPos({0, 0});
+            ImGui::SetNextWindowSize({width, height});
+            ImGui::Begin("plot");
+            plot_widget("plot", plot, view, height - 50);
+            ImGui::End();
+            gui_.draw();
+        });
+    }
+    void move(int x) {
+        sf::Event event{};
+        event.type = sf::Event::MouseMoved;
+        event.mouseMove = {x, height / 2};
+        gui_.handle(event);
+        frame();
+    }
+    void turn_wheel(float notches) {
+        sf::Event event{};
+        event.type = sf::Event::MouseWheelScrolled;
+        event.mouseWheelScroll = {sf::Mouse::VerticalWheel, notches, 0, 0};
+        gui_.handle(event);
+        frame();
+    }
+    void button(sf::Event::EventType type) {
+        sf::Event event{};
+        event.type = type;
+        event.mouseButton = {sf::Mouse::Left, 0, 0};
+        gui_.handle(event);
+        frame();
+    }
+
+    Plot plot;
+    PlotView view;
+
+  private:
+    sf::Context context_{context_settings(), 1, 1};
+    Gui gui_;
+};
+
+TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
+    std::vector<double> x, y;
+    for (int i = 1; i <= 1000; ++i) {
+        x.push_back(i);
+        y.push_back(i % 7);
+    }
+    PlotUnderTheMouse on;
+    on.plot = {.title = "", .x_label = "generation", .y_label = "", .series = {{.name = "y", .x = x, .y = y}}};
+    on.frame();
+    on.move(width / 2);
+    EXPECT_EQ(on.view.x, std::nullopt) << "everything";
+    on.turn_wheel(6);
+    ASSERT_TRUE(on.view.x);
+    const Range zoomed = *on.view.x;
+    EXPECT_NEAR(zoomed.width(), 999 / std::pow(1.25, 6), 1e-9);
+    EXPECT_TRUE(zoomed.contains(500)) << "what was under the mouse";
+
+    on.button(sf::Event::MouseButtonPressed);
+    on.move(width / 2 - 100);
+    on.button(sf::Event::MouseButtonReleased);
+    ASSERT_TRUE(on.view.x);
+    EXPECT_NEAR(on.view.x->width(), zoomed.width(), 1e-9);
+    EXPECT_GT(on.view.x->min, zoomed.min + 0.1 * zoomed.width()) << "dragged to the left: later ones come in";
+    on.move(width / 2);
+    EXPECT_GT(on.view.x->min, zoomed.min) << "the button is up";
+
+    for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased,
+                            sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
+        on.button(type);
+    }
+    EXPECT_EQ(on.view.x, std::nullopt);
+    on.turn_wheel(-3);
+    EXPECT_EQ(on.view.x, std::nullopt) << "there is no more than everything";
 }
 
 } // namespace
