@@ -1,6 +1,7 @@
 // What only reads: status, worlds, stats, history, organism, describe.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
+#include "client/link/history_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <google/protobuf/text_format.h>
@@ -174,37 +175,9 @@ v1::History history_of(Caller& caller, const Common& common, const HistoryOption
 }
 
 std::string csv_of(const v1::History& history, const v1::WorldInfo& world) {
-    std::string text = "generation,island,end_tick,simulated_s,organism_count,fitness_best,fitness_mean,fitness_median,"
-                       "fitness_worst,fitness_deviation,diversity,alive_count,starved_count,poisoned_count,food_eaten,"
-                       "poison_eaten,clamp_count,too_fast_count,speed_limit_count,best_organism";
-    for (const std::string& gene : world.gene_names()) {
-        for (const char* column : {"_mean", "_deviation", "_min", "_max"}) {
-            text += "," + gene + column;
-        }
-    }
-    text += "\n";
-    for (const auto& g : history.generations()) {
-        const auto add = [&](const std::string& cell) { text += "," + cell; };
-        text += std::to_string(g.generation());
-        add(std::to_string(g.island()));
-        add(std::to_string(g.end_tick()));
-        add(exact(g.simulated_s()));
-        add(std::to_string(g.organism_count()));
-        for (const double value : {g.fitness_best(), g.fitness_mean(), g.fitness_median(), g.fitness_worst(),
-                                   g.fitness_deviation(), g.diversity()}) {
-            add(exact(value));
-        }
-        for (const std::uint64_t count : std::initializer_list<std::uint64_t>{
-                 g.alive_count(), g.starved_count(), g.poisoned_count(), g.food_eaten(), g.poison_eaten(),
-                 g.clamp_count(), g.too_fast_count(), g.speed_limit_count(), g.best_organism()}) {
-            add(std::to_string(count));
-        }
-        for (const auto& gene : g.genes()) {
-            for (const double value : {gene.mean(), gene.deviation(), gene.min(), gene.max()}) {
-                add(exact(value));
-            }
-        }
-        text += "\n";
+    std::string text = link::history_heading({world.gene_names().begin(), world.gene_names().end()});
+    for (const auto& generation : history.generations()) {
+        text += link::history_line(link::history_numbers(generation));
     }
     return text;
 }

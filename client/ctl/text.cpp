@@ -61,16 +61,6 @@ std::string sparkline(std::span<const double> values, std::size_t width_max) {
     return line;
 }
 
-std::string exact(double value) {
-    std::array<char, 64> digits;
-    const double size = std::abs(value);
-    const bool plain = value == 0 || (size >= 1e-5 && size < 1e15);
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                   plain ? std::chars_format::fixed : std::chars_format::scientific)
-                         .ptr;
-    return {digits.data(), end};
-}
-
 std::string fixed(double value, int decimals) {
     std::array<char, 400> digits;
     const int length = std::snprintf(digits.data(), digits.size(), "%.*f", decimals, value);

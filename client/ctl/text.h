@@ -1,6 +1,8 @@
 // Text: tables, sparklines and numbers for people to read.
 #pragma once
 
+#include "client/link/exact.h"
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -33,8 +35,7 @@ class Table {
 /// equal are bars of middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
-/// Shortest text that reads back as the same number, without an exponent where that is not long: "0.15", "500000".
-std::string exact(double value);
+using link::exact;
 /// With so many decimals.
 std::string fixed(double value, int decimals);
 /// "12.3 s", "4:05 min", "2:00:00 h": simulated time.

@@ -1,6 +1,7 @@
 #include "client/viewer/panels/panels.h"
 
 #include "client/viewer/panels/organism_panel.h"
+#include "client/viewer/panels/plots_panel.h"
 #include "client/viewer/panels/view_panel.h"
 
 #include <imgui.h>
@@ -10,9 +11,9 @@
 namespace evod::viewer {
 
 Panels::Panels() {
-    // places_.push_back({std::make_unique<ParametersPanel>()});
     places_.push_back({std::make_unique<ViewPanel>()});
     places_.push_back({std::make_unique<OrganismPanel>()});
+    places_.push_back({std::make_unique<PlotsPanel>()});
 }
 
 void Panels::toggle(std::size_t index) {

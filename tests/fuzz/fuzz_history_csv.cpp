@@ -1,0 +1,18 @@
+// Any text as the history of an earlier run: rows, which are written and read back the same, or a refusal.
+#include "client/link/history_csv.h"
+
+#include <cstdlib>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace evod::link;
+    const auto read = read_history_csv({reinterpret_cast<const char*>(data), size});
+    if (!read)
+        return 0;
+    std::string text = history_heading(read->gene_names);
+    for (const auto& row : read->rows)
+        text += history_line(row);
+    const auto again = read_history_csv(text);
+    if (!again || again->gene_names != read->gene_names || again->rows != read->rows)
+        std::abort();
+    return 0;
+}
