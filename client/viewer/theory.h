@@ -1,0 +1,105 @@
+// Theory: what the laws of selection say of one choice of parents, to be held against what happened.
+//
+// Ranks are counted from the fittest, 0, as the server counts them; of equals the lower id is the fitter.
+//
+// Threads      none.
+// Sources      Blickle & Thiele 1996, "A comparison of selection schemes used in evolutionary algorithms", Evol.
+//              Comput. 4(4); Goldberg & Deb 1991, "A comparative analysis of selection schemes used in genetic
+//              algorithms"; Baker 1987, "Reducing bias and inefficiency in the selection algorithm"; Motoki 2002,
+//              "Calculating the expected loss of diversity of selection schemes", Evol. Comput. 10(4).
+#pragma once
+
+#include "evod/v1/world.pb.h"
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace evod::viewer {
+
+/// One choice of parents: the parameters that it follows, and how many choose how many.
+struct Selection {
+    enum class Method { Roulette, StochasticUniversal, Tournament, Random, Truncation };
+    enum class Scaling { None, Windowing, LinearRanking, ExponentialRanking };
+
+    Method method = Method::Roulette;
+    Scaling scaling = Scaling::None; // of the wheel; tournaments and truncation ask only who is fitter
+    double ranking_pressure = 1.5;
+    double ranking_decay = 0.95;
+    std::uint32_t tournament_size = 3, tournament_winners = 1;
+    bool tournament_replacement = true;
+    bool overlapping = false;     // steady_state: most of the old generation stays
+    std::uint32_t population = 1; // organisms that can be picked, >= 1
+    std::uint32_t picks = 1;
+    std::uint32_t pool = 1; // truncation picks nobody below the best `pool`, 1 to population
+
+    bool turns_a_wheel() const { return method == Method::Roulette || method == Method::StochasticUniversal; }
+};
+
+/// What the parameters of a world make of it.
+///
+/// parameters  by name, of the genetic algorithm; others are passed over, those that are missing have their defaults.
+/// present     organisms of the generation that is chosen from.
+/// wanted      organisms of the generation that is bred.
+Selection selection_of(const google::protobuf::RepeatedPtrField<evod::v1::ParameterAssignment>& parameters,
+                       std::uint32_t present, std::uint32_t wanted);
+
+/// What is expected of it, rank by rank; each shape (population).
+struct Expectation {
+    std::vector<double> copies;         // of all the picks
+    std::vector<double> standard_error; // of those copies: their standard deviation from one breeding to the next
+    std::vector<double> missed;         // chance of no copy at all
+};
+
+/// fitness  best first, shape (population), finite. A wheel without ranking is all that reads it.
+/// Cost     O(population), but for tournaments of several winners, where it is O(population · winners) at most.
+Expectation expect(const Selection& selection, std::span<const double> fitness);
+
+/// One number that theory foretells.
+struct Finding {
+    std::string_view name{}, sentence{}, source{};
+    std::string_view unit{};                // empty: a number without one
+    std::optional<double> expected{};       // nullopt: never, or the theory does not tell; the sentence says which
+    std::optional<double> happened{};       // nullopt: it cannot be seen in one breeding
+    std::optional<double> standard_error{}; // of what happens; nullopt: nobody knows it
+
+    /// How many standard errors lie between what happened and what was expected, with the sign of the difference;
+    /// nullopt if one of the three is not known. Infinite if something happened that cannot.
+    std::optional<double> deviation() const;
+};
+
+/// happened − expected in standard errors; 0 where both are the same to within rounding.
+double deviation(double happened, double expected, double standard_error);
+
+/// Copies of the fittest, selection intensity, share not selected, loss of diversity, takeover time, and how well all
+/// copies together agree.
+///
+/// copies   by rank, as counted, shape (population); empty: not known, then nothing has happened.
+std::vector<Finding> findings(const Selection& selection, std::span<const double> fitness,
+                              std::span<const std::uint32_t> copies);
+
+// ---- the numbers, one by one -----------------------------------------------------------------------------------
+
+/// How far the selected are above the others: (their mean fitness − the mean fitness) / the deviation of the fitness.
+/// 0 where all are alike.
+/// copies  by rank, expected or counted; not all 0.
+double selection_intensity(std::span<const double> copies, std::span<const double> fitness);
+
+/// The same for a fitness that is spread as a normal distribution, whatever it is here: what the closed forms of
+/// Blickle & Thiele tell, which this tends to in large populations.
+double normal_selection_intensity(std::span<const double> copies);
+
+/// The share of the population whose place others get: that by which the expected copies fall short of one each, were
+/// as many picked as there are. Source: Blickle & Thiele 1996.
+double loss_of_diversity(std::span<const double> copies);
+
+/// Generations until the fittest, one at first, has all places but one by selection alone, if everyone is replaced and
+/// things happen as expected. Source: Goldberg & Deb 1991.
+/// returns  nullopt: never; or the theory does not tell, as where a window or a negative fitness is taken off anew in
+///          each generation, or where generations overlap.
+std::optional<std::uint32_t> takeover_generations(const Selection& selection, std::span<const double> fitness);
+
+} // namespace evod::viewer
