@@ -36,5 +36,14 @@ constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};
 
+// The glass box. Parents: Okabe & Ito 2008, "Color Universal Design", blue and orange.
+constexpr Colour first_parent{0, 114, 178};
+constexpr Colour second_parent{230, 159, 0};
+constexpr Colour glass_current{206, 16, 110};
+constexpr Colour glass_mutated{122, 36, 150};
+constexpr Colour glass_elite{20, 20, 24};
+constexpr Colour glass_survivor{104, 104, 112};
+constexpr Colour glass_child{184, 184, 192};
+
 } // namespace palette
 } // namespace evod::viewer

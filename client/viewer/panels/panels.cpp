@@ -1,5 +1,7 @@
 #include "client/viewer/panels/panels.h"
 
+#include "client/viewer/panels/breeding_panel.h"
+
 #include <imgui.h>
 
 #include <string>
@@ -7,7 +9,7 @@
 namespace evod::viewer {
 
 Panels::Panels() {
-    // places_.push_back({std::make_unique<ParametersPanel>()});
+    places_.push_back({std::make_unique<BreedingPanel>()});
 }
 
 void Panels::toggle(std::size_t index) {
