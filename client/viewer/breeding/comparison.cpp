@@ -59,13 +59,15 @@ std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<con
     std::vector<RankColumn> made;
     for (std::size_t i = 0; i < columns; ++i) {
         RankColumn column{.first = i * count / columns, .last = (i + 1) * count / columns - 1};
-        const auto ranks = std::span{comparison.deviations}.subspan(column.first, column.last - column.first + 1);
-        column.least_deviation = std::ranges::min(ranks);
-        column.most_deviation = std::ranges::max(ranks);
+        double all_copies = 0, all_expected = 0, variance = 0;
         for (std::size_t rank = column.first; rank <= column.last; ++rank) {
             column.copies += copies[rank];
-            column.expected += comparison.expected.copies[rank] * expected_share;
+            all_copies += comparison.copies[rank];
+            all_expected += comparison.expected.copies[rank];
+            variance += comparison.expected.standard_error[rank] * comparison.expected.standard_error[rank];
         }
+        column.expected = all_expected * expected_share;
+        column.deviation = deviation(all_copies, all_expected, std::sqrt(variance));
         made.push_back(column);
     }
     return made;

@@ -35,7 +35,7 @@ std::vector<std::uint32_t> copies_after(const BreedingRecord& record, std::uint3
 struct RankColumn {
     std::size_t first = 0, last = 0; // ranks
     double copies = 0, expected = 0; // of all of them
-    double least_deviation = 0, most_deviation = 0;
+    double deviation = 0; // of all the picks, in standard errors; of several ranks as if they were independent
 };
 
 /// The ranks as at most `columns` columns, each of as many ranks as any other but for one.

@@ -23,9 +23,10 @@ Colour faint(Colour colour, std::uint8_t alpha) {
     return colour;
 }
 
-/// Black or white, whichever can be read on it.
+/// Black or white, whichever can be read on it; what can be seen through is on light paper.
 Colour text_on(Colour paper) {
-    const double light = 0.299 * paper.red + 0.587 * paper.green + 0.114 * paper.blue;
+    const double opaque = paper.alpha / 255.0;
+    const double light = (0.299 * paper.red + 0.587 * paper.green + 0.114 * paper.blue) * opaque + 240 * (1 - opaque);
     return light > 140 ? palette::text : palette::note_text;
 }
 
@@ -339,19 +340,16 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
                                                  static_cast<std::uint32_t>(comparison.organisms.size()))));
         sheet.list.AddLine({left, y_of(column.expected)}, {left + width, y_of(column.expected)},
                            ink(palette::glass_current), 2);
-        const bool beyond = std::max(column.most_deviation, -column.least_deviation) > 2;
-        sheet.list.AddRectFilled({left, deviation_y(std::max(column.most_deviation, 0.0))},
-                                 {right, deviation_y(std::min(column.least_deviation, 0.0)) + 1},
-                                 ink(beyond ? palette::glass_current : palette::text_quiet));
+        sheet.list.AddRectFilled({left, deviation_y(std::max(column.deviation, 0.0))},
+                                 {right, deviation_y(std::min(column.deviation, 0.0)) + 1},
+                                 ink(std::abs(column.deviation) > 2 ? palette::glass_current : palette::text_quiet));
         if (pointed_at({left, top}, {left + width, lower_bottom})) {
             const std::string ranks = column.first == column.last
                                           ? print("rank %zu: organism %u, fitness %.5g", column.first + 1,
                                                   comparison.organisms[column.first], comparison.fitness[column.first])
                                           : print("ranks %zu to %zu", column.first + 1, column.last + 1);
             ImGui::SetTooltip("%s\ncopies %.0f, expected %.3g\nin the end %+.2f standard errors", ranks.c_str(),
-                              column.copies, column.expected,
-                              column.most_deviation > -column.least_deviation ? column.most_deviation
-                                                                              : column.least_deviation);
+                              column.copies, column.expected, column.deviation);
         }
     }
     sheet.list.AddLine({sheet.corner.x, bottom}, {sheet.end().x, bottom}, ink(palette::text_quiet));
@@ -482,15 +480,17 @@ void draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std
             const Colour colour = bound ? palette::stopped : palette::glass_mutated;
             write_centred(sheet, {middle_of(change.gene), row + line / 2}, colour, shown_delta(change.delta()));
             write_centred(sheet, {middle_of(change.gene), row + 1.5f * line}, colour, shown_mutation(change.kind));
+            write_centred(sheet, {middle_of(change.gene), row + 2.5f * line}, colour,
+                          print("to %.4g", double{change.after}));
             if (bound) {
-                sheet.list.AddRect({left_of(change.gene), row - 1}, {left_of(change.gene) + cell - 2, row + 2 * line},
+                sheet.list.AddRect({left_of(change.gene), row - 1}, {left_of(change.gene) + cell - 2, row + 3 * line},
                                    ink(colour));
             }
-            if (pointed_at({left_of(change.gene), row}, {left_of(change.gene) + cell, row + 2 * line})) {
+            if (pointed_at({left_of(change.gene), row}, {left_of(change.gene) + cell, row + 3 * line})) {
                 ImGui::SetTooltip("%s: from %.7g to %.7g, %s", shown_mutation(change.kind), double{change.before},
                                   double{change.after}, shown_delta(change.delta()).c_str());
             }
-            row += 2 * line + 4;
+            row += 3 * line + 4;
         }
         y = *std::ranges::max_element(next_y) + 2;
     }

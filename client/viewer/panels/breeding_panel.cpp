@@ -355,7 +355,7 @@ void BreedingPanel::build_stage(const Gui& gui) {
         break;
     case Stage::Picking: {
         const evod::v1::Pick* pick = shown_->pick(moment.index);
-        const Sheet sheet = sheet_of(gui, height - strip - 8);
+        const Sheet sheet = sheet_of(gui, height - strip - 34);
         if (pick != nullptr && pick->has_turns()) {
             draw_wheel(sheet, *shown_, moment.index);
         } else if (pick != nullptr && pick->has_tournament() && !pick->contestants().empty()) {
@@ -364,13 +364,16 @@ void BreedingPanel::build_stage(const Gui& gui) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
+        quiet("the picks in order, light: the fittest, dark: the last in rank");
         break;
     }
     case Stage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
         quiet("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            draw_family(sheet_of(gui, std::max(height - 60, 380.f)), *descendant, gene_names_);
+            draw_family(sheet_of(gui, std::max(height - 90, 400.f)), *descendant, gene_names_);
+            quiet("blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
+                  "bound");
         }
         break;
     case Stage::Done:

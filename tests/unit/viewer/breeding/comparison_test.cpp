@@ -54,7 +54,6 @@ TEST(RankColumns, AddUpToTheWhole) {
         std::size_t next = 0;
         for (const RankColumn& column : columns) {
             EXPECT_EQ(column.first, next);
-            EXPECT_LE(column.least_deviation, column.most_deviation);
             next = column.last + 1;
             copies += column.copies;
             expected += column.expected;
@@ -63,6 +62,16 @@ TEST(RankColumns, AddUpToTheWhole) {
         EXPECT_EQ(copies, 4);
         EXPECT_NEAR(expected, 2, 1e-12);
     }
+}
+
+TEST(RankColumns, OfOneRankHaveItsDeviationAndOfSeveralThatOfTheirSum) {
+    const auto comparison = compare(record_of(made_up::wheel()));
+    const auto single = rank_columns(*comparison, copies_after(record_of(made_up::wheel()), 1), 0.25, 4);
+    for (std::size_t rank = 0; rank < 4; ++rank) {
+        EXPECT_EQ(single[rank].deviation, comparison->deviations[rank]) << "of all the picks, not of those so far";
+    }
+    const auto two = rank_columns(*comparison, comparison->copies, 1, 2);
+    EXPECT_NEAR(two[0].deviation, (3 - 2.8) / std::sqrt(4 * 0.4 * 0.6 + 4 * 0.3 * 0.7), 1e-12);
 }
 
 } // namespace

@@ -1,0 +1,164 @@
+// The glass box against evod: what is worked out here of a breeding is what the server did.
+//
+// Runs under Xvfb.
+#include "client/viewer/breeding/comparison.h"
+#include "client/viewer/breeding/family.h"
+#include "client/viewer/breeding/tournament.h"
+#include "client/viewer/breeding/wheel_layout.h"
+#include "tests/system/viewer/processes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace evod::viewer {
+namespace {
+
+constexpr std::uint64_t bred_from = 2; // generation
+
+void set(evod::v1::CreateWorld& world, const char* name, const evod::v1::ParameterValue& value) {
+    auto& parameter = *world.add_parameters();
+    parameter.set_name(name);
+    *parameter.mutable_value() = value;
+}
+evod::v1::ParameterValue choice(const char* name) {
+    evod::v1::ParameterValue value;
+    value.set_choice(name);
+    return value;
+}
+evod::v1::ParameterValue count(std::uint32_t number) {
+    evod::v1::ParameterValue value;
+    value.set_count(number);
+    return value;
+}
+evod::v1::ParameterValue real(double number) {
+    evod::v1::ParameterValue value;
+    value.set_real(number);
+    return value;
+}
+
+/// A world of its own that has bred twice; the record of the second time, whole.
+BreedingRecord breed(RealServer& server, const std::string& name,
+                     const std::vector<std::pair<const char*, evod::v1::ParameterValue>>& parameters) {
+    evod::v1::Request create, speed, run;
+    auto& world = *create.mutable_create_world();
+    world.set_name(name);
+    world.set_seed(11);
+    set(world, "population_size", count(40));
+    set(world, "generation_s", real(4));
+    for (const auto& [parameter, value] : parameters) {
+        set(world, parameter, value);
+    }
+    server.ask(create);
+    speed.mutable_set_speed()->set_world(name);
+    speed.mutable_set_speed()->mutable_speed()->set_max(true);
+    server.ask(speed);
+    const auto events = server.connection->subscribe(evod::v1::SubscribeEvents{});
+    run.mutable_run()->set_world(name);
+    run.mutable_run()->set_generations(bred_from + 1);
+    server.ask(run);
+    const bool over = comes_true([&] {
+        return std::ranges::any_of(server.connection->take_events(), [&](const evod::v1::Event& event) {
+            return event.world() == name && event.has_generation_finished() &&
+                   event.generation_finished().statistics(0).generation() == bred_from + 1;
+        });
+    });
+    EXPECT_TRUE(over);
+    server.connection->unsubscribe(events);
+    BreedingRecord record{{.world = name, .run_id = "", .island = 0, .generation = bred_from}};
+    for (const Moment moment : {Moment{}, Moment{Stage::Picking, 0}, Moment{Stage::Breeding, 0}}) {
+        while (const auto wanted = record.wanted(moment)) {
+            evod::v1::Request request;
+            *request.mutable_get_breeding() = *wanted;
+            const auto response = server.connection->request(request).value();
+            EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
+            record.add(response.breeding());
+            if (!record.known()) {
+                return record;
+            }
+        }
+    }
+    return record;
+}
+
+/// That the record agrees with itself and with theory.
+void check(const BreedingRecord& record) {
+    ASSERT_TRUE(record.known());
+    const evod::v1::Breeding& breeding = record.breeding();
+    ASSERT_EQ(breeding.contenders_size(), 40);
+    ASSERT_EQ(static_cast<std::uint32_t>(breeding.picks_size()), breeding.pick_count());
+    ASSERT_EQ(breeding.descendants_size(), 40);
+    const auto comparison = compare(record);
+    ASSERT_TRUE(comparison);
+    EXPECT_EQ(copies_after(record, breeding.pick_count()), comparison->copies);
+    for (std::size_t rank = 0; rank < comparison->organisms.size(); ++rank) {
+        const double of_server = record.contender(comparison->organisms[rank])->expected_copies();
+        EXPECT_NEAR(comparison->expected.copies[rank], of_server, 1e-9 * breeding.pick_count()) << "rank " << rank;
+    }
+    for (std::uint32_t i = 0; i < breeding.pick_count(); ++i) {
+        const evod::v1::Pick& pick = *record.pick(i);
+        if (pick.has_turns()) {
+            EXPECT_EQ(slot_at(breeding.contenders(), pick.turns()), record.contender(pick.organism())) << "pick " << i;
+        }
+        if (!pick.contestants().empty()) {
+            const auto contestants = contestants_of(record, i);
+            const auto winner = std::ranges::find(contestants, true, &Contestant::picked_now);
+            ASSERT_NE(winner, contestants.end()) << "pick " << i;
+            for (const Contestant& contestant : contestants) {
+                EXPECT_TRUE(contestant.won || record.contender(contestant.organism)->rank() >=
+                                                  record.contender(winner->organism)->rank());
+            }
+        }
+    }
+    unsigned changes = 0;
+    for (const evod::v1::Descendant& descendant : breeding.descendants()) {
+        const Family family = family_of(descendant);
+        EXPECT_EQ(family.genes, std::vector<float>(descendant.genes().begin(), descendant.genes().end()))
+            << "descendant " << descendant.id();
+        for (const GeneChange& change : family.changes) {
+            EXPECT_NE(change.delta(), 0);
+            ++changes;
+        }
+    }
+    EXPECT_GT(changes, 0u);
+}
+
+TEST(GlassBox, WhatIsShownOfEverySelectionIsWhatTheServerDid) {
+    RealServer server{{"--seed", "7"}};
+    for (const char* method : {"roulette", "stochastic_universal", "tournament", "random", "truncation"}) {
+        SCOPED_TRACE(method);
+        check(breed(server, method, {{"selection", choice(method)}}));
+    }
+}
+
+TEST(GlassBox, EveryScalingOfTheWheelIsKnownHere) {
+    RealServer server{{"--seed", "7"}};
+    for (const char* scaling : {"none", "windowing", "linear_ranking", "exponential_ranking"}) {
+        SCOPED_TRACE(scaling);
+        check(breed(server, scaling, {{"fitness_scaling", choice(scaling)}}));
+    }
+}
+
+TEST(GlassBox, GenesAreFollowedThroughEveryOperator) {
+    RealServer server{{"--seed", "7"}};
+    for (const char* rearranging : {"swap", "scramble", "inversion"}) {
+        for (const char* crossover : {"single_point", "multi_point"}) {
+            SCOPED_TRACE(std::string{rearranging} + " " + crossover);
+            check(breed(server, std::string{rearranging} + "-" + crossover,
+                        {{"rearranging", choice(rearranging)},
+                         {"rearrange_chance", real(0.7)},
+                         {"crossover", choice(crossover)},
+                         {"crossover_chance", real(0.8)},
+                         {"population_model", choice("generational")},
+                         {"tournament_winners", count(2)},
+                         {"selection", choice("tournament")},
+                         {"elite_count", count(3)},
+                         {"mutation_step", real(60)},
+                         {"reset_chance", real(0.1)},
+                         {"bit_flip_chance", real(0.02)}}));
+        }
+    }
+}
+
+} // namespace
+} // namespace evod::viewer
