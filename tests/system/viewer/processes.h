@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -115,7 +116,7 @@ class Process {
     FILE* output_ = nullptr;
 };
 
-/// evod on a port of its own, with a connection of the test's own.
+/// evod on a port of its own, with a connection of the test's own. It keeps nothing unless it is told --data.
 class RealServer {
   public:
     explicit RealServer(std::vector<std::string> arguments) : process_{EVOD, with_port(std::move(arguments))} {
@@ -147,7 +148,10 @@ class RealServer {
 
   private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), {"--port", "0", "--keep-nothing"});
+        arguments.insert(arguments.end(), {"--port", "0"});
+        if (std::ranges::find(arguments, "--data") == arguments.end()) {
+            arguments.emplace_back("--keep-nothing");
+        }
         return arguments;
     }
     Process process_;
