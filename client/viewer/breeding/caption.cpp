@@ -155,13 +155,13 @@ std::string caption(const BreedingRecord& record, Moment moment) {
         return "";
     }
     switch (moment.stage) {
-    case Stage::Scaling:
+    case BreedingStage::Scaling:
         return scaling_caption(record);
-    case Stage::Picking:
+    case BreedingStage::Picking:
         return picking_caption(record, moment.index);
-    case Stage::Breeding:
+    case BreedingStage::Breeding:
         return breeding_caption(record, moment.index);
-    case Stage::Done:
+    case BreedingStage::Done:
         break;
     }
     return "The next generation. Bars: how often each rank was picked; lines: how often its law expects it.";

@@ -48,7 +48,7 @@ std::optional<evod::v1::GetBreeding> BreedingRecord::wanted(Moment moment) const
         any = true;
         return have;
     };
-    const bool picking = moment.stage == Stage::Picking, breeding = moment.stage == Stage::Breeding;
+    const bool picking = moment.stage == BreedingStage::Picking, breeding = moment.stage == BreedingStage::Breeding;
     request.set_first_contender(first_of(static_cast<std::uint32_t>(known_->contenders_size()),
                                          known_->contender_count(), known_->contender_count()));
     request.set_first_pick(first_of(static_cast<std::uint32_t>(known_->picks_size()),

@@ -13,26 +13,26 @@ void Stepper::load(std::uint32_t picks, std::uint32_t descendants) {
 
 Moment Stepper::moment() const {
     if (position_ == 0) {
-        return {Stage::Scaling, 0};
+        return {BreedingStage::Scaling, 0};
     }
     if (position_ <= picks_) {
-        return {Stage::Picking, position_ - 1};
+        return {BreedingStage::Picking, position_ - 1};
     }
     if (position_ <= picks_ + descendants_) {
-        return {Stage::Breeding, position_ - 1 - picks_};
+        return {BreedingStage::Breeding, position_ - 1 - picks_};
     }
-    return {Stage::Done, 0};
+    return {BreedingStage::Done, 0};
 }
 
-std::uint32_t Stepper::begin_of(Stage stage) const {
+std::uint32_t Stepper::begin_of(BreedingStage stage) const {
     switch (stage) {
-    case Stage::Scaling:
+    case BreedingStage::Scaling:
         return 0;
-    case Stage::Picking:
+    case BreedingStage::Picking:
         return 1;
-    case Stage::Breeding:
+    case BreedingStage::Breeding:
         return 1 + picks_;
-    case Stage::Done:
+    case BreedingStage::Done:
         break;
     }
     return last_position();
@@ -57,7 +57,7 @@ void Stepper::back() {
 }
 
 void Stepper::next_stage() {
-    for (const Stage stage : {Stage::Picking, Stage::Breeding, Stage::Done}) {
+    for (const BreedingStage stage : {BreedingStage::Picking, BreedingStage::Breeding, BreedingStage::Done}) {
         if (begin_of(stage) > position_) {
             return go_to(begin_of(stage));
         }
@@ -66,7 +66,7 @@ void Stepper::next_stage() {
 }
 
 void Stepper::previous_stage() {
-    for (const Stage stage : {Stage::Breeding, Stage::Picking, Stage::Scaling}) {
+    for (const BreedingStage stage : {BreedingStage::Breeding, BreedingStage::Picking, BreedingStage::Scaling}) {
         if (begin_of(stage) < position_) {
             return go_to(begin_of(stage));
         }

@@ -10,10 +10,10 @@
 
 namespace evod::viewer {
 
-enum class Stage { Scaling, Picking, Breeding, Done };
+enum class BreedingStage { Scaling, Picking, Breeding, Done };
 
 struct Moment {
-    Stage stage = Stage::Scaling;
+    BreedingStage stage = BreedingStage::Scaling;
     std::uint32_t index = 0; // of the pick or the descendant
     friend bool operator==(const Moment&, const Moment&) = default;
 };
@@ -51,7 +51,7 @@ class Stepper {
     void advance(double seconds);
 
   private:
-    std::uint32_t begin_of(Stage stage) const;
+    std::uint32_t begin_of(BreedingStage stage) const;
     void stop();
 
     std::uint32_t picks_ = 0, descendants_ = 0;

@@ -89,9 +89,9 @@ void BreedingPanel::build(Context& context) {
     build_transport();
     take_keys();
     const Moment moment = stepper_.moment();
-    const bool here = moment.stage == Stage::Picking    ? shown_->pick(moment.index) != nullptr
-                      : moment.stage == Stage::Breeding ? shown_->descendant(moment.index) != nullptr
-                                                        : true;
+    const bool here = moment.stage == BreedingStage::Picking    ? shown_->pick(moment.index) != nullptr
+                      : moment.stage == BreedingStage::Breeding ? shown_->descendant(moment.index) != nullptr
+                                                                : true;
     if (here) { // or else it waits for the answer
         stepper_.advance(double{ImGui::GetIO().DeltaTime});
     }
@@ -292,7 +292,7 @@ void BreedingPanel::build_transport() {
     if (button("<", "One step back (left)")) {
         stepper_.back();
     }
-    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays, or stops (Space)")) {
+    if (button(stepper_.playing() ? "Stop###play" : "Play###play", "Plays, or stops (Space, Enter)")) {
         stepper_.play_or_stop();
     }
     if (button(">", "One step (right)")) {
@@ -335,7 +335,7 @@ void BreedingPanel::take_keys() {
         stepper_.to_begin();
     } else if (pressed(ImGuiKey_End)) {
         stepper_.to_end();
-    } else if (pressed(ImGuiKey_Space)) {
+    } else if (pressed(ImGuiKey_Space) || pressed(ImGuiKey_Enter)) {
         stepper_.play_or_stop();
     }
 }
@@ -348,12 +348,12 @@ void BreedingPanel::build_stage(const Gui& gui) {
     const float height = ImGui::GetContentRegionAvail().y - 8;
     constexpr float strip = 14;
     switch (moment.stage) {
-    case Stage::Scaling:
+    case BreedingStage::Scaling:
         if (comparison_) {
             draw_ranking(sheet_of(gui, height), *shown_, *comparison_, {}, nullptr);
         }
         break;
-    case Stage::Picking: {
+    case BreedingStage::Picking: {
         const evod::v1::Pick* pick = shown_->pick(moment.index);
         const Sheet sheet = sheet_of(gui, height - strip - 34);
         if (pick != nullptr && pick->has_turns()) {
@@ -367,7 +367,7 @@ void BreedingPanel::build_stage(const Gui& gui) {
         quiet("the picks in order, light: the fittest, dark: the last in rank");
         break;
     }
-    case Stage::Breeding:
+    case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
         quiet("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
@@ -376,7 +376,7 @@ void BreedingPanel::build_stage(const Gui& gui) {
                   "bound");
         }
         break;
-    case Stage::Done:
+    case BreedingStage::Done:
         draw_descendants(sheet_of(gui, strip), *shown_, nullptr);
         quiet("black: the elite, dark: survivors, light: children");
         if (comparison_) {
@@ -399,8 +399,8 @@ void BreedingPanel::build_theory(const Gui& gui) {
     }
     const Moment moment = stepper_.moment();
     const std::uint32_t picks = shown_->breeding().pick_count();
-    const bool picking = moment.stage == Stage::Picking && picks > 0;
-    const std::uint32_t happened = picking ? moment.index + 1 : moment.stage == Stage::Scaling ? 0 : picks;
+    const bool picking = moment.stage == BreedingStage::Picking && picks > 0;
+    const std::uint32_t happened = picking ? moment.index + 1 : moment.stage == BreedingStage::Scaling ? 0 : picks;
     draw_copies(sheet_of(gui, std::min(300.f, ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
                 picking || happened == 0 ? copies_after(*shown_, happened) : comparison_->copies,
                 picking ? double(happened) / picks : 1);

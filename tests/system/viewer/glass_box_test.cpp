@@ -5,9 +5,13 @@
 #include "client/viewer/breeding/family.h"
 #include "client/viewer/breeding/tournament.h"
 #include "client/viewer/breeding/wheel_layout.h"
+#include "client/viewer/panels/breeding_panel.h"
+#include "client/viewer/window.h"
 #include "tests/system/viewer/processes.h"
 
+#include <GL/gl.h>
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 #include <algorithm>
 
@@ -60,7 +64,7 @@ BreedingRecord breed(RealServer& server, const std::string& name,
     state.mutable_get_statistics()->set_world(name);
     EXPECT_TRUE(comes_true([&] { return server.ask(state).state() == evod::v1::RUN_STATE_WAITING; }));
     BreedingRecord record{{.world = name, .run_id = "", .island = 0, .generation = bred_from}};
-    for (const Moment moment : {Moment{}, Moment{Stage::Picking, 0}, Moment{Stage::Breeding, 0}}) {
+    for (const Moment moment : {Moment{}, Moment{BreedingStage::Picking, 0}, Moment{BreedingStage::Breeding, 0}}) {
         while (const auto wanted = record.wanted(moment)) {
             evod::v1::Request request;
             *request.mutable_get_breeding() = *wanted;
@@ -155,6 +159,93 @@ TEST(GlassBox, GenesAreFollowedThroughEveryOperator) {
                          {"bit_flip_chance", real(0.02)}}));
         }
     }
+}
+
+/// The panel in a window of its own, with a person at the keys.
+class PanelWindow {
+  public:
+    static constexpr unsigned width = 1000, height = 720;
+
+    explicit PanelWindow(const std::string& server)
+        : window_{sf::VideoMode{width, height}, "glass box", sf::Style::None, context_settings()}
+        , watch_{wanted(server)} {}
+
+    void press(sf::Keyboard::Key key) {
+        sf::Event event{};
+        event.key.code = key;
+        for (const auto type : {sf::Event::KeyPressed, sf::Event::KeyReleased}) {
+            event.type = type;
+            gui_.handle(event);
+            draw();
+        }
+    }
+    /// Draws until so many pixels of the colour are seen.
+    bool sees(Colour colour, unsigned least) {
+        return comes_true([&] { return draw() && count(colour) >= least; });
+    }
+    bool sees_none_of(Colour colour) {
+        return comes_true([&] { return draw() && count(colour) == 0; });
+    }
+    unsigned count(Colour colour) const {
+        unsigned found = 0;
+        for (std::size_t i = 0; i < pixels_.size(); i += 4) {
+            found += pixels_[i] == colour.red && pixels_[i + 1] == colour.green && pixels_[i + 2] == colour.blue;
+        }
+        return found;
+    }
+
+  private:
+    static Watch::Wanted wanted(const std::string& server) {
+        Watch::Wanted wanted;
+        wanted.connection.server = link::parse_endpoint(server).value();
+        return wanted;
+    }
+
+    bool draw() {
+        const auto now = std::chrono::steady_clock::now();
+        watch_.update(now);
+        gui_.begin(width, height, 0.02);
+        glClearColor(1, 1, 1, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui::SetNextWindowPos({10, 10});
+        ImGui::Begin("Glass box");
+        Panel::Context context{watch_, gui_, now};
+        panel_.build(context);
+        ImGui::End();
+        gui_.draw();
+        glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
+        return true;
+    }
+
+    sf::Window window_;
+    Gui gui_;
+    BreedingPanel panel_;
+    Watch watch_;
+    std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(std::size_t{4} * width * height);
+};
+
+TEST(GlassBox, KeysGoThroughABreedingAndBack) {
+    TemporaryFolder folder;
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
+    evod::v1::Request run;
+    run.mutable_run()->set_generations(3);
+    server.ask(run);
+    ASSERT_TRUE(comes_true([&] { return server.state().state() == evod::v1::RUN_STATE_WAITING; }));
+    PanelWindow window{server.address()};
+    const Colour fittest = rank_colour(0, 50);
+    EXPECT_TRUE(window.sees(fittest, 1000)) << "the highest bar";
+    EXPECT_EQ(window.count(palette::first_parent), 0u);
+    window.press(sf::Keyboard::PageDown);
+    window.press(sf::Keyboard::PageDown);
+    EXPECT_TRUE(window.sees(palette::first_parent, 5000)) << "the genes of the first organism";
+    EXPECT_EQ(window.count(palette::second_parent), 0u) << "which is a survivor";
+    window.press(sf::Keyboard::End);
+    EXPECT_TRUE(window.sees_none_of(palette::first_parent));
+    EXPECT_TRUE(window.sees(fittest, 1000));
+    window.press(sf::Keyboard::Left);
+    EXPECT_TRUE(window.sees(palette::second_parent, 500)) << "the genes of the last organism, a child";
+    window.press(sf::Keyboard::Home);
+    EXPECT_TRUE(window.sees_none_of(palette::second_parent));
 }
 
 } // namespace

@@ -30,7 +30,7 @@ TEST(BreedingRecord, AsksPageAfterPageAndHoldsTheWholeInOrder) {
     const evod::v1::Breeding whole = made_up::wheel();
     BreedingRecord record = record_of_seven();
     unsigned asked = 0;
-    for (const Moment moment : {Moment{}, Moment{Stage::Picking, 0}, Moment{Stage::Breeding, 0}}) {
+    for (const Moment moment : {Moment{}, Moment{BreedingStage::Picking, 0}, Moment{BreedingStage::Breeding, 0}}) {
         while (const auto wanted = record.wanted(moment)) {
             EXPECT_EQ(wanted->world(), "default");
             EXPECT_EQ(wanted->island(), 1u);

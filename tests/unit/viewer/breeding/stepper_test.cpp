@@ -10,8 +10,10 @@ namespace {
 TEST(Stepper, GoesThroughEveryMomentInOrderAndBack) {
     Stepper stepper;
     stepper.load(2, 3);
-    const std::vector<Moment> all{{Stage::Scaling, 0},  {Stage::Picking, 0},  {Stage::Picking, 1}, {Stage::Breeding, 0},
-                                  {Stage::Breeding, 1}, {Stage::Breeding, 2}, {Stage::Done, 0}};
+    const std::vector<Moment> all{{BreedingStage::Scaling, 0},  {BreedingStage::Picking, 0},
+                                  {BreedingStage::Picking, 1},  {BreedingStage::Breeding, 0},
+                                  {BreedingStage::Breeding, 1}, {BreedingStage::Breeding, 2},
+                                  {BreedingStage::Done, 0}};
     for (const Moment& moment : all) {
         EXPECT_EQ(stepper.moment(), moment);
         stepper.step();
@@ -28,18 +30,18 @@ TEST(Stepper, GoesFromStageToStage) {
     Stepper stepper;
     stepper.load(2, 3);
     stepper.next_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{Stage::Picking, 0}));
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Picking, 0}));
     stepper.step();
     stepper.next_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{Stage::Breeding, 0}));
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0}));
     stepper.next_stage();
     stepper.next_stage();
-    EXPECT_EQ(stepper.moment().stage, Stage::Done);
+    EXPECT_EQ(stepper.moment().stage, BreedingStage::Done);
     stepper.previous_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{Stage::Breeding, 0}));
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0}));
     stepper.step();
     stepper.previous_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{Stage::Breeding, 0})) << "first to the beginning of its own";
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0})) << "first to the beginning of its own";
     stepper.previous_stage();
     stepper.previous_stage();
     stepper.previous_stage();
@@ -50,10 +52,10 @@ TEST(Stepper, PassesOverStagesInWhichNothingHappens) {
     Stepper stepper;
     stepper.load(0, 1);
     stepper.next_stage();
-    EXPECT_EQ(stepper.moment(), (Moment{Stage::Breeding, 0}));
+    EXPECT_EQ(stepper.moment(), (Moment{BreedingStage::Breeding, 0}));
     stepper.load(0, 0);
     stepper.step();
-    EXPECT_EQ(stepper.moment().stage, Stage::Done);
+    EXPECT_EQ(stepper.moment().stage, BreedingStage::Done);
 }
 
 TEST(Stepper, PlaysAtItsSpeedHoweverOftenTimePasses) {
