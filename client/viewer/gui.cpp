@@ -33,6 +33,18 @@ int button_index(sf::Mouse::Button button) {
     return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
 }
 
+/// The keys that panels ask for.
+struct NamedKey {
+    ImGuiKey name;
+    sf::Keyboard::Key key;
+};
+constexpr NamedKey named_keys[] = {
+    {ImGuiKey_LeftArrow, sf::Keyboard::Left}, {ImGuiKey_RightArrow, sf::Keyboard::Right},
+    {ImGuiKey_PageUp, sf::Keyboard::PageUp},  {ImGuiKey_PageDown, sf::Keyboard::PageDown},
+    {ImGuiKey_Home, sf::Keyboard::Home},      {ImGuiKey_End, sf::Keyboard::End},
+    {ImGuiKey_Enter, sf::Keyboard::Enter},    {ImGuiKey_Space, sf::Keyboard::Space},
+};
+
 } // namespace
 
 Gui::Gui() {
@@ -40,6 +52,9 @@ Gui::Gui() {
     ImGui::StyleColorsLight();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // nothing is remembered in files
+    for (const NamedKey& named : named_keys) {
+        io.KeyMap[named.name] = named.key;
+    }
     try {
         text_ = load_font("DejaVuSans.ttf", 15);
         title_ = load_font("DejaVuSans-Bold.ttf", 22);
@@ -78,10 +93,17 @@ void Gui::handle(const sf::Event& event) {
         (event.mouseWheelScroll.wheel == sf::Mouse::VerticalWheel ? io.MouseWheel : io.MouseWheelH) +=
             event.mouseWheelScroll.delta;
         break;
+    case sf::Event::KeyPressed:
+    case sf::Event::KeyReleased:
+        if (event.key.code != sf::Keyboard::Unknown) {
+            io.KeysDown[event.key.code] = event.type == sf::Event::KeyPressed;
+        }
+        break;
     case sf::Event::LostFocus:
         std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
+        std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
         break;
-    default: // no widget of evoview takes keys
+    default:
         break;
     }
 }

@@ -87,5 +87,14 @@ constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
 
+// The glass box.
+constexpr Colour first_parent = kinds[4];
+constexpr Colour second_parent = kinds[0];
+constexpr Colour glass_current{206, 16, 110};
+constexpr Colour glass_mutated{122, 36, 150};
+constexpr Colour glass_elite{20, 20, 24};
+constexpr Colour glass_survivor{104, 104, 112};
+constexpr Colour glass_child{184, 184, 192};
+
 } // namespace palette
 } // namespace evod::viewer

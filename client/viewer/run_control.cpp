@@ -45,6 +45,7 @@ void RunControl::see(const evod::v1::WorldInfo& world) {
         outcome_ = world.outcome();
         take(world.speed());
         step_target_ = world.run_until_tick();
+        nothing_to_resume_ = nothing_to_resume_ && !(state_ == evod::v1::RUN_STATE_RUNNING && step_target_ == 0);
     }
 }
 
@@ -57,6 +58,11 @@ std::optional<evod::v1::Request> RunControl::pause_or_resume() {
         pausing_ = true;
         break;
     case evod::v1::RUN_STATE_PAUSED:
+        if (nothing_to_resume_) {
+            request.mutable_run()->set_world(world_);
+            state_ = evod::v1::RUN_STATE_RUNNING;
+            break;
+        }
         request.mutable_resume()->set_world(world_);
         state_ = evod::v1::RUN_STATE_RUNNING;
         resuming_ = true;
@@ -70,6 +76,7 @@ std::optional<evod::v1::Request> RunControl::pause_or_resume() {
     }
     step_target_ = 0;
     held_step_ = 0;
+    nothing_to_resume_ = false;
     ++unanswered_count_;
     return request;
 }
@@ -87,6 +94,7 @@ std::optional<evod::v1::Request> RunControl::step(std::uint64_t ticks) {
         held_step_ = ticks;
         return pause;
     }
+    nothing_to_resume_ = nothing_to_resume_ || state_ == evod::v1::RUN_STATE_WAITING;
     step_target_ = std::max(step_target_, tick_) + ticks;
     evod::v1::Request request;
     request.mutable_run_until_tick()->set_world(world_);

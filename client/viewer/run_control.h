@@ -24,8 +24,8 @@ class RunControl {
 
     // What a key asks for. Every request that is returned must be followed by one answered(), whatever came of it.
 
-    /// Running: pause; paused: go on; waiting: run until paused. Nullopt when the run has ended, or nothing is known
-    /// yet.
+    /// Running: pause; paused: go on; waiting, or stepped from there: run until paused. Nullopt when the run has ended,
+    /// or nothing is known yet.
     std::optional<evod::v1::Request> pause_or_resume();
     /// So many ticks more than there are, or than an unfinished step has asked for. A world that runs is paused first.
     /// Nullopt as above, and while a pause is unanswered: answered() then returns the step.
@@ -44,6 +44,8 @@ class RunControl {
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }
     std::uint64_t tick() const { return tick_; }
+    /// Whether it runs to a tick that was named, and pauses there.
+    bool stepping() const { return step_target_ > tick_; }
     evod::v1::RunState state() const { return state_; }
     const evod::v1::Speed& speed() const { return speed_; }
     evod::v1::Outcome outcome() const { return outcome_; }
@@ -65,9 +67,10 @@ class RunControl {
     evod::v1::Speed speed_;
     double factor_ = 1; // the last that was not max
     unsigned unanswered_count_ = 0;
-    bool resuming_ = false;       // a Resume is among the unanswered
-    bool pausing_ = false;        // a Pause is
-    std::uint64_t held_step_ = 0; // ticks to step when the Pause is answered
+    bool resuming_ = false;          // a Resume is among the unanswered
+    bool pausing_ = false;           // a Pause is
+    std::uint64_t held_step_ = 0;    // ticks to step when the Pause is answered
+    bool nothing_to_resume_ = false; // it had come to its goal before it was stepped
 };
 
 } // namespace evod::viewer

@@ -1,5 +1,6 @@
 #include "client/viewer/panels/panels.h"
 
+#include "client/viewer/panels/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/plots_panel.h"
 #include "client/viewer/panels/view_panel.h"
@@ -14,6 +15,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<ViewPanel>()});
     places_.push_back({std::make_unique<OrganismPanel>()});
     places_.push_back({std::make_unique<PlotsPanel>()});
+    places_.push_back({std::make_unique<BreedingPanel>()});
 }
 
 void Panels::toggle(std::size_t index) {

@@ -8,16 +8,32 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace evod::viewer {
+
+/// Waits for it; false if it does not come within some seconds.
+template <class Condition>
+bool comes_true(Condition condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    return true;
+}
 
 class TemporaryFolder {
   public:
@@ -100,7 +116,7 @@ class Process {
     FILE* output_ = nullptr;
 };
 
-/// evod on a port of its own, with a connection of the test's own.
+/// evod on a port of its own, with a connection of the test's own. It keeps nothing unless it is told --data.
 class RealServer {
   public:
     explicit RealServer(std::vector<std::string> arguments) : process_{EVOD, with_port(std::move(arguments))} {
@@ -132,7 +148,10 @@ class RealServer {
 
   private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), {"--port", "0", "--keep-nothing"});
+        arguments.insert(arguments.end(), {"--port", "0"});
+        if (std::ranges::find(arguments, "--data") == arguments.end()) {
+            arguments.emplace_back("--keep-nothing");
+        }
         return arguments;
     }
     Process process_;

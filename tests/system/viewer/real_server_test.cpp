@@ -9,23 +9,8 @@
 #include <X11/keysym.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
-
 namespace evod::viewer {
 namespace {
-
-template <class Condition>
-bool comes_true(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) {
-            return false;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
-    }
-    return true;
-}
 
 TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
     RealServer server{{"--seed", "7", "--speed", "max"}};

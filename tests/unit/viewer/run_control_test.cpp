@@ -50,6 +50,35 @@ TEST(RunControl, SpaceRunsAWaitingWorldPausesARunningOneAndResumesAPausedOne) {
     EXPECT_EQ(resume->resume().world(), "default");
 }
 
+TEST(RunControl, AfterAStepOfAWaitingWorldSpaceRunsItForThereIsNothingToResume) {
+    RunControl control;
+    control.see(world(waiting, 10));
+    EXPECT_TRUE(control.step(1)->has_run_until_tick());
+    evod::v1::WorldInfo stepping = world(running, 10);
+    stepping.set_run_until_tick(11);
+    control.answered(nullptr);
+    control.see(stepping);
+    EXPECT_TRUE(control.stepping());
+    control.see(world(paused, 11));
+    EXPECT_FALSE(control.stepping());
+    EXPECT_TRUE(control.pause_or_resume()->has_run());
+    control.answered(nullptr);
+    control.see(world(running, 12));
+    control.see(world(paused, 13));
+    EXPECT_TRUE(control.pause_or_resume()->has_resume());
+}
+
+TEST(RunControl, AStepIsForgottenWhenSomebodyElseRunsTheWorld) {
+    RunControl control;
+    control.see(world(waiting, 10));
+    control.step(1);
+    control.answered(nullptr);
+    control.see(world(paused, 11));
+    control.see(world(running, 12));
+    control.see(world(paused, 13));
+    EXPECT_TRUE(control.pause_or_resume()->has_resume());
+}
+
 TEST(RunControl, AsksNothingOfAWorldThatHasEndedOrIsNotKnownYet) {
     RunControl control;
     EXPECT_FALSE(control.pause_or_resume());

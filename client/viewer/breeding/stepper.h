@@ -1,0 +1,64 @@
+// Stepper: which moment of a breeding is looked at, as if it were a tape: one step on or back, played, or at its end.
+//
+// The moments: the fitness and what scaling made of it, then pick after pick, then descendant after descendant, then
+// the next generation as a whole.
+//
+// Threads      none.
+#pragma once
+
+#include <cstdint>
+
+namespace evod::viewer {
+
+enum class BreedingStage { Scaling, Picking, Breeding, Done };
+
+struct Moment {
+    BreedingStage stage = BreedingStage::Scaling;
+    std::uint32_t index = 0; // of the pick or the descendant
+    friend bool operator==(const Moment&, const Moment&) = default;
+};
+
+class Stepper {
+  public:
+    /// Steps a second while it plays.
+    static constexpr double speed_min = 0.25, speed_max = 200;
+
+    /// Another breeding: from its beginning.
+    void load(std::uint32_t picks, std::uint32_t descendants);
+    Moment moment() const;
+
+    std::uint32_t position() const { return position_; } // of the moment, 0 to last_position()
+    std::uint32_t last_position() const { return picks_ + descendants_ + 1; }
+    bool at_begin() const { return position_ == 0; }
+    bool at_end() const { return position_ == last_position(); }
+
+    // By hand; each of these stops the playing.
+    void step();
+    void back();
+    void next_stage();     // to its first moment
+    void previous_stage(); // to the first moment of this one; from there, of the one before
+    void to_begin() { go_to(0); }
+    void to_end() { go_to(last_position()); }
+    void go_to(std::uint32_t position);
+
+    /// Plays on, or stops. Played at its end, it begins again.
+    void play_or_stop();
+    void play();
+    bool playing() const { return playing_; }
+    void set_speed(double steps_per_s);
+    double speed() const { return steps_per_s_; }
+    /// Time passes; at the end it stops.
+    void advance(double seconds);
+
+  private:
+    std::uint32_t begin_of(BreedingStage stage) const;
+    void stop();
+
+    std::uint32_t picks_ = 0, descendants_ = 0;
+    std::uint32_t position_ = 0;
+    bool playing_ = false;
+    double steps_per_s_ = 2;
+    double due_ = 0; // steps, a fraction of one
+};
+
+} // namespace evod::viewer

@@ -1,0 +1,59 @@
+// BreedingPanel: the glass box: how a generation was bred, step by step, and what theory says of it.
+//
+// While it is shown it asks for the breeding of each generation that comes, or for the one that is chosen.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/breeding/comparison.h"
+#include "client/viewer/breeding/generation_hold.h"
+#include "client/viewer/breeding/record.h"
+#include "client/viewer/breeding/stepper.h"
+#include "client/viewer/panels/panel.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+class BreedingPanel : public Panel {
+  public:
+    std::string_view title() const override { return "Glass box"; }
+    void build(Context& context) override;
+
+  private:
+    using Time = link::WorldView::Clock::time_point;
+
+    void choose(const Context& context);
+    void ask(Watch& watch);
+    void ask_gene_names(Watch& watch, const BreedingRecord::Key& key);
+    void take(const BreedingRecord::Key& key, const link::Result<evod::v1::Response>& response);
+    void show_coming();
+    void hold_world(Watch& watch);
+
+    void build_generation(const Context& context);
+    void build_transport();
+    void take_keys();
+    void build_stage(const Gui& gui);
+    void build_theory(const Gui& gui);
+
+    std::optional<BreedingRecord> shown_, coming_; // what comes is shown when its first page is here
+    std::optional<Comparison> comparison_;         // of what is shown; nullopt until all of it is known
+    Stepper stepper_;
+    std::string error_; // why there is no more to be shown
+    bool asking_ = false;
+
+    std::uint64_t newest_ = 0; // generation that was bred from; 0: none yet
+    std::uint64_t chosen_ = 0;
+    bool follow_ = true, play_each_ = false;
+    Time next_look_{}; // for a newer generation
+
+    GenerationHold hold_;
+    bool past_ = false;     // the world shows the past, and is not to be held
+    std::string named_run_; // whose genes' names these are
+    std::vector<std::string> gene_names_;
+    bool sized_ = false;
+};
+
+} // namespace evod::viewer
