@@ -46,6 +46,9 @@ class Camera {
     /// Enlarges by `factor` around what is seen at `screen`, which stays there; within zoom_min() to zoom_max.
     void zoom_at(Point screen, double factor);
 
+    /// The same part of the island at the same zoom as `other` shows; if that is fitted, all of it.
+    void look_as(const Camera& other);
+
     Point to_screen(Point world) const;
     Point to_world(Point screen) const;
 

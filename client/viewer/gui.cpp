@@ -33,7 +33,7 @@ int button_index(sf::Mouse::Button button) {
     return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
 }
 
-/// The keys that panels ask for.
+/// The keys that panels and fields of text ask for.
 struct NamedKey {
     ImGuiKey name;
     sf::Keyboard::Key key;
@@ -43,6 +43,9 @@ constexpr NamedKey named_keys[] = {
     {ImGuiKey_PageUp, sf::Keyboard::PageUp},  {ImGuiKey_PageDown, sf::Keyboard::PageDown},
     {ImGuiKey_Home, sf::Keyboard::Home},      {ImGuiKey_End, sf::Keyboard::End},
     {ImGuiKey_Enter, sf::Keyboard::Enter},    {ImGuiKey_Space, sf::Keyboard::Space},
+    {ImGuiKey_Tab, sf::Keyboard::Tab},        {ImGuiKey_Backspace, sf::Keyboard::BackSpace},
+    {ImGuiKey_Delete, sf::Keyboard::Delete},  {ImGuiKey_Escape, sf::Keyboard::Escape},
+    {ImGuiKey_UpArrow, sf::Keyboard::Up},     {ImGuiKey_DownArrow, sf::Keyboard::Down},
 };
 
 } // namespace
@@ -98,10 +101,15 @@ void Gui::handle(const sf::Event& event) {
         if (event.key.code != sf::Keyboard::Unknown) {
             io.KeysDown[event.key.code] = event.type == sf::Event::KeyPressed;
         }
+        io.KeyCtrl = event.key.control;
+        io.KeyShift = event.key.shift;
         break;
     case sf::Event::LostFocus:
         std::fill(std::begin(io.MouseDown), std::end(io.MouseDown), false);
         std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+        break;
+    case sf::Event::TextEntered:
+        io.AddInputCharacter(event.text.unicode);
         break;
     default:
         break;

@@ -19,6 +19,11 @@ constexpr KeyBinding key_bindings[] = {
     {Key::PageDown, Action::NextIsland},
     {Key::PageUp, Action::PreviousIsland},
     {Key::W, Action::NextWorld},
+    {Key::P, Action::PastOrPresent},
+    {Key::B, Action::Beside},
+    {Key::X, Action::OtherHalf},
+    {Key::K, Action::LinkCameras},
+    {Key::I, Action::AllIslands},
     {Key::F, Action::Fit},
     {Key::Home, Action::Fit},
     {Key::C, Action::NextColouring},
@@ -38,8 +43,14 @@ struct SignBinding {
     Action action;
 };
 constexpr SignBinding sign_bindings[] = {
-    {'+', Action::Faster}, {'=', Action::Faster},   {'-', Action::Slower},
-    {'_', Action::Slower}, {'1', Action::RealTime}, {'?', Action::Help},
+    {'+', Action::Faster},
+    {'=', Action::Faster},
+    {'-', Action::Slower},
+    {'_', Action::Slower},
+    {'1', Action::RealTime},
+    {'?', Action::Help},
+    {'[', Action::PreviousGeneration},
+    {']', Action::NextGeneration},
 };
 
 constexpr HelpLine lines[] = {
@@ -50,7 +61,13 @@ constexpr HelpLine lines[] = {
     {"1", "as fast as real time"},
     {"M", "as fast as the server can; again: as before"},
     {"Tab   Page Up   Page Down", "next or previous island"},
+    {"I", "all islands at once, or one"},
     {"W", "next world"},
+    {"P", "the past of the world; again: the present"},
+    {"[   ]", "in the past: the generation before, the next one"},
+    {"B", "a second world beside; again: only the one with the focus"},
+    {"X   click", "the keys act on the other half"},
+    {"K", "all cameras show the same part, or each its own"},
     {"Wheel", "zoom at the cursor"},
     {"Drag   arrow keys", "move the picture"},
     {"F   Home", "show the whole island"},

@@ -1,6 +1,7 @@
-// evoview: options → a window, or one screenshot → exit status.
+// evoview: options → a window, or a screenshot, or a recording → exit status.
 #include "client/viewer/display.h"
 #include "client/viewer/options.h"
+#include "client/viewer/record.h"
 #include "client/viewer/screenshot.h"
 #include "client/viewer/window.h"
 
@@ -18,6 +19,8 @@ int main(int argc, char** argv) {
         check_display();
         if (options.screenshot) {
             take_screenshot(options, *options.screenshot);
+        } else if (options.record) {
+            record(options, *options.record);
         } else {
             Window{options}.run();
         }

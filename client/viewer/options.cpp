@@ -15,12 +15,16 @@ constexpr int exit_usage = 2;
 constexpr const char* footer = R"(Keys: H in the window lists them. The window closes with Q; the worlds run on.
 
 A screenshot only watches: it sends no command, so the world must be running, or have
-reached the tick already. Without a screen it works under xvfb-run.
+reached the tick already. A recording steps the world from picture to picture if the role
+allows that, so that no tick is missed; the world goes on afterwards if it ran before. Without
+a screen both work under xvfb-run.
 
   evoview --server lab.example:7744 --world default
   evoview --screenshot out.png --at-tick 600
+  evoview --world default --beside fork --all-islands
+  evoview --record film.mp4 --past 12 --record-generations 1
 
-Exit status: 0; 1 no picture could be had, or no window opened; 2 the command line is wrong.)";
+Exit status: 0; 1 no picture could be had or written, or no window opened; 2 the command line is wrong.)";
 
 constexpr unsigned pixels_min = 64, pixels_max = 8192;
 
@@ -44,6 +48,7 @@ std::string parse_size(const std::string& text, unsigned& width, unsigned& heigh
 std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options options;
     Options::Screenshot screenshot;
+    Options::Record record;
     std::string server = "localhost", size = "1280x720";
     CLI::App app{"evoview: a window into an evolution laboratory.", "evoview"};
     app.footer(footer);
@@ -56,12 +61,32 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     app.add_option("--world", options.world, "the world to look at; else the only one, or \"default\"")
         ->envname("EVOD_WORLD");
     app.add_option("--island", options.island, "its island, from 0")->capture_default_str();
-    app.add_option("--size", size, "of the window or the screenshot, in pixels")->capture_default_str();
+    app.add_flag("--all-islands", options.all_islands, "all islands at once, as tiles");
+    app.add_option("--beside", options.beside, "a second world, in the right half");
+    app.add_option("--past", options.past_generation, "look at the past of the world, from this generation on")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--size", size, "of the window or the pictures, in pixels")->capture_default_str();
     auto* shot = app.add_option("--screenshot", screenshot.path, "save one picture as this PNG file, open no window");
     app.add_option("--at-tick", screenshot.tick, "of the first tick from this one on that the server shows")
         ->needs(shot);
-    app.add_option("--timeout", screenshot.timeout_s, "seconds to wait for it")
-        ->needs(shot)
+    auto* film = app.add_option("--record", record.path,
+                                "save picture after picture, open no window: PNG files in this folder, or a film by\n"
+                                "ffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
+                     ->excludes(shot);
+    app.add_option("--record-ticks", record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
+        ->needs(film);
+    app.add_option("--record-generations", record.generations, "end when so many more generations have ended")
+        ->needs(film)
+        ->check(CLI::PositiveNumber);
+    app.add_option("--every", record.every_ticks, "ticks from one picture to the next")
+        ->needs(film)
+        ->capture_default_str()
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+    app.add_option("--fps", record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
+        ->needs(film)
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1000.0));
+    app.add_option("--timeout", screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1e6));
     app.final_callback([&] {
@@ -72,6 +97,9 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         }
         if (const auto known = link::apply(credentials, options.connection); !known) {
             throw CLI::ValidationError{known.error().what};
+        }
+        if (app.count("--timeout") > 0 && screenshot.path.empty() && record.path.empty()) {
+            throw CLI::ValidationError{"--timeout", "is of --screenshot and --record"};
         }
         if (const std::string error = parse_size(size, options.width_pixels, options.height_pixels); !error.empty()) {
             throw CLI::ValidationError{"--size", error};
@@ -84,6 +112,10 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     }
     if (!screenshot.path.empty()) {
         options.screenshot = screenshot;
+    }
+    if (!record.path.empty()) {
+        record.timeout_s = screenshot.timeout_s;
+        options.record = record;
     }
     return options;
 }

@@ -14,6 +14,9 @@ struct Options {
     link::Options connection; // to where, as whom
     std::string world;        // empty: the server's choice
     std::uint32_t island = 0;
+    bool all_islands = false;                     // at once, as tiles
+    std::optional<std::string> beside;            // a second world, in the right half
+    std::optional<std::uint64_t> past_generation; // begin in the past of the world, with this generation
     unsigned width_pixels = 1280, height_pixels = 720;
 
     /// Not a window, but one picture in a file.
@@ -23,6 +26,17 @@ struct Options {
         double timeout_s = 60;
     };
     std::optional<Screenshot> screenshot;
+
+    /// Not a window, but picture after picture in files.
+    struct Record {
+        std::string path;                         // a folder, or a film by its ending
+        std::optional<std::uint64_t> ticks;       // end after so many; without both, with the run
+        std::optional<std::uint64_t> generations; // end when so many more have ended
+        std::uint64_t every_ticks = 1;            // from one picture to the next
+        double fps = 60;                          // pictures a second of a film
+        double timeout_s = 60;                    // for one picture
+    };
+    std::optional<Record> record;
 };
 
 /// The options; or the exit status, after help, version or an error was printed.

@@ -36,10 +36,11 @@ float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, c
     return place.x + size_of(text, font, wrap_width).x;
 }
 
-/// A rounded sheet with text, its upper edge at `top`, centred; returns its lower edge.
-float sheet(ImDrawList& list, const ImFont& font, float centre_x, float top, Colour paper, const std::string& text) {
+/// A rounded sheet with text, its upper edge at `top`, in the middle of `place`; returns its lower edge.
+float sheet(ImDrawList& list, const ImFont& font, Rectangle place, float top, Colour paper, const std::string& text) {
     constexpr float inside = 12;
-    const float wrap_width = std::max(ImGui::GetIO().DisplaySize.x - 6 * inside, 100.f);
+    const auto centre_x = static_cast<float>(place.centre().x);
+    const float wrap_width = std::max(static_cast<float>(place.width) - 6 * inside, 100.f);
     const ImVec2 size = size_of(text, font, wrap_width);
     const ImVec2 corner{std::floor(centre_x - size.x / 2 - inside), std::floor(top)};
     const ImVec2 other{corner.x + size.x + 2 * inside, corner.y + size.y + 2 * inside};
@@ -55,8 +56,8 @@ Colour state_colour(const Watch& watch) {
 
 } // namespace
 
-Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
-    return {0, top_strip, double(width_pixels), std::max(double(height_pixels) - top_strip - bottom_strip, 1.0)};
+Rectangle viewport_of(Rectangle place) {
+    return {place.left, place.top + top_strip, place.width, std::max(place.height - top_strip - bottom_strip, 1.0)};
 }
 
 void Overlay::notice(std::string text, Clock::time_point now) {
@@ -67,54 +68,73 @@ void Overlay::notice(std::string text, Clock::time_point now) {
     }
 }
 
-void Overlay::build(const Watch& watch, const Gui& gui, Clock::time_point now) {
-    build_strips(watch, gui);
-    build_connection(watch, gui);
+void Overlay::build_world(const Watch& watch, const Gui& gui, Rectangle place, bool focused) {
+    build_strips(watch, gui, place, focused);
+    build_connection(watch, gui, place);
+}
+
+void Overlay::build(const Gui& gui, Clock::time_point now) {
     build_notices(gui, now);
     if (help_) {
         build_help();
     }
 }
 
-void Overlay::build_strips(const Watch& watch, const Gui& gui) {
+void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, bool focused) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float bottom = window.y - bottom_strip;
-    list.AddRectFilled({0, 0}, {window.x, top_strip}, ink(palette::strip));
-    list.AddRectFilled({0, top_strip - 1}, {window.x, top_strip}, ink(palette::strip_edge));
-    list.AddRectFilled({0, bottom}, window, ink(palette::strip));
-    list.AddRectFilled({0, bottom}, {window.x, bottom + 1}, ink(palette::strip_edge));
+    const auto left = static_cast<float>(place.left), right = left + static_cast<float>(place.width);
+    const auto top = static_cast<float>(place.top), end = top + static_cast<float>(place.height);
+    const float bottom = end - bottom_strip;
+    list.AddRectFilled({left, top}, {right, top + top_strip}, ink(palette::strip));
+    list.AddRectFilled({left, top + top_strip - 1}, {right, top + top_strip}, ink(palette::strip_edge));
+    list.AddRectFilled({left, bottom}, {right, end}, ink(palette::strip));
+    list.AddRectFilled({left, bottom}, {right, bottom + 1}, ink(palette::strip_edge));
+    if (focused) {
+        list.AddRectFilled({left, top}, {right, top + 3}, ink(palette::focus));
+    }
     const wire::Picture* picture = watch.picture();
     if (picture == nullptr) {
         return;
     }
     const ImFont& text = gui.text();
-    const float title_end = write(list, gui.title(), {edge, (top_strip - gui.title().FontSize) / 2 - 1}, palette::text,
-                                  title(picture->about));
+    float title_begin = left + edge;
+    const float top_line = top + (top_strip - text.FontSize) / 2 - 1;
+    if (watch.recording() != nullptr) {
+        const std::string mark = past_mark(*watch.recording());
+        const float mark_end = title_begin + size_of(mark, text).x + 16;
+        list.AddRectFilled({title_begin, top + 7}, {mark_end, top + top_strip - 8}, ink(palette::past), 4);
+        write(list, text, {title_begin + 8, top_line}, palette::text, mark);
+        title_begin = mark_end + edge;
+    }
+    const float title_end = write(list, gui.title(), {title_begin, top + (top_strip - gui.title().FontSize) / 2 - 1},
+                                  palette::text, title(picture->about));
 
     const std::string state = shown_state(watch.control().state(), watch.storage());
     const std::string help = "H help";
-    const std::string place = place_and_speed(picture->about, watch.control());
-    const float top_line = (top_strip - text.FontSize) / 2 - 1;
-    const float help_begin = window.x - edge - size_of(help, text).x;
+    const float help_begin = right - edge - size_of(help, text).x;
     const float state_begin = help_begin - 2 * edge - size_of(state, text).x;
-    const float place_begin = state_begin - 2 * edge - size_of(place, text).x;
     write(list, text, {help_begin, top_line}, palette::text_quiet, help);
-    write(list, text, {state_begin, top_line}, state_colour(watch), state);
-    if (place_begin > title_end + edge) {
-        write(list, text, {place_begin, top_line}, palette::text, place);
+    if (state_begin > title_end + edge) {
+        write(list, text, {state_begin, top_line}, state_colour(watch), state);
+    }
+    for (const std::string& about : {place_and_speed(picture->about, watch.control()), picture->about.world()}) {
+        const float about_begin = state_begin - 2 * edge - size_of(about, text).x;
+        if (about_begin > title_end + edge) {
+            write(list, text, {about_begin, top_line}, palette::text, about);
+            break;
+        }
     }
 
-    float x = edge;
+    float x = left + edge;
     for (const std::string& piece : statistics(picture->about, watch.last_generation())) {
-        if (x + size_of(piece, text).x > window.x - edge) {
+        if (x + size_of(piece, text).x > right - edge) {
             break;
         }
         x = write(list, text, {x, bottom + (bottom_strip - text.FontSize) / 2 - 1}, palette::text, piece) + 26;
     }
 }
 
-void Overlay::build_connection(const Watch& watch, const Gui& gui) {
+void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle place) {
     const link::ConnectionStatus status = watch.connection_status();
     const std::string server = link::to_text(watch.server());
     const std::string trouble = shown_storage(watch.storage());
@@ -134,9 +154,19 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui) {
     }
     const bool bad = status.state == link::State::Failed || watch.refusal() ||
                      (status.state == link::State::Connected && !trouble.empty());
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    sheet(*ImGui::GetForegroundDrawList(), gui.text(), window.x / 2,
-          watch.picture() == nullptr ? window.y * 0.42f : top_strip + 16, bad ? palette::warning : palette::note, text);
+    const double below = watch.picture() == nullptr ? place.height * 0.42 : top_strip + 16;
+    sheet(*ImGui::GetForegroundDrawList(), gui.text(), place, static_cast<float>(place.top + below),
+          bad ? palette::warning : palette::note, text);
+}
+
+void Overlay::build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const std::string text = "island " + std::to_string(island);
+    const ImVec2 size = size_of(text, gui.label());
+    const ImVec2 corner{static_cast<float>(place.left), static_cast<float>(place.top)};
+    list.AddRectFilled(corner, {corner.x + size.x + 12, corner.y + size.y + 4},
+                       ink(chosen ? palette::focus : palette::note), 3);
+    write(list, gui.label(), {corner.x + 6, corner.y + 2}, palette::note_text, text);
 }
 
 void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
@@ -150,8 +180,8 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
     if (!text.empty()) {
         const ImVec2 window = ImGui::GetIO().DisplaySize;
         const float height = size_of(text, gui.text()).y;
-        sheet(*ImGui::GetForegroundDrawList(), gui.text(), window.x / 2, window.y - bottom_strip - height - 40,
-              palette::note, text);
+        sheet(*ImGui::GetForegroundDrawList(), gui.text(), {0, 0, window.x, window.y},
+              window.y - bottom_strip - height - 40, palette::note, text);
     }
 }
 

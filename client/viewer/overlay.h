@@ -14,8 +14,11 @@
 
 namespace evod::viewer {
 
-/// The part of a window that the strips leave to the island.
-Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels);
+/// The part of a window, or of a place in it, that the strips leave to the island.
+Rectangle viewport_of(Rectangle place);
+inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
+    return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
+}
 
 class Overlay {
   public:
@@ -27,8 +30,13 @@ class Overlay {
     bool help() const { return help_; }
     void close_help() { help_ = false; }
 
-    /// Between Gui::begin() and Gui::draw().
-    void build(const Watch& watch, const Gui& gui, Clock::time_point now);
+    // Between Gui::begin() and Gui::draw():
+    /// Notices and help, over the whole window.
+    void build(const Gui& gui, Clock::time_point now);
+    /// The strips of a world that is shown at a place of the window, and how its connection stands.
+    void build_world(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
+    /// Which island a tile shows.
+    void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
     /// What is known of one organism, beside it.
     void build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui);
 
@@ -38,8 +46,8 @@ class Overlay {
         Clock::time_point until;
     };
 
-    void build_strips(const Watch& watch, const Gui& gui);
-    void build_connection(const Watch& watch, const Gui& gui);
+    void build_strips(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
+    void build_connection(const Watch& watch, const Gui& gui, Rectangle place);
     void build_notices(const Gui& gui, Clock::time_point now);
     void build_help();
 

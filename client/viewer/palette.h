@@ -43,6 +43,9 @@ constexpr Colour text_quiet{92, 92, 100};
 constexpr Colour running{22, 118, 48};
 constexpr Colour stopped{168, 84, 0};
 
+constexpr Colour past{206, 142, 32}; // marks what has been
+constexpr Colour focus{28, 98, 190};
+
 constexpr Colour note{38, 38, 44, 232};
 constexpr Colour note_text{244, 244, 246};
 constexpr Colour warning{140, 24, 28, 240};

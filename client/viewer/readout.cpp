@@ -87,6 +87,10 @@ std::string title(const evod::v1::SnapshotFrame& picture) {
     return "Generation " + with_separators(picture.generation());
 }
 
+std::string past_mark(const evod::v1::Recording& recording) {
+    return recording.past_of().empty() ? "REPLAY" : "PAST of " + recording.past_of();
+}
+
 std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control) {
     std::string text = picture.world();
     if (picture.island_count() > 1) {

@@ -26,6 +26,9 @@ std::string shown_refusal(const evod::v1::Status& status);
 /// "Generation 12"; empty before the first picture.
 std::string title(const evod::v1::SnapshotFrame& picture);
 
+/// Before the title of a world that shows what has been: "PAST of default", or "REPLAY" of a run file.
+std::string past_mark(const evod::v1::Recording& recording);
+
 /// "default · island 2 of 0–7 · 4× (240 ticks/s)"; the state is written beside it.
 std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control);
 

@@ -24,7 +24,7 @@ void RunControl::take(const evod::v1::Speed& speed) {
 
 void RunControl::see(const evod::v1::SnapshotFrame& picture) {
     begin_run(picture.world(), picture.run_id());
-    tick_ = std::max(tick_, picture.tick());
+    tick_ = shows_past_ ? picture.tick() : std::max(tick_, picture.tick());
     // A picture from before the last answer or event knows less than that; and an answer under way will know more.
     const bool newer = picture.tick() > told_tick_ || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
     if (newer && unanswered_count_ == 0) {
@@ -35,16 +35,17 @@ void RunControl::see(const evod::v1::SnapshotFrame& picture) {
 
 void RunControl::see(const evod::v1::WorldInfo& world) {
     begin_run(world.name(), world.run_id());
-    if (world.tick() < told_tick_) {
+    shows_past_ = world.has_recording();
+    if (world.tick() < told_tick_ && !shows_past_) {
         return; // overtaken on its way
     }
-    tick_ = std::max(tick_, world.tick());
+    tick_ = shows_past_ ? world.tick() : std::max(tick_, world.tick());
     told_tick_ = world.tick();
     if (unanswered_count_ == 0) {
         state_ = world.state();
         outcome_ = world.outcome();
         take(world.speed());
-        step_target_ = world.run_until_tick();
+        step_target_ = state_ == evod::v1::RUN_STATE_RUNNING ? world.run_until_tick() : 0;
         nothing_to_resume_ = nothing_to_resume_ && !(state_ == evod::v1::RUN_STATE_RUNNING && step_target_ == 0);
     }
 }

@@ -62,6 +62,7 @@ class RunControl {
     std::uint64_t tick_ = 0;        // the newest known
     std::uint64_t told_tick_ = 0;   // of the newest WorldInfo
     std::uint64_t step_target_ = 0; // of an unfinished step; else in the past
+    bool shows_past_ = false;       // its ticks may fall
     evod::v1::RunState state_ = evod::v1::RUN_STATE_UNSPECIFIED;
     evod::v1::Outcome outcome_ = evod::v1::OUTCOME_UNSPECIFIED;
     evod::v1::Speed speed_;

@@ -176,14 +176,12 @@ ShapePainter::~ShapePainter() {
 
 void ShapePainter::begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background) {
     glViewport(0, 0, static_cast<int>(width_pixels), static_cast<int>(height_pixels));
-    glDisable(GL_SCISSOR_TEST);
-    glClearColor(background.red / 255.f, background.green / 255.f, background.blue / 255.f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-
     const Rectangle& seen = camera.viewport();
     const auto pixel = [](double value) { return static_cast<int>(std::lround(value)); };
     glEnable(GL_SCISSOR_TEST);
     glScissor(pixel(seen.left), pixel(height_pixels - seen.top - seen.height), pixel(seen.width), pixel(seen.height));
+    glClearColor(background.red / 255.f, background.green / 255.f, background.blue / 255.f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glEnable(GL_BLEND);

@@ -69,7 +69,7 @@ class ShapePainter {
     ShapePainter(const ShapePainter&) = delete;
     ShapePainter& operator=(const ShapePainter&) = delete;
 
-    /// Clears the whole picture, and draws into the camera's viewport until end().
+    /// Clears the camera's viewport, and draws into it until end().
     void begin(const Camera& camera, unsigned width_pixels, unsigned height_pixels, Colour background);
     void draw(const Layer& layer, const Look& look);
     void end();

@@ -40,6 +40,10 @@ std::optional<evod::v1::View> StreamedRegion::update(const Camera& camera, evod:
 }
 
 void Sight::stream(Watch& watch, const Camera& camera, Clock::time_point now) {
+    if (watch.all_islands()) { // a view would be of all of them
+        region_.forget();
+        return;
+    }
     const auto& about = seen_->about;
     in_part_ = in_part_ || std::max(about.organism_count(), about.live().organism_count()) >= streamed_in_part_min;
     if (!in_part_) {

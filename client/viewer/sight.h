@@ -1,7 +1,7 @@
 // Sight: what of an island is shown, and how: the switches of the View panel, what has to be asked for them, the
 // organism that is selected and followed, and the region that is streamed.
 //
-// Owner        the stage.
+// Owner        the pane.
 // Threads      none; used by the thread that draws.
 #pragma once
 

@@ -2,9 +2,13 @@
 
 #include "client/viewer/legend.h"
 #include "client/viewer/offscreen.h"
+#include "client/viewer/palette.h"
 #include "client/viewer/panels/organism_panel.h"
 
+#include <GL/gl.h>
 #include <imgui.h>
+
+#include <algorithm>
 
 namespace evod::viewer {
 
@@ -19,9 +23,10 @@ std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const wire:
 
 } // namespace
 
-void Stage::select_at(Watch& watch, const Camera& camera, Point screen) {
+void Stage::select_at(Pane& pane, Point screen) {
+    Watch& watch = pane.watch;
     if (const wire::Picture* picture = watch.picture()) {
-        const auto index = organism_at(screen, *picture, watch.view().organisms_at(blend_), camera);
+        const auto index = organism_at(screen, *picture, watch.view().organisms_at(pane.blend), pane.camera());
         watch.select(index ? std::optional{picture->organisms.id[*index]} : std::nullopt);
         if (index) {
             panels_.show(OrganismPanel::name);
@@ -29,42 +34,71 @@ void Stage::select_at(Watch& watch, const Camera& camera, Point screen) {
     }
 }
 
-void Stage::draw(Watch& watch, Camera& camera, const Frame& frame) {
-    camera.set_viewport(viewport_of(frame.width_pixels, frame.height_pixels));
-    link::WorldView& view = watch.view();
-    Scene::Marked marked;
-    blend_ = frame.blend;
-    if (const wire::Picture* picture = watch.picture()) {
-        camera.set_island(picture->about.width_px(), picture->about.height_px());
-        sight_.update(watch, camera, frame.now);
-        sight_.follow(watch, camera, frame.blend);
-        if (frame.pointed_at) {
-            marked.pointed_at = organism_at(*frame.pointed_at, *picture, view.organisms_at(frame.blend), camera);
-        }
-        marked.selected = index_of(watch.selected(), *picture);
-    }
+void Stage::draw(Panes& panes, const Frame& frame) {
+    panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive);
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
-    scene_.draw(view, frame.blend, camera, frame.width_pixels, frame.height_pixels, sight_, marked);
-    if (!sight_.shows_density(camera)) {
-        scene_.draw_labels(view, frame.blend, camera, *ImGui::GetBackgroundDrawList(), gui_.label());
-    }
-    overlay_.build(watch, gui_, frame.now);
-    if (const wire::Picture* picture = watch.picture()) {
-        build_legend(legend_of(sight_, *picture, scene_.density_scale(), scene_.density_cell_px()), camera, gui_);
-        if (sight_.shown.minimap) {
-            minimap_.build(watch, camera);
+    const Colour between = palette::strip_edge; // of panes and tiles
+    glViewport(0, 0, static_cast<int>(frame.width_pixels), static_cast<int>(frame.height_pixels));
+    glClearColor(between.red / 255.f, between.green / 255.f, between.blue / 255.f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    std::size_t scene = 0;
+    for (std::size_t i = 0; i < panes.size(); ++i) {
+        Pane& pane = panes[i];
+        for (const Tile& tile : pane.tiles()) {
+            if (scenes_.size() <= scene) {
+                scenes_.push_back(std::make_unique<Scene>());
+            }
+            draw_tile(pane, tile, *scenes_[scene++], frame);
         }
+        overlay_.build_world(pane.watch, gui_, pane.place(), frame.interactive && panes.has_focus(pane));
+        pane.timeline.build(pane.watch, gui_, pane.timeline_place(), static_cast<int>(i));
     }
-    panels_.build({watch, gui_, frame.now, sight_});
-    if (marked.pointed_at) {
-        overlay_.build_organism(*watch.picture(), *marked.pointed_at, *frame.pointed_at, gui_);
-    }
+    overlay_.build(gui_, frame.now);
+    panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
     gui_.draw();
 }
 
-sf::Image Stage::capture(Watch& watch, Camera& camera, const Frame& frame) {
-    return draw_off_screen(frame.width_pixels, frame.height_pixels, [&] { draw(watch, camera, frame); });
+void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame) {
+    const bool chosen = tile.island == pane.watch.island();
+    const double blend = frame.glide ? tile.view.blend_at(frame.now) : 1;
+    const wire::Picture* picture = tile.view.latest().get();
+    Scene::Marked marked;
+    if (picture != nullptr && chosen) {
+        pane.blend = blend;
+        pane.sight.update(pane.watch, tile.camera, frame.now);
+        pane.sight.follow(pane.watch, tile.camera, blend);
+        marked.selected = index_of(pane.watch.selected(), *picture);
+    }
+    if (picture != nullptr && frame.pointed_at) {
+        marked.pointed_at = organism_at(*frame.pointed_at, *picture, tile.view.organisms_at(blend), tile.camera);
+    }
+    const Sight& sight = pane.sight_of(tile);
+    scene.draw(tile.view, blend, tile.camera, frame.width_pixels, frame.height_pixels, sight, marked);
+    if (!sight.shows_density(tile.camera)) {
+        const Rectangle& seen = tile.camera.viewport();
+        ImDrawList& list = *ImGui::GetBackgroundDrawList();
+        list.PushClipRect({static_cast<float>(seen.left), static_cast<float>(seen.top)},
+                          {static_cast<float>(seen.left + seen.width), static_cast<float>(seen.top + seen.height)});
+        scene.draw_labels(tile.view, blend, tile.camera, list, gui_.label());
+        list.PopClipRect();
+    }
+    if (pane.watch.all_islands()) {
+        overlay_.build_tile(tile.island, gui_, tile.camera.viewport(), chosen);
+    }
+    if (picture != nullptr && chosen) {
+        build_legend(legend_of(sight, *picture, scene.density_scale(), scene.density_cell_px()), tile.camera, gui_);
+        if (sight.shown.minimap) {
+            pane.minimap.build(pane.watch, tile.camera);
+        }
+    }
+    if (marked.pointed_at) {
+        overlay_.build_organism(*picture, *marked.pointed_at, *frame.pointed_at, gui_);
+    }
+}
+
+sf::Image Stage::capture(Panes& panes, const Frame& frame) {
+    return draw_off_screen(frame.width_pixels, frame.height_pixels, [&] { draw(panes, frame); });
 }
 
 } // namespace evod::viewer

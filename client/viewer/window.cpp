@@ -1,8 +1,11 @@
 #include "client/viewer/window.h"
 
+#include "client/viewer/png.h"
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <stdexcept>
 #include <thread>
 
 namespace evod::viewer {
@@ -25,13 +28,14 @@ sf::ContextSettings context_settings() {
 Window::Window(const Options& options)
     : window_{sf::VideoMode{options.width_pixels, options.height_pixels}, "evoview", sf::Style::Default,
               context_settings()}
-    , watch_{{.connection = options.connection, .world = options.world, .island = options.island}} {
+    , panes_{options} {
     window_.setVerticalSyncEnabled(true);
 }
 
 Stage::Frame Window::frame() const {
     const sf::Vector2u size = window_.getSize();
-    return {.width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now_};
+    return {
+        .width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now_, .interactive = true};
 }
 
 void Window::run() {
@@ -41,15 +45,18 @@ void Window::run() {
         const double seconds = std::chrono::duration<double>{Clock::now() - now_}.count();
         now_ = Clock::now();
         handle_events();
-        input_.move(camera_, seconds);
-        watch_.update(now_);
-        for (std::string& notice : watch_.take_notices()) {
-            stage_.overlay().notice(std::move(notice), now_);
+        input_.move(panes_.focused().camera(), seconds);
+        panes_.link_cameras(panes_.focused().camera());
+        panes_.update(now_);
+        for (std::size_t i = 0; i < panes_.size(); ++i) {
+            for (std::string& notice : panes_[i].watch.take_notices()) {
+                stage_.overlay().notice(std::move(notice), now_);
+            }
         }
         Stage::Frame next = frame();
-        next.blend = watch_.view().blend_at(now_);
+        next.glide = true;
         next.pointed_at = stage_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
-        stage_.draw(watch_, camera_, next);
+        stage_.draw(panes_, next);
         window_.display();
         std::this_thread::sleep_until(now_ + frame_min);
     }
@@ -58,49 +65,74 @@ void Window::run() {
 void Window::handle_events() {
     for (sf::Event event; window_.pollEvent(event);) {
         stage_.gui().handle(event);
-        if (const auto action = input_.handle(event, stage_.gui().captured(), camera_)) {
+        const Captured captured = stage_.gui().captured();
+        if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
+            panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
+        }
+        Camera& camera = event.type == sf::Event::MouseWheelScrolled
+                             ? panes_.camera_at({double(event.mouseWheelScroll.x), double(event.mouseWheelScroll.y)})
+                             : panes_.focused().camera();
+        const auto action = input_.handle(event, captured, camera);
+        panes_.link_cameras(camera);
+        if (action) {
             carry_out(*action);
         }
         if (const auto click = input_.take_click()) {
-            stage_.select_at(watch_, camera_, *click);
+            stage_.select_at(panes_.focused(), *click);
         }
     }
 }
 
 void Window::carry_out(Action action) {
+    Watch& watch = panes_.focused().watch;
+    Sight& sight = panes_.focused().sight;
     switch (action) {
     case Action::PauseOrResume:
-        return watch_.pause_or_resume();
+        return watch.pause_or_resume();
     case Action::StepOne:
-        return watch_.step(1);
+        return watch.step(1);
     case Action::StepMany:
-        return watch_.step(step_many_ticks);
+        return watch.step(step_many_ticks);
     case Action::Faster:
-        return watch_.faster();
+        return watch.faster();
     case Action::Slower:
-        return watch_.slower();
+        return watch.slower();
     case Action::RealTime:
-        return watch_.real_time();
+        return watch.real_time();
     case Action::MaxSpeed:
-        return watch_.max_speed();
+        return watch.max_speed();
     case Action::NextIsland:
-        return watch_.turn_islands(1);
+        return watch.turn_islands(1);
     case Action::PreviousIsland:
-        return watch_.turn_islands(-1);
+        return watch.turn_islands(-1);
     case Action::NextWorld:
-        return watch_.next_world();
+        return watch.next_world();
+    case Action::PastOrPresent:
+        return look_at_past_or_present();
+    case Action::PreviousGeneration:
+        return watch.turn_generations(-1);
+    case Action::NextGeneration:
+        return watch.turn_generations(1);
+    case Action::Beside:
+        return panes_.toggle_beside();
+    case Action::OtherHalf:
+        return panes_.focus_next();
+    case Action::LinkCameras:
+        return panes_.toggle_linked();
+    case Action::AllIslands:
+        return watch.show_all_islands(!watch.all_islands());
     case Action::Fit:
-        return camera_.fit();
+        return panes_.focused().camera().fit();
     case Action::NextColouring:
-        return stage_.sight().next_colouring();
+        return sight.next_colouring();
     case Action::Radii:
-        return toggle(stage_.sight().shown.radii);
+        return toggle(sight.shown.radii);
     case Action::Forces:
-        return toggle(stage_.sight().shown.forces);
+        return toggle(sight.shown.forces);
     case Action::Trails:
-        return toggle(stage_.sight().shown.trails);
+        return toggle(sight.shown.trails);
     case Action::Follow:
-        return stage_.sight().toggle_following(watch_);
+        return sight.toggle_following(watch);
     case Action::Screenshot:
         return save_screenshot();
     case Action::Help:
@@ -112,17 +144,37 @@ void Window::carry_out(Action action) {
     }
 }
 
+void Window::look_at_past_or_present() {
+    Watch& watch = panes_.focused().watch;
+    if (watch.opened_past()) {
+        return watch.return_to_present();
+    }
+    if (watch.recording() != nullptr) {
+        return stage_.overlay().notice("A run file is replayed: it has no present", now_);
+    }
+    evod::v1::RunMoment now;
+    if (const wire::Picture* picture = watch.picture()) {
+        now.set_tick(picture->about.tick());
+    }
+    watch.open_past(std::move(now));
+}
+
 void Window::save_screenshot() {
+    const Watch& watch = panes_.focused().watch;
     std::string name = "evoview";
-    if (const wire::Picture* picture = watch_.picture()) {
+    if (const wire::Picture* picture = watch.picture()) {
         name += "-" + picture->about.world() + "-island-" + std::to_string(picture->about.island()) + "-tick-" +
                 std::to_string(picture->about.tick());
     }
     name += ".png";
-    // Latest positions, as the tick in the name says, and not those on the way there.
-    const bool saved = stage_.capture(watch_, camera_, frame()).saveToFile(name);
     const std::string path = std::filesystem::absolute(name).string();
-    stage_.overlay().notice(saved ? "Saved " + path : "Could not write " + path, now_);
+    try {
+        // Latest positions, as the tick in the name says, and not those on the way there.
+        write_file(path, png_of(stage_.capture(panes_, frame())));
+        stage_.overlay().notice("Saved " + path, now_);
+    } catch (const std::runtime_error& error) {
+        stage_.overlay().notice(error.what(), now_);
+    }
 }
 
 } // namespace evod::viewer

@@ -1,14 +1,13 @@
-// Window: the world, live, and the keys that command it.
+// Window: worlds, live, and the keys that command the one with the focus.
 //
 // Owner        main.
-// Threads      used by the thread that made it, which draws; the connection of its Watch has its own.
+// Threads      used by the thread that made it, which draws; the connection of each Watch has its own.
 #pragma once
 
-#include "client/viewer/camera.h"
 #include "client/viewer/input.h"
 #include "client/viewer/options.h"
+#include "client/viewer/pane.h"
 #include "client/viewer/stage.h"
-#include "client/viewer/watch.h"
 
 #include <SFML/Window/ContextSettings.hpp>
 #include <SFML/Window/Window.hpp>
@@ -29,13 +28,13 @@ class Window {
   private:
     void handle_events();
     void carry_out(Action action);
+    void look_at_past_or_present();
     void save_screenshot();
     Stage::Frame frame() const;
 
     sf::Window window_;
     Stage stage_; // after the window, whose OpenGL it needs
-    Watch watch_;
-    Camera camera_;
+    Panes panes_;
     Input input_;
     link::WorldView::Clock::time_point now_{};
 };

@@ -54,20 +54,23 @@ void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
     const sf::Context context{context_settings(), 1280, 720};
     Stage stage;
-    Watch watch{{.connection = nobody(), .world = "", .island = 0}};
-    Camera camera;
+    Options options;
+    options.connection = nobody();
+    Panes panes{options};
+    Pane& pane = panes.focused();
     const auto start = link::WorldView::Clock::now();
     const auto first = picture(organism_count, 0), second = picture(organism_count, 2);
-    watch.view().add(first, start);
-    watch.view().add(second, start + std::chrono::milliseconds{33});
-    Stage::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = start, .blend = 0.5};
-    stage.draw(watch, camera, frame);
-    camera.zoom_at(camera.viewport().centre(), static_cast<double>(state.range(1)));
+    constexpr std::chrono::milliseconds between{33};
+    pane.watch.view().add(first, start);
+    pane.watch.view().add(second, start + between);
+    Stage::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = start + between, .glide = true};
+    stage.draw(panes, frame);
+    pane.camera().zoom_at(pane.camera().viewport().centre(), static_cast<double>(state.range(1)));
     for (auto _ : state) {
-        frame.blend = frame.blend > 0.9 ? 0 : frame.blend + 0.1;
         frame.pointed_at = Point{640, 360};
-        frame.now += std::chrono::milliseconds{16};
-        stage.draw(watch, camera, frame);
+        frame.now += std::chrono::milliseconds{3}; // from one picture to the next, again and again
+        frame.now = frame.now > start + 2 * between ? start + between : frame.now;
+        stage.draw(panes, frame);
     }
 }
 BENCHMARK(draw_frame)

@@ -2,11 +2,9 @@
 //
 // Runs under Xvfb.
 #include "tests/system/viewer/expected_picture.h"
+#include "tests/system/viewer/person.h"
 #include "tests/system/viewer/processes.h"
 
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
-#include <X11/keysym.h>
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
@@ -60,77 +58,6 @@ TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
         EXPECT_EQ(mismatch.count, 0u) << world << " " << mismatch.first;
     }
 }
-
-/// A person at the window of evoview.
-class Person {
-  public:
-    Person() : display_{XOpenDisplay(nullptr)} {
-        // A look at a window that is just being moved or drawn anew fails; whoever looks then looks again.
-        XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
-    }
-    ~Person() { XCloseDisplay(display_); }
-
-    bool finds_window() {
-        return comes_true([this] {
-            Window root, parent, *children = nullptr;
-            unsigned count = 0;
-            XQueryTree(display_, DefaultRootWindow(display_), &root, &parent, &children, &count);
-            for (unsigned i = 0; i < count; ++i) {
-                char* name = nullptr;
-                if (XFetchName(display_, children[i], &name) != 0 && name != nullptr) {
-                    window_ = std::string{name} == "evoview" ? children[i] : window_;
-                    XFree(name);
-                }
-            }
-            if (children != nullptr) {
-                XFree(children);
-            }
-            // It has its name before it is on the screen, and only there can it be looked at.
-            XWindowAttributes attributes{};
-            return window_ != 0 && XGetWindowAttributes(display_, window_, &attributes) != 0 &&
-                   attributes.map_state == IsViewable;
-        });
-    }
-
-    bool sees(Colour colour) {
-        return comes_true([&] {
-            XImage* image = XGetImage(display_, window_, 0, 0, 800, 500, AllPlanes, ZPixmap);
-            const unsigned long wanted = (static_cast<unsigned long>(colour.red) << 16) |
-                                         (static_cast<unsigned long>(colour.green) << 8) | colour.blue;
-            unsigned count = 0;
-            for (int y = 0; image != nullptr && y < image->height; ++y) {
-                for (int x = 0; x < image->width; ++x) {
-                    count += (XGetPixel(image, x, y) & 0xffffff) == wanted;
-                }
-            }
-            if (image != nullptr) {
-                XDestroyImage(image);
-            }
-            return count > 50;
-        });
-    }
-
-    void press(KeySym key, bool shift = false) {
-        XEvent event{};
-        event.xkey.display = display_;
-        event.xkey.window = window_;
-        event.xkey.root = DefaultRootWindow(display_);
-        event.xkey.same_screen = True;
-        event.xkey.keycode = XKeysymToKeycode(display_, key);
-        event.xkey.state = shift ? ShiftMask : 0;
-        for (const int type : {KeyPress, KeyRelease}) {
-            event.xkey.type = type;
-            event.xkey.time = time_ += 20;
-            XSendEvent(display_, window_, True, type == KeyPress ? KeyPressMask : KeyReleaseMask, &event);
-        }
-        XFlush(display_);
-    }
-
-  private:
-    Display* display_;
-    Window window_ = 0;
-    Time time_ = 1000;
-};
 
 TEST(RealServer, KeysCommandTheWorld) {
     RealServer server{{"--seed", "7"}};

@@ -20,13 +20,14 @@ constexpr unsigned width = 1280, height = 720;
 
 struct SightTest : testing::Test {
     SightTest() {
-        link::Options options;
-        options.server = link::parse_endpoint(server.address()).value();
-        watch.emplace(Watch::Wanted{.connection = options, .world = "default", .island = 0});
+        Options options;
+        options.connection.server = link::parse_endpoint(server.address()).value();
+        options.world = "default";
+        panes.emplace(options);
     }
 
     sf::Image draw() {
-        return stage.capture(*watch, camera, {.width_pixels = width, .height_pixels = height, .now = Clock::now()});
+        return stage.capture(*panes, {.width_pixels = width, .height_pixels = height, .now = Clock::now()});
     }
     /// Draws until the condition holds, and once more.
     template <class Condition>
@@ -37,15 +38,19 @@ struct SightTest : testing::Test {
                 ADD_FAILURE() << "it never came to that";
                 break;
             }
-            watch->update(Clock::now());
+            panes->update(Clock::now());
             draw();
             std::this_thread::sleep_for(std::chrono::milliseconds{2});
         }
         return draw();
     }
     sf::Image draw_with_population() {
-        return draw_when([&] { return stage.sight().population() != nullptr; });
+        return draw_when([&] { return sight().population() != nullptr; });
     }
+    Watch& watch() { return panes->focused().watch; }
+    Sight& sight() { return panes->focused().sight; }
+    Camera& camera() { return panes->focused().camera(); }
+
     static std::size_t count(const sf::Image& image, Colour colour) {
         std::size_t pixels = 0;
         for (unsigned y = 0; y < height; ++y) {
@@ -56,8 +61,8 @@ struct SightTest : testing::Test {
         }
         return pixels;
     }
-    Colour at(const sf::Image& image, Point world) const {
-        const Point pixel = camera.to_screen(world);
+    Colour at(const sf::Image& image, Point world) {
+        const Point pixel = camera().to_screen(world);
         const sf::Color is = image.getPixel(static_cast<unsigned>(pixel.x), static_cast<unsigned>(pixel.y));
         return {is.r, is.g, is.b};
     }
@@ -75,23 +80,22 @@ struct SightTest : testing::Test {
     using Clock = Stage::Clock;
     const wire::Picture picture = wire::decode(known_picture()).value();
     PlayingServer server{known_picture()};
-    std::optional<Watch> watch; // gone before the server, which waits for that
+    std::optional<Panes> panes; // gone before the server, which waits for that
     sf::Context context{context_settings(), 1, 1};
     Stage stage;
-    Camera camera;
 };
 
 TEST_F(SightTest, WithoutAnySwitchNothingIsAdded) {
-    const sf::Image image = draw_when([&] { return watch->picture() != nullptr; });
+    const sf::Image image = draw_when([&] { return watch().picture() != nullptr; });
     const auto mismatch = ExpectedPicture{picture, camera_of(picture.about, width, height)}.compare(image);
     EXPECT_EQ(mismatch.count, 0u) << mismatch.first;
 }
 
 TEST_F(SightTest, EveryOrganismHasTheColourOfItsHealth) {
     for (const palette::Ramp ramp : palette::ramps) {
-        stage.sight().shown.colour_by = ColourBy::Health;
-        stage.sight().shown.ramp = ramp;
-        const sf::Image image = draw_when([&] { return watch->picture() != nullptr; });
+        sight().shown.colour_by = ColourBy::Health;
+        sight().shown.ramp = ramp;
+        const sf::Image image = draw_when([&] { return watch().picture() != nullptr; });
         std::vector<Colour> colours; // the healthiest has 100, at which the ramp ends
         for (const float health : picture.organisms.health) {
             colours.push_back(palette::at(ramp, std::round(health / 100.0 * 255) / 255));
@@ -101,8 +105,8 @@ TEST_F(SightTest, EveryOrganismHasTheColourOfItsHealth) {
 }
 
 TEST_F(SightTest, EveryOrganismHasTheColourOfItsGene) {
-    stage.sight().shown.colour_by = ColourBy::Gene;
-    stage.sight().shown.gene = 1;
+    sight().shown.colour_by = ColourBy::Gene;
+    sight().shown.gene = 1;
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // the gene is 100 more than the id, and ids go from 0 to 9
     for (const std::uint32_t id : picture.organisms.id) {
@@ -112,7 +116,7 @@ TEST_F(SightTest, EveryOrganismHasTheColourOfItsGene) {
 }
 
 TEST_F(SightTest, EveryOrganismHasTheColourOfItsFamily) {
-    stage.sight().shown.colour_by = ColourBy::Lineage;
+    sight().shown.colour_by = ColourBy::Lineage;
     const sf::Image image = draw_with_population();
     std::vector<Colour> colours; // founders are 0, 1, 2, 0, …: four, three, three of ten
     for (const std::uint32_t id : picture.organisms.id) {
@@ -122,9 +126,9 @@ TEST_F(SightTest, EveryOrganismHasTheColourOfItsFamily) {
 }
 
 TEST_F(SightTest, ForcesLeadToWhatIsActedOn) {
-    const sf::Image before = draw_when([&] { return watch->picture() != nullptr; });
+    const sf::Image before = draw_when([&] { return watch().picture() != nullptr; });
     EXPECT_EQ(count(before, palette::seeks), 0u);
-    stage.sight().shown.forces = true;
+    sight().shown.forces = true;
     const sf::Image image = draw_with_population();
     EXPECT_GT(count(image, palette::seeks), 100u);
     // Organism 9 at (790, 590) acts on (9, 18): a line across the island, a pixel wide.
@@ -142,8 +146,8 @@ TEST_F(SightTest, ForcesLeadToWhatIsActedOn) {
 }
 
 TEST_F(SightTest, RadiiAreRingsAsLargeAsTheGene) {
-    const sf::Image before = draw_when([&] { return watch->picture() != nullptr; });
-    stage.sight().shown.radii = true;
+    const sf::Image before = draw_when([&] { return watch().picture() != nullptr; });
+    sight().shown.radii = true;
     const sf::Image image = draw_with_population();
     // Organism 4 at (500, 300.5) sees food 104 px away; on the way there is nothing.
     for (const auto& [x, y] : {std::pair{1.0, 0.0}, {0.0, -1.0}, {-0.6, 0.8}}) {
@@ -158,9 +162,9 @@ TEST_F(SightTest, RadiiAreRingsAsLargeAsTheGene) {
 }
 
 TEST_F(SightTest, TheMinimapIsThereWhereNotAllIsSeen) {
-    draw_when([&] { return watch->picture() != nullptr; });
-    camera.zoom_at(camera.viewport().centre(), 4);
-    const MinimapPlace place = minimap_place(camera.viewport(), 800, 600);
+    draw_when([&] { return watch().picture() != nullptr; });
+    camera().zoom_at(camera().viewport().centre(), 4);
+    const MinimapPlace place = minimap_place(camera().viewport(), 800, 600);
     const auto pixel = [&](const sf::Image& image, Point screen) {
         const sf::Color is = image.getPixel(static_cast<unsigned>(screen.x), static_cast<unsigned>(screen.y));
         return Colour{is.r, is.g, is.b};
@@ -168,17 +172,17 @@ TEST_F(SightTest, TheMinimapIsThereWhereNotAllIsSeen) {
     draw(); // a window of widgets takes its place in the first picture
     const sf::Image image = draw();
     EXPECT_EQ(pixel(image, {place.screen.left + 60, place.screen.top + 10}), palette::strip);
-    stage.sight().shown.minimap = false;
+    sight().shown.minimap = false;
     EXPECT_NE(pixel(draw(), {place.screen.left + 60, place.screen.top + 10}), palette::strip);
 }
 
 TEST_F(SightTest, AClickSelectsAndTheSelectedOneStandsOut) {
-    draw_when([&] { return watch->picture() != nullptr; });
-    stage.select_at(*watch, camera, camera.to_screen({502, 300}));
-    EXPECT_EQ(watch->selected(), 4u);
+    draw_when([&] { return watch().picture() != nullptr; });
+    stage.select_at(panes->focused(), camera().to_screen({502, 300}));
+    EXPECT_EQ(watch().selected(), 4u);
     EXPECT_GT(count(draw(), palette::selected), 20u);
-    stage.select_at(*watch, camera, camera.to_screen({400, 50}));
-    EXPECT_EQ(watch->selected(), std::nullopt);
+    stage.select_at(panes->focused(), camera().to_screen({400, 50}));
+    EXPECT_EQ(watch().selected(), std::nullopt);
 }
 
 } // namespace

@@ -127,5 +127,22 @@ TEST(Camera, LooksAtAPlaceOfTheIsland) {
     EXPECT_EQ(camera.centre(), (Point{0, 500}));
 }
 
+TEST(Camera, LooksAsAnotherDoesInAPlaceOfItsOwn) {
+    Camera leader, other;
+    leader.set_viewport({0, 0, 600, 400});
+    other.set_viewport({602, 0, 600, 400});
+    leader.set_island(1000, 500);
+    other.set_island(1000, 500);
+    leader.zoom_at({150, 100}, 3);
+    other.look_as(leader);
+    EXPECT_EQ(other.zoom(), leader.zoom());
+    EXPECT_EQ(other.centre(), leader.centre());
+    EXPECT_EQ(other.viewport().left, 602);
+    EXPECT_FALSE(other.fitted());
+    leader.fit();
+    other.look_as(leader);
+    EXPECT_TRUE(other.fitted());
+}
+
 } // namespace
 } // namespace evod::viewer

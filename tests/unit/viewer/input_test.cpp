@@ -80,7 +80,14 @@ TEST_F(InputTest, EveryKeyOfTheHelpDoesWhatItSays) {
     EXPECT_EQ(handle(press(Key::F1)), Action::Help);
     EXPECT_EQ(handle(press(Key::Q)), Action::Quit);
     EXPECT_EQ(handle(press(Key::Escape)), Action::Close);
-    EXPECT_EQ(handle(press(Key::K)), std::nullopt);
+    EXPECT_EQ(handle(press(Key::P)), Action::PastOrPresent);
+    EXPECT_EQ(handle(text('[')), Action::PreviousGeneration);
+    EXPECT_EQ(handle(text(']')), Action::NextGeneration);
+    EXPECT_EQ(handle(press(Key::B)), Action::Beside);
+    EXPECT_EQ(handle(press(Key::X)), Action::OtherHalf);
+    EXPECT_EQ(handle(press(Key::K)), Action::LinkCameras);
+    EXPECT_EQ(handle(press(Key::I)), Action::AllIslands);
+    EXPECT_EQ(handle(press(Key::J)), std::nullopt);
 }
 
 TEST_F(InputTest, AHeldKeyActsOnceButStepsRepeat) {

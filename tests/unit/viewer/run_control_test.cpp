@@ -239,5 +239,19 @@ TEST(RunControl, AnotherRunOfTheWorldBeginsAfresh) {
     EXPECT_EQ(control.state(), running);
 }
 
+TEST(RunControl, AWorldThatShowsThePastMayGoBack) {
+    RunControl control;
+    auto past = world(paused, 500);
+    past.mutable_recording()->set_last_tick(900);
+    past.set_run_until_tick(500); // of a step that is over
+    control.see(past);
+    control.see(picture(paused, 500));
+    past.set_tick(100);
+    control.see(past);
+    EXPECT_EQ(control.tick(), 100u);
+    control.see(picture(paused, 100));
+    EXPECT_EQ(control.step(1)->run_until_tick().tick(), 101u);
+}
+
 } // namespace
 } // namespace evod::viewer

@@ -46,10 +46,10 @@ struct WatchTest : testing::Test {
     }
 
     static void send_picture(link::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
-                             std::uint64_t tick) {
+                             std::uint64_t tick, const std::string& world = "default") {
         evod::v1::SnapshotFrame frame;
         wire::encode({.width_px = 100, .height_px = 100}, frame);
-        frame.set_world("default");
+        frame.set_world(world);
         frame.set_run_id("a");
         frame.set_subscription_id(subscription_id);
         frame.set_island(island);
@@ -276,6 +276,168 @@ TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
     answer_statistics(session, session.read_request());
     send_picture(session, 7, 1, 70);
     until(watch, [&] { return watch.picture()->about.tick() == 70; });
+}
+
+TEST_F(WatchTest, AllIslandsComeOverOneSubscription) {
+    Watch::Wanted all = wanted();
+    all.all_islands = true;
+    Watch watch{all};
+    link::FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 6);
+    const auto pictures = session.read_request();
+    EXPECT_FALSE(pictures.subscribe_snapshots().has_island());
+    session.answer_subscription(pictures, 7);
+    for (const std::uint32_t island : {0u, 1u, 2u}) {
+        send_picture(session, 7, island, 50 + island);
+    }
+    until(watch, [&] { return watch.picture_of(0) && watch.picture_of(1) && watch.picture_of(2); });
+    answer_statistics(session, session.read_request());
+    EXPECT_EQ(watch.island_count(), 3u);
+    EXPECT_EQ(watch.picture()->about.tick(), 51u) << "of the island that is chosen";
+    watch.turn_islands(1);
+    EXPECT_EQ(watch.picture()->about.tick(), 52u) << "there already";
+    watch.show_all_islands(false);
+    EXPECT_TRUE(session.read_request().has_unsubscribe());
+    EXPECT_EQ(session.read_request().subscribe_snapshots().island(), 2u);
+}
+
+/// In the past of the world, paused.
+struct PastTest : WatchTest {
+    static evod::v1::WorldInfo past(std::uint64_t tick) {
+        evod::v1::WorldInfo world = info("default@3", evod::v1::RUN_STATE_PAUSED);
+        world.set_tick(tick);
+        auto& recording = *world.mutable_recording();
+        recording.set_past_of("default");
+        recording.set_first_generation(1);
+        recording.set_last_generation(9);
+        recording.set_last_tick(900);
+        return world;
+    }
+    static void answer_with(link::FakeSession& session, const evod::v1::Request& request,
+                            const evod::v1::WorldInfo& world) {
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request.request_id());
+        *message.mutable_response()->mutable_world() = world;
+        session.send(message);
+    }
+    /// The next request but for questions how far the past reaches, which are answered.
+    static evod::v1::Request next(link::FakeSession& session) {
+        for (;;) {
+            const evod::v1::Request request = session.read_request();
+            if (!request.has_get_statistics()) {
+                return request;
+            }
+            evod::v1::ServerMessage message;
+            message.mutable_response()->set_request_id(request.request_id());
+            *message.mutable_response()->mutable_statistics()->mutable_world() =
+                request.get_statistics().world() == "default" ? info("default", evod::v1::RUN_STATE_RUNNING)
+                                                              : past(100);
+            session.send(message);
+        }
+    }
+    /// Watches the past, with pictures as subscription 9.
+    link::FakeSession look_back(Watch& watch) {
+        auto session = begin(watch);
+        send_picture(session, 7, 1, 850);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        answer_statistics(session, session.read_request());
+        until(watch, [&] { return watch.all_answered(); });
+        watch.open_past({});
+        const auto open = session.read_request();
+        EXPECT_EQ(open.open_past().world(), "default");
+        answer_with(session, open, past(100));
+        until(watch, [&] { return watch.opened_past(); });
+        EXPECT_EQ(next(session).unsubscribe().subscription_id(), 7u);
+        const auto pictures = next(session);
+        EXPECT_EQ(pictures.subscribe_snapshots().world(), "default@3");
+        session.answer_subscription(pictures, 9);
+        const auto events = next(session);
+        EXPECT_EQ(events.subscribe_events().world(), "default@3") << "those of all worlds leave it out";
+        session.answer_subscription(events, 10);
+        send_picture(session, 9, 1, 100, "default@3"); // once it is there the answers are, too
+        until(watch, [&] { return watch.picture() != nullptr; });
+        return session;
+    }
+};
+
+TEST_F(PastTest, IsAWorldOfItsOwnUntilOneReturnsToThePresent) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    ASSERT_NE(watch.recording(), nullptr);
+    EXPECT_EQ(watch.recording()->last_tick(), 900u);
+    EXPECT_EQ(watch.world(), "default@3");
+    EXPECT_EQ(watch.island(), 1u);
+    watch.return_to_present();
+    EXPECT_EQ(watch.world(), "default");
+    EXPECT_EQ(watch.recording(), nullptr);
+    EXPECT_EQ(next(session).unsubscribe().subscription_id(), 10u);
+    EXPECT_EQ(next(session).close_past().world(), "default@3");
+    EXPECT_EQ(next(session).unsubscribe().subscription_id(), 9u);
+    EXPECT_EQ(next(session).subscribe_snapshots().world(), "default");
+}
+
+TEST_F(PastTest, OfManySeeksTheNewestFollowsTheOneUnderWay) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    for (const std::uint64_t tick : {200u, 300u, 400u}) {
+        evod::v1::RunMoment moment;
+        moment.set_tick(tick);
+        watch.seek(moment);
+    }
+    auto seek = next(session);
+    EXPECT_EQ(seek.seek().world(), "default@3");
+    EXPECT_EQ(seek.seek().to().tick(), 200u);
+    answer_with(session, seek, past(200));
+    until(watch, [&] { return watch.control().tick() == 200; });
+    seek = next(session);
+    EXPECT_EQ(seek.seek().to().tick(), 400u);
+    ASSERT_NE(watch.sought(), nullptr);
+    answer_with(session, seek, past(400));
+    until(watch, [&] { return watch.sought() == nullptr; });
+    EXPECT_EQ(watch.control().tick(), 400u);
+}
+
+TEST_F(PastTest, GenerationsAreTurnedFromTheOneLastAskedForAndWithinTheRun) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    evod::v1::RunMoment moment;
+    moment.set_generation(4);
+    watch.seek(moment);
+    watch.turn_generations(-1);
+    watch.turn_generations(-1);
+    EXPECT_EQ(watch.sought()->generation(), 2u);
+    watch.turn_generations(-5);
+    EXPECT_EQ(watch.sought()->generation(), 1u);
+    watch.turn_generations(50);
+    EXPECT_EQ(watch.sought()->generation(), 9u);
+}
+
+TEST_F(PastTest, APastThatCannotBeOpenedIsTold) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 850);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    watch.open_past({});
+    EXPECT_FALSE(watch.all_answered());
+    session.refuse(session.read_request().request_id(), evod::v1::CODE_FAILED_PRECONDITION, "the server keeps no runs");
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("The server keeps no runs"));
+    EXPECT_FALSE(watch.opened_past());
+    EXPECT_EQ(watch.world(), "default");
+}
+
+TEST_F(PastTest, AForkIsMadeFromWhatIsShown) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    watch.fork("other");
+    const auto fork = next(session);
+    EXPECT_EQ(fork.fork_world().world(), "default@3");
+    EXPECT_EQ(fork.fork_world().name(), "other");
+    EXPECT_FALSE(fork.fork_world().has_at_generation());
+    answer_with(session, fork, info("other", evod::v1::RUN_STATE_WAITING));
+    until(watch, [&] { return watch.forked() == "other"; });
 }
 
 } // namespace

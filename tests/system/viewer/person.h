@@ -1,0 +1,156 @@
+// Person: somebody at the window of evoview, who looks, presses keys and moves the mouse.
+#pragma once
+
+#include "client/viewer/palette.h"
+
+#include <SFML/Graphics/Image.hpp>
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/keysym.h>
+// Words that others need as names.
+#undef Bool
+#undef ClientMessage
+#undef None
+#undef Status
+#undef Success
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+namespace evod::viewer {
+
+/// Whether it does within 20 s.
+template <class Condition>
+bool comes_true(Condition condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
+    while (!condition()) {
+        if (std::chrono::steady_clock::now() > end) {
+            return false;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    return true;
+}
+
+/// A person at the window of evoview.
+class Person {
+  public:
+    Person() : display_{XOpenDisplay(nullptr)} {
+        // A look at a window that is just being moved or drawn anew fails; whoever looks then looks again.
+        XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
+    }
+    ~Person() { XCloseDisplay(display_); }
+
+    bool finds_window() {
+        return comes_true([this] {
+            ::Window root, parent, *children = nullptr;
+            unsigned count = 0;
+            XQueryTree(display_, DefaultRootWindow(display_), &root, &parent, &children, &count);
+            for (unsigned i = 0; i < count; ++i) {
+                char* name = nullptr;
+                if (XFetchName(display_, children[i], &name) != 0 && name != nullptr) {
+                    window_ = std::string{name} == "evoview" ? children[i] : window_;
+                    XFree(name);
+                }
+            }
+            if (children != nullptr) {
+                XFree(children);
+            }
+            // It has its name before it is on the screen, and only there can it be looked at.
+            XWindowAttributes attributes{};
+            return window_ != 0 && XGetWindowAttributes(display_, window_, &attributes) != 0 &&
+                   attributes.map_state == IsViewable;
+        });
+    }
+
+    bool sees(Colour colour) {
+        return comes_true([&] {
+            XImage* image = XGetImage(display_, window_, 0, 0, 800, 500, AllPlanes, ZPixmap);
+            const unsigned long wanted = (static_cast<unsigned long>(colour.red) << 16) |
+                                         (static_cast<unsigned long>(colour.green) << 8) | colour.blue;
+            unsigned count = 0;
+            for (int y = 0; image != nullptr && y < image->height; ++y) {
+                for (int x = 0; x < image->width; ++x) {
+                    count += (XGetPixel(image, x, y) & 0xffffff) == wanted;
+                }
+            }
+            if (image != nullptr) {
+                XDestroyImage(image);
+            }
+            return count > 50;
+        });
+    }
+
+    /// What the window shows; of no size if it cannot be looked at just now.
+    sf::Image looks() {
+        sf::Image seen;
+        XWindowAttributes size{};
+        if (XGetWindowAttributes(display_, window_, &size) == 0) {
+            return seen;
+        }
+        XImage* image = XGetImage(display_, window_, 0, 0, static_cast<unsigned>(size.width),
+                                  static_cast<unsigned>(size.height), AllPlanes, ZPixmap);
+        if (image == nullptr) {
+            return seen;
+        }
+        seen.create(static_cast<unsigned>(size.width), static_cast<unsigned>(size.height));
+        for (unsigned y = 0; y < seen.getSize().y; ++y) {
+            for (unsigned x = 0; x < seen.getSize().x; ++x) {
+                const unsigned long pixel = XGetPixel(image, static_cast<int>(x), static_cast<int>(y));
+                seen.setPixel(x, y, sf::Color{static_cast<sf::Uint32>(pixel << 8 | 0xff)});
+            }
+        }
+        XDestroyImage(image);
+        return seen;
+    }
+
+    void move_mouse(int x, int y) { send_mouse(MotionNotify, x, y); }
+    void press_mouse(int x, int y) { send_mouse(ButtonPress, x, y); }
+    void release_mouse(int x, int y) { send_mouse(ButtonRelease, x, y); }
+
+    void press(KeySym key, bool shift = false) {
+        XEvent event{};
+        event.xkey.display = display_;
+        event.xkey.window = window_;
+        event.xkey.root = DefaultRootWindow(display_);
+        event.xkey.same_screen = True;
+        event.xkey.keycode = XKeysymToKeycode(display_, key);
+        event.xkey.state = shift ? ShiftMask : 0;
+        for (const int type : {KeyPress, KeyRelease}) {
+            event.xkey.type = type;
+            event.xkey.time = time_ += 20;
+            XSendEvent(display_, window_, True, type == KeyPress ? KeyPressMask : KeyReleaseMask, &event);
+        }
+        XFlush(display_);
+    }
+
+  private:
+    /// Of the left button, or without any.
+    void send_mouse(int type, int x, int y) {
+        XEvent event{};
+        event.xbutton.type = type; // what moves is told in the same places, but for the button
+        event.xbutton.display = display_;
+        event.xbutton.window = window_;
+        event.xbutton.root = DefaultRootWindow(display_);
+        event.xbutton.same_screen = True;
+        event.xbutton.x = x;
+        event.xbutton.y = y;
+        event.xbutton.time = time_ += 20;
+        if (type != MotionNotify) {
+            event.xbutton.button = Button1;
+        }
+        XSendEvent(display_, window_, True,
+                   type == MotionNotify  ? PointerMotionMask
+                   : type == ButtonPress ? ButtonPressMask
+                                         : ButtonReleaseMask,
+                   &event);
+        XFlush(display_);
+    }
+
+    Display* display_;
+    ::Window window_ = 0;
+    Time time_ = 1000;
+};
+
+} // namespace evod::viewer

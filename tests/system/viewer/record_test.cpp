@@ -1,0 +1,194 @@
+// evoview --record: as many pictures as were asked for, each of the tick in its name, and the world given back.
+//
+// Runs under Xvfb.
+#include "client/viewer/film.h"
+#include "client/viewer/island_layout.h"
+#include "tests/system/viewer/expected_picture.h"
+#include "tests/system/viewer/past_of_world.h"
+#include "tests/system/viewer/playing_server.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <tuple>
+
+namespace evod::viewer {
+namespace {
+
+struct RecordTest : testing::Test {
+    TemporaryFolder folder;
+    RealServer server{{"--seed", "7", "--data", folder.file("data")}};
+    std::string pictures = folder.file("pictures");
+
+    Ran record(const std::string& path, const std::string& arguments) {
+        return run_evoview("--server " + server.address() + " --world one --size 640x400 --record " + path + " " +
+                           arguments);
+    }
+    evod::v1::WorldInfo state() {
+        evod::v1::Request look;
+        look.mutable_get_statistics()->set_world("one");
+        return server.ask(look);
+    }
+    void expect_picture(std::size_t number, std::uint64_t tick) { expect_picture(number, tick, at_tick(tick)); }
+    void expect_picture(std::size_t number, std::uint64_t tick, const evod::v1::RunMoment& moment) {
+        sf::Image image;
+        ASSERT_TRUE(image.loadFromFile(pictures + "/" + picture_name(number, tick)));
+        const auto picture = past_picture_of(server, "one", moment);
+        const ExpectedPicture expected{*picture, camera_of(picture->about, 640, 400)};
+        EXPECT_GT(expected.count(palette::organism), 100u);
+        const auto mismatch = expected.compare(image);
+        EXPECT_EQ(mismatch.count, 0u) << "tick " << tick << " " << mismatch.first;
+    }
+    std::ptrdiff_t picture_count() const { return std::distance(std::filesystem::directory_iterator{pictures}, {}); }
+};
+
+TEST_F(RecordTest, EveryTickIsShownAndThePausedWorldStaysPaused) {
+    make_world(server, "one", 50);
+    const Ran ran = record(pictures, "--record-ticks 4");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(picture_count(), 5);
+    for (std::size_t i = 0; i < 5; ++i) {
+        expect_picture(i, 50 + i);
+    }
+    EXPECT_EQ(state().tick(), 54u);
+    EXPECT_EQ(state().state(), evod::v1::RUN_STATE_PAUSED);
+}
+
+TEST_F(RecordTest, AWorldThatRunsIsOnlyLent) {
+    make_world(server, "one", 50);
+    evod::v1::Request speed, run;
+    speed.mutable_set_speed()->set_world("one");
+    speed.mutable_set_speed()->mutable_speed()->set_real_time_factor(1);
+    server.ask(speed);
+    run.mutable_run()->set_world("one");
+    server.ask(run);
+    const Ran ran = record(pictures, "--record-ticks 30 --every 10");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(picture_count(), 4);
+    EXPECT_EQ(ran.output.find("not shown"), std::string::npos) << ran.output;
+    const auto lent = state();
+    EXPECT_FALSE(lent.leased());
+    EXPECT_EQ(lent.state(), evod::v1::RUN_STATE_RUNNING);
+    EXPECT_TRUE(comes_true([&] { return state().tick() > lent.tick(); }));
+}
+
+TEST_F(RecordTest, AGenerationOfThePastIsRecordedAndTheWorldIsNotTouched) {
+    make_world(server, "one", 300);
+    const Ran ran = record(pictures, "--past 2 --record-generations 1 --every 40");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(picture_count(), 4);            // ticks 120, 160, 200 and 240, its end
+    expect_picture(0, 120, at_generation(2)); // tick 120 alone is the end of the one before
+    expect_picture(3, 240);
+    EXPECT_EQ(state().tick(), 300u);
+}
+
+TEST_F(RecordTest, TwoWorldsGoOnByAsManyTicks) {
+    make_world(server, "one", 50);
+    make_world(server, "other", 200, 8);
+    const Ran ran = record(pictures, "--beside other --record-ticks 20 --every 10");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(picture_count(), 3);
+    const auto halves = side_by_side({0, 0, 640, 400}, 2);
+    for (std::size_t i = 0; i < 3; ++i) {
+        sf::Image image;
+        ASSERT_TRUE(image.loadFromFile(pictures + "/" + picture_name(i, 50 + 10 * i)));
+        for (const auto& [world, tick, half] : {std::tuple{"one", 50u, halves[0]}, {"other", 200u, halves[1]}}) {
+            const auto picture = past_picture_of(server, world, at_tick(tick + 10 * i));
+            Camera camera;
+            camera.set_viewport(viewport_of(half));
+            camera.set_island(picture->about.width_px(), picture->about.height_px());
+            const auto mismatch = ExpectedPicture{*picture, camera}.compare(image);
+            EXPECT_EQ(mismatch.count, 0u) << world << " " << i << " " << mismatch.first;
+        }
+    }
+}
+
+TEST_F(RecordTest, EndsWithWhatIsKnownOfThePast) {
+    make_world(server, "one", 300);
+    const Ran ran = record(pictures, "--past 3 --every 50");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(picture_count(), 3); // ticks 240, 290 and 300
+    expect_picture(2, 300);
+}
+
+/// Programs called ffmpeg that do what a test needs; the real one may not be installed.
+struct FfmpegTest : RecordTest {
+    FfmpegTest() {
+        make_world(server, "one", 50);
+        std::filesystem::create_directory(folder.file("bin"));
+        setenv("PATH", (folder.file("bin") + ":" + path).c_str(), 1);
+    }
+    ~FfmpegTest() override { setenv("PATH", path.c_str(), 1); }
+    void install(const std::string& script) {
+        std::ofstream{folder.file("bin/ffmpeg")} << "#!/bin/sh\n" << script << "\n";
+        std::filesystem::permissions(folder.file("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    }
+    const std::string path = std::getenv("PATH");
+};
+
+TEST_F(FfmpegTest, IsHandedEveryPictureWhole) {
+    install(R"(echo "$@" >"${0%/*}/words"; for last; do :; done; cat >"${last#file:}")");
+    const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2 --fps 30");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(std::filesystem::file_size(folder.file("film.mp4")), 3u * 640 * 400 * 4);
+    std::ifstream words_file{folder.file("bin/words")};
+    std::string words;
+    std::getline(words_file, words);
+    EXPECT_NE(words.find("-pix_fmt rgba -s 640x400 -r 30"), std::string::npos) << words;
+    std::ifstream film{folder.file("film.mp4"), std::ios::binary};
+    for (const std::uint64_t tick : {50u, 51u, 52u}) {
+        std::vector<sf::Uint8> pixels(640 * 400 * 4);
+        film.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
+        sf::Image image;
+        image.create(640, 400, pixels.data());
+        const auto picture = past_picture_of(server, "one", at_tick(tick));
+        EXPECT_EQ((ExpectedPicture{*picture, camera_of(picture->about, 640, 400)}.compare(image).count), 0u) << tick;
+    }
+}
+
+TEST_F(FfmpegTest, WhatItSaysOfItsFailureIsTold) {
+    install("head -c 100 >/dev/null; echo 'film.mp4: No space left on device' >&2; exit 3");
+    const Ran ran = record(folder.file("film.mp4"), "--record-ticks 20");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_NE(ran.output.find("could not write " + folder.file("film.mp4") +
+                              ": ffmpeg ended with status 3: film.mp4: No space"),
+              std::string::npos)
+        << ran.output;
+    EXPECT_EQ(state().state(), evod::v1::RUN_STATE_PAUSED);
+}
+
+TEST_F(FfmpegTest, ThatItIsMissingIsToldBeforeTheWorldIsTouched) {
+    setenv("PATH", folder.file("bin").c_str(), 1);
+    const Ran ran = record(folder.file("film.mp4"), "--record-ticks 2");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_NE(ran.output.find("ffmpeg, which would make"), std::string::npos) << ran.output;
+    EXPECT_EQ(state().tick(), 50u);
+}
+
+TEST(RecordOptions, AWrongCommandLineIsRefusedWithStatus2) {
+    for (const char* arguments :
+         {"--record-ticks 5", "--fps 30", "--record a --every 0", "--record a --record-generations 0",
+          "--record a --screenshot b.png", "--past 0", "--timeout 5"}) {
+        EXPECT_EQ(run_evoview(arguments).status, 2) << arguments;
+    }
+}
+
+TEST(RecordAsAViewer, TakesPicturesAsTheyComeAndSendsNoCommand) {
+    const TemporaryFolder folder;
+    evod::v1::SnapshotFrame picture;
+    wire::encode({.width_px = 100, .height_px = 100}, picture);
+    picture.set_world("default");
+    picture.set_run_id("00112233445566778899aabbccddeeff");
+    picture.set_island_count(1);
+    picture.set_tick(77);
+    picture.set_generation(2);
+    picture.set_state(evod::v1::RUN_STATE_TERMINATED); // there is no other one to come
+    PlayingServer server{picture};
+    const Ran ran = run_evoview("--server " + server.address() + " --record " + folder.file("pictures"));
+    EXPECT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(server.command_count(), 0u);
+    EXPECT_TRUE(std::filesystem::exists(folder.file("pictures/frame-000000-tick-77.png"))) << ran.output;
+}
+
+} // namespace
+} // namespace evod::viewer
