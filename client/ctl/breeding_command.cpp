@@ -142,7 +142,8 @@ std::string descendant_text(const v1::Breeding& bred, const v1::WorldInfo& world
                    std::to_string(d.first_parent()) + (child ? ", " + std::to_string(d.second_parent()) : ""),
                    child && !d.crossed() ? genes_of + " uncrossed" : genes_of, changes_of(d, world)});
     }
-    return "\ndescendants; GENES OF: 1 the first parent, 2 the second\n" + table.to_text() +
+    return "\ndescendants, children from " + std::to_string(bred.survivor_count()) +
+           " on; GENES OF: 1 the first parent, 2 the second\n" + table.to_text() +
            more_text(options.from, shown, bred.descendant_count());
 }
 

@@ -1,6 +1,7 @@
 // What goes out is complete, what comes in is checked: every field is found by walking the descriptors, so one that is
 // added later is tested too.
 #include "server/base/inline_executor.h"
+#include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
@@ -132,6 +133,55 @@ TEST(Conversions, LiveStatisticsAreToldCompletely) {
     std::vector<double> numbers;
     collect_numbers(to_proto(s, 1), numbers);
     EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
+TEST(Conversions, ABreedingIsToldCompletely) {
+    const evolution::Chromosome genes = evolution::Chromosome::Constant(100);
+    evolution::BreedingRecord record;
+    record.places = {.elite = 1, .survivors = 3, .children = 5};
+    record.contender_count = 7;
+    record.pick_count = 9;
+    record.contenders.push_back({1, 2, 3, 4, 5, 6, 7, evolution::Migrant{8, 99, 9, 99}});
+    record.picks.push_back({1, 2.5, 3, {4, 5, 6}});
+    for (const std::uint32_t id : {0, 2, 3})
+        record.descendants.push_back({.id = id,
+                                      .parents = {1, 2},
+                                      .first_genes = genes,
+                                      .second_genes = genes,
+                                      .from_second = 3,
+                                      .crossed = true,
+                                      .order = {{1, 0, 2, 3, 4, 5}},
+                                      .changes = {{1, evolution::ChangeKind::Creep, 2, 3},
+                                                  {1, evolution::ChangeKind::Reset, 2, 3},
+                                                  {1, evolution::ChangeKind::BitFlip, 2, 3},
+                                                  {1, evolution::ChangeKind::Clamp, 2, 3}},
+                                      .genes = genes});
+    simulation::Parameters parameters;
+    parameters.rearranging = evolution::Rearranging::Scramble;
+    const v1::Breeding told = to_proto(record, parameters);
+    auto unset = unset_in(told);
+    // Those of the request are added by who answers it. The first descendant's id is 0.
+    EXPECT_EQ(unset.erase("generation") + unset.erase("island") + unset.erase("descendants.id"), 3u);
+    std::erase_if(unset, [](const std::string& path) { return path.starts_with("parameters."); }); // one kind of value
+    EXPECT_THAT(unset, testing::IsEmpty());
+    std::vector<double> contender;
+    collect_numbers(told.contenders(0), contender);
+    EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
+    EXPECT_EQ(told.descendant_count(), 8u);
+    EXPECT_EQ(told.descendants(0).kind(), v1::DESCENDANT_KIND_ELITE);
+    EXPECT_EQ(told.descendants(1).kind(), v1::DESCENDANT_KIND_SURVIVOR);
+    EXPECT_EQ(told.descendants(2).kind(), v1::DESCENDANT_KIND_CHILD);
+    EXPECT_EQ(told.descendants(0).rearrangement().method(), "scramble");
+    std::set<int> kinds;
+    for (const auto& mutation : told.descendants(0).mutations())
+        kinds.insert(mutation.kind());
+    EXPECT_EQ(kinds.size(), 4u);
+    EXPECT_FALSE(kinds.contains(v1::MUTATION_KIND_UNSPECIFIED));
+    std::set<std::string> parameter_names;
+    for (const auto& assignment : told.parameters())
+        parameter_names.insert(assignment.name());
+    EXPECT_TRUE(parameter_names.contains("population_size") && parameter_names.contains("immigrants_replace"));
+    EXPECT_FALSE(parameter_names.contains("generation_s")); // of the model
 }
 
 TEST_F(Lived, AnOrganismIsToldCompletely) {
