@@ -15,8 +15,8 @@ namespace {
 constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
 
 ImFont* load_font(const char* name, float pixels) {
-    // Latin, and the signs of ours beyond it: … and −.
-    static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x2010, 0x2026, 0x2212, 0x2212, 0};
+    // Latin, and the signs of ours beyond it: ω, … and −.
+    static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026, 0x2212, 0x2212, 0};
     const std::string path = std::string{font_folder} + name;
     if (!std::filesystem::exists(path)) {
         throw std::runtime_error{"no font " + path + ": install the package fonts-dejavu-core"};

@@ -2,6 +2,7 @@
 
 #include "client/viewer/panels/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
+#include "client/viewer/panels/physics_panel.h"
 #include "client/viewer/panels/plots_panel.h"
 #include "client/viewer/panels/view_panel.h"
 
@@ -16,6 +17,7 @@ Panels::Panels() {
     places_.push_back({std::make_unique<OrganismPanel>()});
     places_.push_back({std::make_unique<PlotsPanel>()});
     places_.push_back({std::make_unique<BreedingPanel>()});
+    places_.push_back({std::make_unique<PhysicsPanel>()});
 }
 
 void Panels::toggle(std::size_t index) {
