@@ -58,7 +58,7 @@ Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
     for (const float health : organisms.health) {
         most = std::max(most, health);
     }
-    return {ramp, 0, round_up(most)};
+    return {ramp, 0, 100 * std::ceil(most / 100.0)};
 }
 
 Scale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp) {
@@ -242,14 +242,16 @@ DensityGrid overview_of(const wire::Picture& picture, std::size_t cells_max) {
     return grid;
 }
 
-void put_density(const DensityGrid& grid, const Scale& scale, std::vector<Shape>& shapes,
+void put_density(const DensityGrid& grid, Point island, const Scale& scale, std::vector<Shape>& shapes,
                  std::vector<Colour>& colours) {
-    const auto half = static_cast<float>(grid.cell_px / 2);
     for (std::size_t i = 0; i < grid.counts.size(); ++i) {
         if (grid.counts[i] > 0) {
-            const double column = static_cast<double>(i % grid.columns), row = static_cast<double>(i / grid.columns);
-            shapes.push_back({static_cast<float>(grid.left_px + (column + 0.5) * grid.cell_px),
-                              static_cast<float>(grid.top_px + (row + 0.5) * grid.cell_px), half, half});
+            const double left = grid.left_px + static_cast<double>(i % grid.columns) * grid.cell_px;
+            const double top = grid.top_px + static_cast<double>(i / grid.columns) * grid.cell_px;
+            const double half_width = std::min(grid.cell_px, island.x - left) / 2;
+            const double half_height = std::min(grid.cell_px, island.y - top) / 2;
+            shapes.push_back({static_cast<float>(left + half_width), static_cast<float>(top + half_height),
+                              static_cast<float>(half_width), static_cast<float>(half_height)});
             colours.push_back(scale(grid.counts[i]));
         }
     }

@@ -39,7 +39,7 @@ struct Scale {
 /// The least of 1, 2 and 5 times a power of ten that is not less than `value`; 1 of nothing.
 double round_up(double value);
 
-/// 0 to the greatest health of the picture rounded up, at least 100: so it is the same from picture to picture.
+/// 0 to the greatest health of the picture rounded up to hundreds, at least 100: so it stays from picture to picture.
 Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp);
 
 /// From the least to the greatest value in the population.
@@ -125,8 +125,8 @@ double density_cell_px(const Camera& camera, double cell_pixels);
 /// Of a part of the world, in cells that lie where they lie whatever the part is.
 DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_px);
 
-/// Squares coloured by how many are in them; empty ones are left out.
-void put_density(const DensityGrid& grid, const Scale& scale, std::vector<Shape>& shapes, std::vector<Colour>& colours);
+/// Squares coloured by how many are in them, cut at the right and lower wall; empty ones are left out.
+void put_density(const DensityGrid& grid, Point island, const Scale& scale, std::vector<Shape>& shapes, std::vector<Colour>& colours);
 
 /// The densities of tiles as grids, those that there are.
 std::vector<DensityGrid> densities_of(const wire::Picture& picture);

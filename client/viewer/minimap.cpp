@@ -78,6 +78,7 @@ void Minimap::build(const Watch& watch, Camera& camera) {
             list.AddRectFilled(from, {std::min(from.x + cell, other.x), std::min(from.y + cell, other.y)}, ink(colour));
         }
     }
+    list.PushClipRectFullScreen(); // the lines stand half outside
     list.AddRect(corner, other, ink(palette::wall));
     const Rectangle frame = place.frame_of(camera.visible());
     // Never so small that it cannot be found.
@@ -86,6 +87,7 @@ void Minimap::build(const Watch& watch, Camera& camera) {
                       std::max(static_cast<float>(frame.height) / 2, 3.f)};
     list.AddRect({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, ink(palette::poison),
                  0, 0, 2);
+    list.PopClipRect();
     ImGui::InvisibleButton("there", size);
     if (ImGui::IsItemActive()) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;

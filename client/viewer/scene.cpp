@@ -135,7 +135,10 @@ void Scene::draw(link::WorldView& view, double blend, const Camera& camera, unsi
         painter_.draw(walls_, wall_look);
         painter_.draw(obstacles_, obstacle_look);
         painter_.draw(crates_, crate_look);
-        if (sight.shows_density(camera)) {
+        // Those that have come are also shown until what was asked for in their place is there.
+        const bool densities_came = std::ranges::any_of(
+            picture->tiles, [](const auto& tile) { return tile.detail == evod::v1::DETAIL_DENSITY; });
+        if (sight.shows_density(camera) || densities_came) {
             draw_density(*picture, organisms, camera, sight);
         } else {
             draw_items(*picture);
@@ -216,7 +219,7 @@ void Scene::draw_density(const wire::Picture& picture, const Positions& at, cons
     shapes_.clear();
     colours_.clear();
     for (const DensityGrid& grid : grids) {
-        put_density(grid, *density_scale_, shapes_, colours_);
+        put_density(grid, {picture.about.width_px(), picture.about.height_px()}, *density_scale_, shapes_, colours_);
     }
     density_.set(shapes_, colours_);
     painter_.draw(density_, density_look);

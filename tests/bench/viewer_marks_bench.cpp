@@ -97,7 +97,7 @@ void density(benchmark::State& state) {
     frames(state, [&](Setting& setting, const Positions& at) {
         shapes.clear(), colours.clear();
         const DensityGrid grid = density_of(at, setting.camera.visible(), density_cell_px(setting.camera, 5));
-        put_density(grid, density_scale(std::span{&grid, 1}, palette::Ramp::Viridis), shapes, colours);
+        put_density(grid, {1e9, 1e9}, density_scale(std::span{&grid, 1}, palette::Ramp::Viridis), shapes, colours);
         benchmark::DoNotOptimize(shapes.data());
     });
 }

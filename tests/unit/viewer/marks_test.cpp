@@ -214,8 +214,8 @@ TEST(Density, SquaresAreColouredByHowManyAreInThem) {
     EXPECT_EQ(scale.high, 10);
     std::vector<Shape> shapes;
     std::vector<Colour> colours;
-    put_density(grid, scale, shapes, colours);
-    EXPECT_THAT(shapes, ElementsAre(Shape{115, 5, 5, 5}, Shape{105, 15, 5, 5}));
+    put_density(grid, {1'000, 14}, scale, shapes, colours); // the lower wall stands at 14
+    EXPECT_THAT(shapes, ElementsAre(Shape{115, 5, 5, 5}, Shape{105, 12, 5, 2}));
     EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0.7), palette::at(ramp, 0.3)));
 }
 
