@@ -56,6 +56,30 @@ std::vector<std::string> csv_files() {
     return names;
 }
 
+bool lives(const Population& population, std::size_t id) {
+    return population.choice(static_cast<std::uint32_t>(id)) != evod::v1::CHOICE_NONE;
+}
+
+/// False where organisms have no bodies, and when their generation is over.
+bool anybody_lives(const Population& population) {
+    for (std::size_t id = 0; id < population.size(); ++id) {
+        if (lives(population, id)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::vector<float> gene_of(const Population& population, std::size_t gene, bool only_the_living) {
+    std::vector<float> numbers;
+    for (std::size_t id = 0; gene < population.gene_count() && id < population.size(); ++id) {
+        if (!only_the_living || lives(population, id)) {
+            numbers.push_back(population.gene(gene)[id]);
+        }
+    }
+    return numbers;
+}
+
 } // namespace
 
 // ---- what is known ---------------------------------------------------------------------------------------------
@@ -115,19 +139,28 @@ void PlotsPanel::ask_population(Context& context, std::uint32_t island) {
         population_of_ = of;
     }
     TrackedPopulation& population = *population_;
+    const Population nobody{history.table().gene_names().size()};
     if (population.under_way && context.now - population.asked > give_up_after) {
         population.under_way = false;
-        population.coming = {};
+        population.coming = nobody;
     }
     if (population.under_way || context.now < population.not_before || history.run_id().empty()) {
         return;
     }
-    ask(context, population_, population.coming.question(history.world(), island),
-        [](TrackedPopulation& asked, const evod::v1::Response* response) {
-            if (response == nullptr || !asked.coming.take(response->population())) {
-                asked.coming = {};
-            } else if (asked.coming.complete()) {
-                asked.whole = std::exchange(asked.coming, {});
+    if (population.coming.next() == 0) {
+        population.coming = nobody;
+    }
+    evod::v1::Request request;
+    request.mutable_get_population()->set_world(history.world());
+    request.mutable_get_population()->set_island(island);
+    request.mutable_get_population()->set_first_organism(population.coming.next());
+    ask(context, population_, std::move(request),
+        [nobody](TrackedPopulation& asked, const evod::v1::Response* response) {
+            const auto trouble = response != nullptr ? asked.coming.add(response->population()) : std::nullopt;
+            if (response == nullptr || trouble) { // from the beginning: another generation may have begun meanwhile
+                asked.coming = nobody;
+            } else if (asked.coming.whole()) {
+                asked.whole = std::exchange(asked.coming, nobody);
                 asked.taken = asked.asked;
                 asked.not_before = Clock::now() + look_at_population;
             } else {
@@ -325,15 +358,15 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
     ImGui::Checkbox("only the living", &only_the_living_);
     ImGui::SameLine();
-    const PopulationGenes& population = population_->whole;
+    const Population& population = population_->whole;
     if (!population_->trouble.empty()) {
         say(population_->trouble, palette::warning);
-    } else if (!population.complete()) {
+    } else if (!population.whole()) {
         say("…");
     } else {
         say("generation " + with_separators(population.generation()) + ", island " +
             std::to_string(island_.value_or(context.watch.island())) +
-            (only_the_living_ && !population.knows_the_living() ? ": nobody lives, so everyone" : ""));
+            (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -360,14 +393,14 @@ void PlotsPanel::build_genes(Context& context) {
         return;
     }
     ask_population(context, island_.value_or(context.watch.island()));
-    const PopulationGenes& population = population_->whole;
+    const Population& population = population_->whole;
     const HistogramOf of{gene_, population_->taken, only_the_living_};
     if (of == histogram_of_) { // populations may be large
         return;
     }
     histogram_of_ = of;
     const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
-    histogram_ = histogram_of(gene_, population.gene(index, only_the_living_ && population.knows_the_living()));
+    histogram_ = histogram_of(gene_, gene_of(population, index, only_the_living_ && anybody_lives(population)));
 }
 
 // ---- files -----------------------------------------------------------------------------------------------------

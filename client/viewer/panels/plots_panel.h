@@ -6,7 +6,7 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/plots/figures.h"
 #include "client/viewer/plots/history.h"
-#include "client/viewer/plots/population.h"
+#include "client/viewer/population.h"
 
 #include <array>
 #include <memory>
@@ -35,8 +35,8 @@ class PlotsPanel : public Panel {
         History history;
     };
     struct TrackedPopulation : Inquiry {
-        PopulationGenes coming, whole; // whole: the last that is
-        Clock::time_point taken{};     // the whole one
+        Population coming, whole;  // whole: the last that is
+        Clock::time_point taken{}; // the whole one
     };
 
     void listen(Context& context);

@@ -4,6 +4,7 @@
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h> // SetItemUsingMouseWheel
 
 #include <algorithm>
 #include <cmath>
@@ -351,6 +352,7 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
     const ImVec2 place = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 40.0f);
     ImGui::InvisibleButton(id, {width, std::max(height_pixels, 40.0f)});
+    ImGui::SetItemUsingMouseWheel(); // and not to scroll the window as well
     const Range whole = whole_x(plot);
     if (view.x) { // what is compared may have gone, and the whole with it
         view.x = zoomed(*view.x, 0, 1, whole, shown_min);

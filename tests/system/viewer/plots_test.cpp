@@ -194,9 +194,15 @@ class PlotUnderTheMouse {
             ImGui::SetNextWindowSize({width, height});
             ImGui::Begin("plot");
             plot_widget("plot", plot, view, height - 50);
+            ImGui::Dummy({1, height}); // something to scroll to
+            scrolled_ = ImGui::GetScrollY();
             ImGui::End();
             gui_.draw();
         });
+    }
+    float scrolled() {
+        frame();
+        return scrolled_;
     }
     void move(int x) {
         sf::Event event{};
@@ -226,6 +232,7 @@ class PlotUnderTheMouse {
   private:
     sf::Context context_{context_settings(), 1, 1};
     Gui gui_;
+    float scrolled_ = 0;
 };
 
 TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
@@ -261,6 +268,7 @@ TEST(PlotWidget, TheWheelZoomsDraggingMovesAndADoubleClickFits) {
     EXPECT_EQ(on.view.x, std::nullopt);
     on.turn_wheel(-3);
     EXPECT_EQ(on.view.x, std::nullopt) << "there is no more than everything";
+    EXPECT_EQ(on.scrolled(), 0) << "the window stays where it is";
 }
 
 } // namespace

@@ -1,10 +1,6 @@
 #include "client/viewer/plots/figures.h"
 
-#include "client/viewer/plots/population.h"
-
 #include <gmock/gmock.h>
-
-#include <cstring>
 
 namespace evod::viewer {
 namespace {
@@ -110,52 +106,6 @@ TEST(Figures, AHistogramHasEveryOrganism) {
         count += bin;
     }
     EXPECT_EQ(count, 3);
-}
-
-// ---- populations ------------------------------------------------------------------------------------------------
-
-v1::Population page_of(std::uint32_t first, std::vector<float> impulse, std::vector<float> body_size,
-                       const std::string& choices) {
-    v1::Population page;
-    page.set_generation(4);
-    page.set_organism_count(3);
-    page.set_first(first);
-    page.set_count(static_cast<std::uint32_t>(impulse.size()));
-    impulse.insert(impulse.end(), body_size.begin(), body_size.end());
-    page.mutable_genes()->resize(4 * impulse.size());
-    std::memcpy(page.mutable_genes()->data(), impulse.data(), 4 * impulse.size()); // the test runs little-endian
-    page.set_choices(choices);
-    return page;
-}
-
-TEST(PopulationGenes, AreReadPageByPage) {
-    PopulationGenes population;
-    EXPECT_EQ(population.question("lab", 2).get_population().island(), 2u);
-    EXPECT_TRUE(population.take(page_of(0, {1, 2}, {10, 20}, std::string{"\1\0", 2})));
-    EXPECT_FALSE(population.complete());
-    EXPECT_EQ(population.question("lab", 2).get_population().first_organism(), 2u);
-    EXPECT_TRUE(population.take(page_of(2, {3}, {30}, "\2")));
-    EXPECT_TRUE(population.complete());
-    EXPECT_EQ(population.generation(), 4u);
-    EXPECT_THAT(population.gene(0, false), ElementsAre(1, 2, 3));
-    EXPECT_THAT(population.gene(1, false), ElementsAre(10, 20, 30));
-    EXPECT_THAT(population.gene(1, true), ElementsAre(10, 30)) << "who chooses nothing is dead";
-    EXPECT_TRUE(population.gene(2, false).empty());
-}
-
-TEST(PopulationGenes, PagesThatDoNotHangTogetherAreRefused) {
-    PopulationGenes population;
-    EXPECT_FALSE(population.take(page_of(1, {1, 2}, {10, 20}, "\1\1"))) << "not the first";
-    EXPECT_FALSE(population.take(page_of(0, {1, 2}, {10, 20}, "\1"))) << "too few choices";
-    EXPECT_FALSE(population.take(page_of(0, {1, 2, 3, 4}, {1, 2, 3, 4}, "\1\1\1\1"))) << "more than there are";
-    EXPECT_FALSE(population.take(page_of(0, {}, {}, ""))) << "would be asked for again for ever";
-    auto torn = page_of(0, {1, 2}, {10, 20}, "\1\1");
-    torn.mutable_genes()->pop_back();
-    EXPECT_FALSE(population.take(torn));
-    EXPECT_TRUE(population.take(page_of(0, {1, 2}, {10, 20}, "\1\1")));
-    auto next = page_of(2, {3}, {30}, "\2");
-    next.set_generation(5);
-    EXPECT_FALSE(population.take(next)) << "of another generation";
 }
 
 } // namespace
