@@ -261,8 +261,9 @@ void BreedingPanel::build_generation(const Context& context) {
         if (ImGui::Checkbox("hold the world", &held)) {
             hold_.set(held);
         }
-        explain("Pauses the world after each generation, one tick into the next, as long as this is shown; Space runs "
-                "the next one");
+        explain(
+            "Pauses the world after each generation, one tick into the next, as long as this is shown. Going on runs "
+            "the next one.");
     }
     if (const auto selected = context.watch.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
