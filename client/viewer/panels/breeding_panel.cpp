@@ -261,8 +261,9 @@ void BreedingPanel::build_generation(const Context& context) {
         if (ImGui::Checkbox("hold the world", &held)) {
             hold_.set(held);
         }
-        explain("Pauses the world after each generation, one tick into the next, as long as this is shown; Space runs "
-                "the next one");
+        explain(
+            "Pauses the world after each generation, one tick into the next, as long as this is shown. Going on runs "
+            "the next one.");
     }
     if (const auto selected = context.watch.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
@@ -371,9 +372,9 @@ void BreedingPanel::build_stage(const Gui& gui) {
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
         quiet("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            draw_family(sheet_of(gui, std::max(height - 90, 400.f)), *descendant, gene_names_);
             quiet("blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
                   "bound");
+            draw_family(sheet_of(gui, std::max(ImGui::GetContentRegionAvail().y - 8, 400.f)), *descendant, gene_names_);
         }
         break;
     case BreedingStage::Done:
