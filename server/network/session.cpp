@@ -460,6 +460,7 @@ bool Session::next_picture() {
             turns_.push_back(taken);
         return true;
     }
+    outgoing_ = {};
     return false;
 }
 
@@ -557,8 +558,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
 }
 
 void Session::written(const Queued& queued) {
-    if (queued.kind != Kind::Picture)
-        (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
+    (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
     if (queued.kind == Kind::Answer)
         --in_flight_;
 }
@@ -610,6 +610,7 @@ asio::awaitable<void> Session::write() {
             if (error)
                 break;
             sending_.clear();
+            outgoing_ = {}; // nobody counts any more what it holds
             host_.traffic.pictures_sent.add();
         } else if (finishing_) {
             break;
