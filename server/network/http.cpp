@@ -31,9 +31,13 @@ namespace {
 constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 using Parser = http::request_parser<http::empty_body>;
 
+bool is_too_long(boost::system::error_code error) {
+    return error == http::error::header_limit || error == http::error::buffer_overflow;
+}
+
 /// What is wrong with a request, before anybody looks at its path; nothing if it is good.
 std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
-    if (error == http::error::header_limit || error == http::error::buffer_overflow)
+    if (is_too_long(error))
         return Http::Page{.status = http::status::request_header_fields_too_large,
                           .text = "the header is larger than " + std::to_string(http_header_bytes_max) +
                                   " bytes: send fewer or shorter fields\n"};
@@ -76,18 +80,20 @@ asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
 } // namespace
 
 base::Result<std::unique_ptr<Http>> Http::open(asio::io_context& context, const std::string& address,
-                                               std::uint16_t port, Pages pages) {
+                                               std::uint16_t port, Pages pages, LimitCounters& counters) {
     auto listener = Listener::open(context, address, port, {.address = "--http-bind", .port = "--http-port"});
     if (!listener)
         return listener.error();
-    return std::unique_ptr<Http>{new Http{context, *std::move(listener), std::move(pages)}};
+    return std::unique_ptr<Http>{new Http{context, *std::move(listener), std::move(pages), counters}};
 }
 
 void Http::start() {
     const auto accepted = [this](tcp::socket socket) {
+        const bool full = connections_.size() >= http_connections_max;
+        if (full)
+            counters_.met(Limit::HttpConnections);
         if (closed_ || connections_.size() >= 2 * http_connections_max)
             return;
-        const bool full = connections_.size() >= http_connections_max;
         asio::co_spawn(context_, serve(std::move(socket), full), asio::detached);
     };
     asio::co_spawn(context_, listener_.accept(accepted), asio::detached);
@@ -104,14 +110,20 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
     boost::beast::tcp_stream stream{std::move(socket)};
     connections_.insert(&stream);
     boost::beast::flat_buffer buffer{2 * http_header_bytes_max}; // what comes next may have come with a request
+    boost::system::error_code error;
     for (bool goes_on = true; goes_on && !closed_;) {
         Parser request;
-        request.header_limit(http_header_bytes_max);
+        request.header_limit(2 * http_header_bytes_max); // roughly; exactly it is looked at below
         stream.expires_after(http_request_timeout);
-        const auto [error, count] = co_await http::async_read_header(stream, buffer, request, no_throw);
+        std::size_t header_bytes = 0;
+        std::tie(error, header_bytes) = co_await http::async_read_header(stream, buffer, request, no_throw);
+        if (!error && header_bytes > http_header_bytes_max)
+            error = http::error::header_limit;
         if (closed_ || (error && error.category() != make_error_code(http::error::bad_method).category()) ||
             error == http::error::end_of_stream)
             break; // gone, or too slow
+        if (is_too_long(error))
+            counters_.met(Limit::HttpHeaderBytes);
         auto answer = fault_of(error, request);
         goes_on = !answer && !full && request.get().keep_alive();
         if (full)
@@ -123,16 +135,17 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
         const auto response = response_of(*std::move(answer), request.get().version() == 10 ? 10 : 11, goes_on);
         http::response_serializer<http::string_body> serializer{response};
         stream.expires_after(http_request_timeout);
-        boost::system::error_code unsent;
         if (request.get().method() == http::verb::head)
-            std::tie(unsent, std::ignore) = co_await http::async_write_header(stream, serializer, no_throw);
+            std::tie(error, std::ignore) = co_await http::async_write_header(stream, serializer, no_throw);
         else
-            std::tie(unsent, std::ignore) = co_await http::async_write(stream, serializer, no_throw);
-        if (unsent)
+            std::tie(error, std::ignore) = co_await http::async_write(stream, serializer, no_throw);
+        if (error)
             break;
         if (!goes_on)
             co_await say_goodbye(stream);
     }
+    if (error == boost::beast::error::timeout)
+        counters_.met(Limit::HttpRequestTimeout);
     connections_.erase(&stream);
 }
 

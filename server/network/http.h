@@ -6,6 +6,7 @@
 // Source       RFC 9110 and 9112; parsed and written by Boost.Beast.
 #pragma once
 
+#include "server/network/limits.h"
 #include "server/network/listener.h"
 
 #include <boost/asio/awaitable.hpp>
@@ -31,9 +32,9 @@ class Http {
     /// By path: "/metrics".
     using Pages = std::map<std::string, std::function<boost::asio::awaitable<Page>()>, std::less<>>;
 
-    /// Takes the port; port 0 is any that is free.
+    /// Takes the port; port 0 is any that is free. counters: outlive it.
     static base::Result<std::unique_ptr<Http>> open(boost::asio::io_context& context, const std::string& address,
-                                                    std::uint16_t port, Pages pages);
+                                                    std::uint16_t port, Pages pages, LimitCounters& counters);
 
     boost::asio::ip::tcp::endpoint endpoint() const { return listener_.endpoint(); }
 
@@ -42,8 +43,8 @@ class Http {
     void close();
 
   private:
-    Http(boost::asio::io_context& context, Listener listener, Pages pages)
-        : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)} {}
+    Http(boost::asio::io_context& context, Listener listener, Pages pages, LimitCounters& counters)
+        : context_{context}, listener_{std::move(listener)}, pages_{std::move(pages)}, counters_{counters} {}
 
     /// full: it is only told so.
     boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket, bool full);
@@ -52,6 +53,7 @@ class Http {
     boost::asio::io_context& context_;
     Listener listener_;
     Pages pages_;
+    LimitCounters& counters_;
     std::set<boost::beast::tcp_stream*> connections_;
     bool closed_ = false;
 };

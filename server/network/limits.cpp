@@ -84,6 +84,12 @@ constexpr LimitRow table[] = {
      "the next are dropped, and `EventsDropped` tells how many"},
     {Limit::OutboxEvents, "waiting_events_max", runtime::outbox_events_max,
      "events of all worlds on their way from the simulation", "the same, for all"},
+    {Limit::HttpConnections, "http_connections_max", http_connections_max, "connections by HTTP",
+     "a new one is told, `503`, and closed; with as many again it is closed at once"},
+    {Limit::HttpHeaderBytes, "http_header_bytes_max", http_header_bytes_max, "header of a request by HTTP",
+     "told, `431`, and closed"},
+    {Limit::HttpRequestTimeout, "http_request_timeout_s", seconds(http_request_timeout),
+     "for a request by HTTP to come whole, and for its answer to be taken", "closed"},
 };
 
 } // namespace

@@ -33,6 +33,9 @@ constexpr std::uint32_t request_burst_max = 5'000;
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
+constexpr std::size_t http_connections_max = 16;
+constexpr std::size_t http_header_bytes_max = 8 << 10;
+constexpr std::chrono::seconds http_request_timeout{5};
 
 /// Those that whoever starts a server may set.
 struct SessionBounds {
@@ -73,6 +76,9 @@ enum class Limit : std::uint8_t {
     QueuedResponseBytes,
     QueuedEventBytes,
     OutboxEvents,
+    HttpConnections,
+    HttpHeaderBytes,
+    HttpRequestTimeout,
 };
 
 struct LimitRow {
@@ -95,7 +101,7 @@ v1::Limits limits_message(const SessionBounds& bounds);
 /// How often each limit was met since the server started.
 class LimitCounters {
   public:
-    static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::OutboxEvents) + 1;
+    static constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::HttpRequestTimeout) + 1;
 
     void met(Limit limit, std::uint64_t times = 1) { of(limit).fetch_add(times, std::memory_order_relaxed); }
     std::uint64_t count(Limit limit) const {
@@ -126,9 +132,6 @@ constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of 
 constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
 
 // Of HTTP.
-constexpr std::size_t http_connections_max = 16;         // more: told so with 503; as many again: closed
-constexpr std::size_t http_header_bytes_max = 8 << 10;   // of a request; more: 431
-constexpr std::chrono::seconds http_request_timeout{5};  // for a request to come whole; then it is closed
 constexpr std::chrono::seconds http_farewell_timeout{1}; // for the last bytes of a connection that ends
 constexpr std::chrono::seconds simulation_patience{3};   // for the simulation thread to answer; then 503
 

@@ -83,11 +83,9 @@ Server::Server(ServerOptions options)
     host_.ended = [this](Session& session) {
         --connections_;
         ++ended_since_look_;
-        const bool watched = !session.snapshots.empty() || !session.events.empty();
         dispatcher_.forget(session);
         sessions_.erase(session.number());
-        if (watched)
-            streams_.update_demand();
+        streams_.forget(session);
     };
 }
 
@@ -189,15 +187,7 @@ void Server::run() {
     simulation_ = std::make_unique<runtime::SimulationThread>(
         mailbox_, demand_, *executor_, clock_,
         runtime::LoopOutputs{
-            .events =
-                [this](const simulation::Laboratory& laboratory, std::vector<simulation::Event> events) {
-                    if (!demand_.events_wanted())
-                        return;
-                    for (const simulation::Event& event : events)
-                        outbox_.event([this, told = protocol::to_proto(event, laboratory)]() mutable {
-                            streams_.tell(std::move(told));
-                        });
-                },
+            .events = streams_.outlet(outbox_),
             .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); },
             .storage =
                 [this](const simulation::Storage& storage) {
@@ -207,7 +197,8 @@ void Server::run() {
                         streams_.tell(event);
                     });
                 },
-            .counted = &worlds_counted_},
+            .counted = &worlds_counted_,
+        },
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
     signals_.async_wait([this](boost::system::error_code error, int signal) {
@@ -299,15 +290,9 @@ void Server::accepted(tcp::socket socket) {
 
 void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
-    for (runtime::Delivery& delivery : taken.deliveries)
-        std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
-    if (taken.dropped_events > 0) {
+    if (taken.dropped_events > 0)
         limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
-        streams_.count_dropped_events(taken.dropped_events);
-    }
-    const auto now = clock_.now();
-    for (const auto& picture : taken.pictures)
-        streams_.show(picture, now);
+    streams_.deliver(std::move(taken), clock_.now());
 }
 
 void Server::go_away() {
@@ -325,14 +310,7 @@ void Server::go_away() {
     if (archive_)
         archive_->close();
     deliver();
-    v1::Event event;
-    event.mutable_server_going_away();
-    const SharedBytes frame = encode_event(std::move(event));
-    for (const auto& [number, session] : sessions_) {
-        if (session->greeted())
-            session->event(frame);
-        session->finish();
-    }
+    streams_.say_goodbye();
 }
 
 } // namespace evod::network

@@ -170,7 +170,8 @@ base::Result<void> Server::open_http() {
         co_return Http::Page{.text = metrics::to_prometheus(metrics()), .type = metrics::prometheus_content_type};
     };
     pages["/healthz"] = [this] { return health(); };
-    auto http = Http::open(context_, options_.http->bind_address, options_.http->port, std::move(pages));
+    auto http =
+        Http::open(context_, options_.http->bind_address, options_.http->port, std::move(pages), limit_counters_);
     if (!http)
         return http.error();
     http_ = *std::move(http);

@@ -105,13 +105,13 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , neighbourhood_{neighbourhood_of(peer_.address())}
     , reader_bytes_{host.buffers}
     , expected_bytes_{host.buffers}
-    , turns_to_send_{requests_per_s_max, request_burst_max, std::chrono::steady_clock::now()}
+    , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
     , hello_timer_{line_.socket().get_executor()}
     , frame_timer_{line_.socket().get_executor()}
     , turn_timer_{line_.socket().get_executor()}
     , farewell_timer_{line_.socket().get_executor()}
     , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()}
-    , progressed_{std::chrono::steady_clock::now()} {
+    , progressed_{host.clock->now()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
     line_.socket().set_option(tcp::no_delay{true}, ignored);
     line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
@@ -192,7 +192,7 @@ asio::awaitable<void> Session::read() {
             if (!*frame)
                 break;
             one_came = true;
-            if (!turns_to_send_.take(std::chrono::steady_clock::now()))
+            if (!turns_to_send_.take(host_.clock->now()))
                 co_await wait_for_turn();
             if (!finishing_ && !ended_)
                 on_frame(**frame);
@@ -237,7 +237,7 @@ asio::awaitable<void> Session::wait_for_turn() {
     do {
         turn_timer_.expires_after(turns_to_send_.time_for(request_burst_max / 10));
         co_await turn_timer_.async_wait(no_throw);
-    } while (!finishing_ && !ended_ && !turns_to_send_.take(std::chrono::steady_clock::now()));
+    } while (!finishing_ && !ended_ && !turns_to_send_.take(host_.clock->now()));
 }
 
 /// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
@@ -460,6 +460,7 @@ bool Session::next_picture() {
             turns_.push_back(taken);
         return true;
     }
+    outgoing_ = {};
     return false;
 }
 
@@ -557,8 +558,7 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
 }
 
 void Session::written(const Queued& queued) {
-    if (queued.kind != Kind::Picture)
-        (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
+    (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
     if (queued.kind == Kind::Answer)
         --in_flight_;
 }
@@ -610,6 +610,7 @@ asio::awaitable<void> Session::write() {
             if (error)
                 break;
             sending_.clear();
+            outgoing_ = {}; // nobody counts any more what it holds
             host_.traffic.pictures_sent.add();
         } else if (finishing_) {
             break;

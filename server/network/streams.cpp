@@ -1,6 +1,7 @@
 #include "server/network/streams.h"
 
 #include "proto/wire/snapshot_codec.h"
+#include "server/protocol/events.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"
 
@@ -109,6 +110,11 @@ void Streams::set_view(Session& session, std::uint32_t subscription_id, const v1
     each_newest(subscription, [&](std::uint32_t island, SnapshotSubscription::Waiting newest) {
         session.show_again(subscription_id, island, std::move(newest));
     });
+}
+
+void Streams::forget(const Session& session) {
+    if (!session.snapshots.empty() || !session.events.empty())
+        update_demand();
 }
 
 template <class Do>
@@ -323,10 +329,36 @@ void Streams::tell(v1::Event event) {
     }
 }
 
-void Streams::count_dropped_events(std::uint64_t count) {
-    for (const auto& [number, session] : sessions_)
-        if (!session->events.empty())
-            session->count_dropped_events(count);
+std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)>
+Streams::outlet(runtime::Outbox& outbox) {
+    return [this, &outbox](const simulation::Laboratory& laboratory, const std::vector<simulation::Event>& events) {
+        if (!demand_.events_wanted())
+            return;
+        for (const simulation::Event& event : events)
+            outbox.event([this, told = protocol::to_proto(event, laboratory)]() mutable { tell(std::move(told)); });
+    };
+}
+
+void Streams::deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point now) {
+    for (runtime::Delivery& delivery : taken.deliveries)
+        std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
+    if (taken.dropped_events > 0)
+        for (const auto& [number, session] : sessions_)
+            if (!session->events.empty())
+                session->count_dropped_events(taken.dropped_events);
+    for (const auto& picture : taken.pictures)
+        show(picture, now);
+}
+
+void Streams::say_goodbye() {
+    v1::Event event;
+    event.mutable_server_going_away();
+    const SharedBytes frame = encode_event(std::move(event));
+    for (const auto& [number, session] : sessions_) {
+        if (session->greeted())
+            session->event(frame);
+        session->finish();
+    }
 }
 
 } // namespace evod::network

@@ -12,8 +12,10 @@
 #include "server/runtime/outbox.h"
 
 #include <compare>
+#include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace evod::network {
 
@@ -36,15 +38,20 @@ class Streams {
     /// that has a view.
     void set_view(Session& session, std::uint32_t subscription_id, const v1::View& view);
 
-    /// To be called when the subscriptions of a session have gone with it.
-    void update_demand();
+    /// The session has gone from the table.
+    void forget(const Session& session);
 
-    void show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now);
+    /// What the simulation thread does with events: it puts them into the outbox, as long as somebody wants them.
+    std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
+    /// What has come from there.
+    void deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point now);
     void tell(v1::Event event);
-    /// Events were lost on their way here.
-    void count_dropped_events(std::uint64_t count);
+    /// Tells all sessions that the server goes away, and ends them.
+    void say_goodbye();
 
   private:
+    void update_demand();
+    void show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now);
     /// The viewers of a world at one rate that take deltas, whole or in tiles.
     struct Group {
         runtime::Clock::time_point next_picture;        // not before then

@@ -13,7 +13,6 @@ import json
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,15 +25,15 @@ parser.add_argument("--runs", type=int, default=9, help="pairs of runs of each k
 parser.add_argument("--only", nargs="+", metavar="NAME", help="of the kinds of clients below, and latency")
 parser.add_argument("--json", action="store_true", help="print the figures as JSON")
 options = parser.parse_args()
-sys.path.insert(0, options.messages)
+sys.path[:0] = [options.messages, str(pathlib.Path(__file__).resolve().parents[1] / "system")]
 
+from attack import Attack  # noqa: E402
 from bench_client import Client, Server, assignments, print_figures, spread  # noqa: E402
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2 as w  # noqa: E402
 
-attacker = pathlib.Path(__file__).resolve().parents[1] / "system/attacker.py"
 cores = sorted(os.sched_getaffinity(0))
 server_core, client_core = cores[0], cores[-1]
-first_tick, last_tick = 120, 120 + max(200, 20_000_000 // options.organisms)
+first_tick, last_tick = 120, 120 + max(200, 200_000_000 // options.organisms)
 kinds = {"viewer_1": ("watch", 1), "viewers_10": ("watch", 10), "viewers_50": ("watch", 50),
          "region_viewers_200": ("views", 200), "idle_1000": ("idle", 1000), "slow_200": ("slow", 200),
          "deaf_100": ("deaf", 100), "malformed_50000_a_second": ("malformed", 50_000)}
@@ -62,22 +61,18 @@ def thread_s(server):
     return server.thread_s("simulation"), server.thread_s(lambda name: name != "simulation")
 
 
-class Clients:
-    def __init__(self, port, kind, number):
-        self.process = subprocess.Popen([sys.executable, str(attacker), options.messages, str(port), kind, str(number)],
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        os.sched_setaffinity(self.process.pid, {client_core})
-        assert self.process.stdout.readline() == "ready\n"
-
-    def end(self):
-        return json.loads(self.process.communicate("enough\n")[0])
+def attack(server, kind, number):
+    """Clients of that kind, on a core that is not the simulation's."""
+    clients = Attack(options.messages, server.port, kind, number)
+    os.sched_setaffinity(clients.process.pid, {client_core})
+    return clients
 
 
 def stretch(server):
     """Processor and wall seconds of the ticks that are measured: of the simulation thread, the others, the clock."""
     server.control.run_to(first_tick)
     before, began = thread_s(server), time.perf_counter()
-    server.control.run_to(last_tick)
+    server.control.run_to(last_tick, pause_s=0.25)
     wall = time.perf_counter() - began
     return [after - earlier for after, earlier in zip(thread_s(server), before)] + [wall]
 
@@ -90,7 +85,7 @@ def loss(server, kind, number):
         alone = stretch(server)
         server.control.call(reset_world=c.ResetWorld(world="w"))
         without = server.status_bytes("VmRSS")
-        clients = Clients(server.port, kind, number)
+        clients = attack(server, kind, number)
         beside = stretch(server)
         memory.append((server.status_bytes("VmRSS") - without) / connections)
         became = clients.end()
@@ -125,7 +120,7 @@ def measure_latency(folder):
     for name, arguments in (("kept_nothing", ["--keep-nothing"]), ("durable", ["--data", folder])):
         with serve(*arguments) as server:
             create(server, options.organisms)
-            clients = Clients(server.port, "watch", 10)
+            clients = attack(server, "watch", 10)
             server.control.call(run=c.Run(world="w"))
             time.sleep(1)
             worlds = server.control.call(list_worlds=c.ListWorlds()).worlds.worlds

@@ -1,7 +1,6 @@
 #include "tests/fuzz/watched_server.h"
 
 #include "server/network/random_ids.h"
-#include "server/protocol/events.h"
 #include "server/protocol/queries.h"
 #include "server/protocol/worlds.h"
 #include "tests/fuzz/sound_picture.h"
@@ -110,15 +109,7 @@ WatchedServer::WatchedServer()
             demand_,
             executor_,
             clock(),
-            {.events =
-                 [this](const simulation::Laboratory& laboratory, std::vector<simulation::Event> events) {
-                     if (!demand_.events_wanted())
-                         return;
-                     for (const simulation::Event& event : events)
-                         outbox_.event([this, told = protocol::to_proto(event, laboratory)]() mutable {
-                             streams_.tell(std::move(told));
-                         });
-                 },
+            {.events = streams_.outlet(outbox_),
              .picture = [this](runtime::SnapshotPtr snapshot) { outbox_.picture(std::move(snapshot)); }}} {
     drawn = 0;
     host_.limits = network::limits_message({});
@@ -130,11 +121,9 @@ WatchedServer::WatchedServer()
     host_.admit = [](const std::string& token, const std::string&) { return admit(token); };
     host_.ended = [this](network::Session& session) {
         --connection_count_;
-        const bool watched = !session.snapshots.empty() || !session.events.empty();
         dispatcher_.forget(session);
         sessions_.erase(session.number());
-        if (watched)
-            streams_.update_demand();
+        streams_.forget(session);
     };
 }
 
@@ -236,14 +225,7 @@ void WatchedServer::compare_with_twins() {
 }
 
 void WatchedServer::deliver() {
-    runtime::Outbox::Taken taken = outbox_.take();
-    for (runtime::Delivery& delivery : taken.deliveries)
-        delivery();
-    if (taken.dropped_events > 0)
-        streams_.count_dropped_events(taken.dropped_events);
-    const auto now = clock().now();
-    for (const auto& picture : taken.pictures)
-        streams_.show(picture, now);
+    streams_.deliver(outbox_.take(), clock().now());
 }
 
 void WatchedServer::go_away() {
@@ -253,14 +235,7 @@ void WatchedServer::go_away() {
     watch_mail();
     loop_.close();
     deliver();
-    v1::Event event;
-    event.mutable_server_going_away();
-    const network::SharedBytes frame = network::encode_event(std::move(event));
-    for (const auto& [number, session] : sessions_) {
-        if (session->greeted())
-            session->event(frame);
-        session->finish();
-    }
+    streams_.say_goodbye();
 }
 
 } // namespace evod::fuzz

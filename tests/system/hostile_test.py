@@ -3,19 +3,17 @@
 EVOD names the program, MESSAGES the folder of the message classes. Each test lets tests/system/attacker.py, a process of
 its own, at a server for a bounded time.
 """
-import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
-import time
 import unittest
 
 EVOD, MESSAGES = os.environ["EVOD"], os.environ["MESSAGES"]
 sys.argv[1:1] = [EVOD, MESSAGES, "-"]  # as plain_client reads them
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import plain_client as plain  # noqa: E402
+from attack import Attack  # noqa: E402
 from delta_decoder import Decoder  # noqa: E402
 
 c, w = plain.c, plain.w
@@ -25,23 +23,7 @@ STALLED_S, FRAME_S, HELLO_S = 10, 10, 5  # the server's limits
 PARAMETERS = {"population_size": 500, "scale_with_population": True}
 
 
-class Attack:
-    def __init__(self, server, kind, number):
-        self.process = subprocess.Popen(
-            [sys.executable, str(pathlib.Path(__file__).with_name("attacker.py")), MESSAGES, str(server.port), kind,
-             str(number)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        assert self.process.stdout.readline() == "ready\n"
-        self.begun = time.monotonic()
-
-    def lasted_s(self):
-        return time.monotonic() - self.begun
-
-    def end(self):
-        """What became of it."""
-        return json.loads(self.process.communicate("enough\n", plain.patience_s)[0])
-
-
-class Hostile(unittest.TestCase):
+class Attacked(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server = plain.Server("--sessions-max", "2000")
@@ -72,7 +54,7 @@ class Hostile(unittest.TestCase):
         self.assertEqual(picture.state_hash, stepped.state_hash)
         return stepped
 
-    def attacked(self, kind, number, at_least_s=3.0, until=None):
+    def attacked(self, kind, number, at_least_s=3.0, memory_back_bytes=MEMORY_BACK_BYTES):
         """What became of the attackers, after honest work beside them."""
         with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
             self.begin_world(control)
@@ -80,7 +62,7 @@ class Hostile(unittest.TestCase):
             viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=20, codec=plain.stream_pb2.CODEC_DELTA))
             self.honest(viewer, control, 1)
             before = self.memory_bytes()
-            attack = Attack(self.server, kind, number)
+            attack = Attack(MESSAGES, self.server.port, kind, number)
             self.addCleanup(attack.process.kill)
             # At a pace at which it lasts so long.
             pace = w.Speed(real_time_factor=STEPS * STEP_TICKS / 60 / at_least_s)
@@ -88,11 +70,13 @@ class Hostile(unittest.TestCase):
             for step in range(1, STEPS + 1):
                 stepped = self.honest(viewer, control, step * STEP_TICKS)
             self.assertEqual(stepped.state_hash, self.hash)
-            became = attack.end()
-            plain.until(lambda: self.memory_bytes() <= before + MEMORY_BACK_BYTES, "memory comes back")
+            became = attack.end(plain.patience_s)
+            plain.until(lambda: self.memory_bytes() <= before + memory_back_bytes, "memory comes back")
             control.call(delete_world=c.DeleteWorld(world="w"))
         return became
 
+
+class Hostile(Attacked):
     def test_a_thousand_idle_sessions(self):
         became = self.attacked("idle", 1000)
         self.assertEqual((became["open"], became["closed"]), (1000, 0))

@@ -349,21 +349,47 @@ class Http(Case):
             self.assertTrue(answer.endswith(b"\n") and b"\r\n\r\n" in answer)
             self.assertEqual(self.get(server, "/healthz").status, 200)
 
+    @contextlib.contextmanager
+    def meets(self, server, limit, at_least=1):
+        """What is done within meets this limit so often; it is given what the limit is."""
+        before = self.metrics(server)("evod_limit_reached_total", limit=limit)
+        yield int(re.search(rf"^\| `{limit}` \| (\d+) \|", OPERATIONS.read_text(), re.M)[1])
+        self.wait(server, lambda m: m("evod_limit_reached_total", limit=limit) >= before + at_least, limit)
+
+    def test_a_header_is_as_long_as_it_may_be(self):
+        server = self.serve()
+
+        def status_of(size):
+            begin = b"GET /healthz HTTP/1.1\r\nConnection: close\r\nx: "
+            answer = read_all(self.raw(server, begin + b"y" * (size - len(begin) - 4) + b"\r\n\r\n"))
+            return int(re.match(rb"HTTP/1\.1 (\d+) ", answer)[1])
+        with self.meets(server, "http_header_bytes_max") as limit:
+            self.assertEqual((status_of(limit), status_of(limit + 1)), (200, 431))
+
     def test_whoever_sends_no_whole_request_is_closed(self):
         server = self.serve()
-        begun = [self.raw(server, data) for data in (b"", b"GET /metr", b"GET /metrics HTTP/1.1\r\nHost: a\r\n")]
-        for connection in begun:
-            self.assertEqual(read_all(connection), b"")
+        with self.meets(server, "http_request_timeout_s", 3) as limit:
+            began = time.monotonic()
+            begun = [self.raw(server, data) for data in (b"", b"GET /metr", b"GET /metrics HTTP/1.1\r\nHost: a\r\n")]
+            for connection in begun:
+                self.assertEqual(read_all(connection), b"")
+            self.assertGreater(time.monotonic() - began, limit - 0.5)
 
     def test_a_crowd_is_told_to_come_back(self):
         server = self.serve()
-        crowd = [self.raw(server, b"") for _ in range(16)]
-        told = plain.until(lambda: (lambda a: a if a.status != 200 else None)(self.get(server, "/healthz")), "refused")
-        self.assertEqual(told.status, 503)
-        self.assertIn("16 connections are open already", told.text)
-        for connection in crowd:
-            connection.close()
-        plain.until(lambda: self.get(server, "/healthz").status == 200, "room")
+        with self.meets(server, "http_connections_max") as limit:
+            crowd = [self.raw(server, b"") for _ in range(limit - 1)]
+            plain.until(lambda: self.get(server, "/healthz").status == 200, "the last place")
+            crowd.append(self.raw(server, b""))
+            told = self.get(server, "/healthz")
+            self.assertEqual(told.status, 503)
+            self.assertIn(f"{limit} connections are open already", told.text)
+            crowd += [self.raw(server, b"") for _ in range(limit)]
+            plain.until(lambda: crowd.append(self.raw(server, b"")) or
+                        read_all(self.raw(server, b"GET /healthz HTTP/1.1\r\n\r\n")) == b"", "one is closed at once")
+            for connection in crowd:
+                connection.close()
+            plain.until(lambda: self.get(server, "/healthz").status == 200, "room")
 
     def test_it_is_closed_with_the_server(self):
         server = self.serve()
