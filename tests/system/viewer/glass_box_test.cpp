@@ -209,7 +209,7 @@ class PanelWindow {
         glClear(GL_COLOR_BUFFER_BIT);
         ImGui::SetNextWindowPos({10, 10});
         ImGui::Begin("Glass box");
-        Panel::Context context{watch_, gui_, now};
+        Panel::Context context{.watch = watch_, .gui = gui_, .now = now, .sight = sight_};
         panel_.build(context);
         ImGui::End();
         gui_.draw();
@@ -221,6 +221,7 @@ class PanelWindow {
     Gui gui_;
     BreedingPanel panel_;
     Watch watch_;
+    Sight sight_;
     std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(std::size_t{4} * width * height);
 };
 
