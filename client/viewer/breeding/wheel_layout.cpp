@@ -1,8 +1,6 @@
 #include "client/viewer/breeding/wheel_layout.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 namespace evod::viewer {
 
@@ -38,17 +36,7 @@ const evod::v1::Contender* slot_at(const Contenders& contenders, double turns) {
 }
 
 Colour rank_colour(double rank, std::uint32_t contender_count) {
-    static constexpr std::array<Colour, 6> scale{
-        {{253, 231, 55}, {203, 186, 105}, {151, 145, 119}, {107, 108, 112}, {49, 68, 107}, {0, 34, 78}}};
-    const double place =
-        contender_count < 2 ? 0 : std::clamp(rank / (contender_count - 1), 0.0, 1.0) * (scale.size() - 1);
-    const auto below = std::min(static_cast<std::size_t>(place), scale.size() - 2);
-    const double share = place - static_cast<double>(below);
-    const auto mix = [share](std::uint8_t a, std::uint8_t b) {
-        return static_cast<std::uint8_t>(std::lround(a + (b - a) * share));
-    };
-    const Colour &a = scale[below], &b = scale[below + 1];
-    return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
+    return palette::at(palette::Ramp::Cividis, contender_count < 2 ? 1 : 1 - rank / (contender_count - 1));
 }
 
 } // namespace evod::viewer

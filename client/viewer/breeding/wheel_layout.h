@@ -30,9 +30,7 @@ std::vector<Arc> wheel_arcs(const Contenders& contenders, double circumference_p
 /// The organism whose slot `turns` lies in, or nullptr: the slot is of one that is not known.
 const evod::v1::Contender* slot_at(const Contenders& contenders, double turns);
 
-/// Light yellow for the fittest to dark blue for the last: told apart by lightness, without seeing red and green.
-/// Source: Nuñez, Anderton & Renslow 2018, "Optimizing colormaps with consideration for color vision deficiency"
-/// (cividis).
+/// Light for the fittest to dark for the last: told apart by lightness, with every kind of colour vision.
 Colour rank_colour(double rank, std::uint32_t contender_count);
 
 } // namespace evod::viewer
