@@ -390,11 +390,11 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
     }
 }
 
-void draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names) {
+float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names) {
     const Family family = family_of(descendant);
     const std::size_t count = family.genes.size();
     if (count == 0) {
-        return;
+        return 0;
     }
     const float label_width = std::min(132.f, sheet.size.x / 4);
     const float cell = (sheet.size.x - label_width) / static_cast<float>(count);
@@ -512,6 +512,7 @@ void draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std
                                ink(palette::glass_mutated), 0, 0, 3);
         }
     }
+    return y + bar + 4 - sheet.corner.y;
 }
 
 } // namespace evod::viewer

@@ -41,7 +41,9 @@ void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<con
 /// The next generation as a row of cells: elite, survivors, children; the current one framed.
 void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const std::uint32_t* current);
 
-/// Parents, cuts, child, rearrangement and mutations of one descendant.
-void draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names);
+/// Parents, cuts, child, rearrangement and mutations of one descendant, as high as it takes.
+///
+/// returns  its height in pixels
+float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names);
 
 } // namespace evod::viewer

@@ -147,6 +147,10 @@ void BreedingPanel::choose(const Context& context) {
 }
 
 void BreedingPanel::ask(Watch& watch) {
+    if (asked_ != &watch) {
+        asked_ = &watch; // another pane; the one that was asked may be closed
+        asking_ = false;
+    }
     auto& record = coming_ ? coming_ : shown_;
     if (!record || asking_ || !error_.empty()) {
         return;
@@ -155,13 +159,14 @@ void BreedingPanel::ask(Watch& watch) {
         asking_ = true;
         evod::v1::Request request;
         *request.mutable_get_breeding() = std::move(*wanted);
-        watch.ask(std::move(request), [this, key = record->key()](const auto& response) { take(key, response); });
+        watch.ask(std::move(request),
+                  [this, question = ++question_](const auto& response) { take(question, response); });
     }
 }
 
-void BreedingPanel::take(const BreedingRecord::Key& key, const link::Result<evod::v1::Response>& response) {
+void BreedingPanel::take(unsigned question, const link::Result<evod::v1::Response>& response) {
     auto& record = coming_ ? coming_ : shown_;
-    if (!record || record->key() != key) {
+    if (!asking_ || question != question_ || !record) {
         return; // another is looked at by now
     }
     asking_ = false;
@@ -175,7 +180,7 @@ void BreedingPanel::take(const BreedingRecord::Key& key, const link::Result<evod
             show_coming();
         } else if (coming_) {
             error_ = "The server answered with something else than the breeding of generation " +
-                     with_separators(key.generation);
+                     with_separators(record->key().generation);
         }
         if (shown_ && !comparison_) {
             comparison_ = compare(*shown_);
@@ -374,7 +379,8 @@ void BreedingPanel::build_stage(const Gui& gui) {
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
             quiet("blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
                   "bound");
-            draw_family(sheet_of(gui, std::max(ImGui::GetContentRegionAvail().y - 8, 400.f)), *descendant, gene_names_);
+            const float used = draw_family(sheet_of(gui, 1), *descendant, gene_names_);
+            ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
         break;
     case BreedingStage::Done:

@@ -28,7 +28,7 @@ class BreedingPanel : public Panel {
     void choose(const Context& context);
     void ask(Watch& watch);
     void ask_gene_names(Watch& watch, const BreedingRecord::Key& key);
-    void take(const BreedingRecord::Key& key, const link::Result<evod::v1::Response>& response);
+    void take(unsigned question, const link::Result<evod::v1::Response>& response);
     void show_coming();
     void hold_world(Watch& watch);
 
@@ -43,6 +43,8 @@ class BreedingPanel : public Panel {
     Stepper stepper_;
     std::string error_; // why there is no more to be shown
     bool asking_ = false;
+    unsigned question_ = 0; // number of the last: what others are answered with is too late
+    const Watch* asked_ = nullptr;
 
     std::uint64_t newest_ = 0; // generation that was bred from; 0: none yet
     std::uint64_t chosen_ = 0;
