@@ -32,6 +32,7 @@ constexpr KeyBinding key_bindings[] = {
     {Key::T, Action::Trails},
     {Key::L, Action::Follow},
     {Key::S, Action::Screenshot},
+    {Key::Backspace, Action::Start},
     {Key::H, Action::Help},
     {Key::F1, Action::Help},
     {Key::Q, Action::Quit},
@@ -76,9 +77,15 @@ constexpr HelpLine lines[] = {
     {"C", "colour by a gene, health, family, nothing"},
     {"V   G   T", "show how far they see, forces, trails"},
     {"S", "save the picture as PNG"},
+    {"Backspace", "to the start screen: another server, another token"},
     {"H   F1", "show or hide this help"},
-    {"Q   Esc", "quit; the worlds run on"},
+    {"Esc", "close the help, else the panel in front, else quit"},
+    {"Q", "quit; the worlds run on"},
 };
+
+// One panel for each: F1 is the help.
+constexpr Key::Key first_panel_key = Key::F2, last_panel_key = Key::F12;
+constexpr std::size_t panel_key_count = last_panel_key - first_panel_key + 1;
 
 constexpr double zoom_of_one_notch = 1.2;
 constexpr double pan_pixels_per_s = 700;
@@ -88,6 +95,16 @@ constexpr double click_pixels_max = 4;
 
 std::span<const HelpLine> help_lines() {
     return lines;
+}
+
+std::optional<std::size_t> panel_of(Action action) {
+    return action < Action::FirstPanel
+               ? std::nullopt
+               : std::optional{static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::FirstPanel)};
+}
+
+std::string panel_key(std::size_t index) {
+    return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
 }
 
 std::optional<Action> Input::press(const sf::Event::KeyEvent& key) {
@@ -103,6 +120,9 @@ std::optional<Action> Input::press(const sf::Event::KeyEvent& key) {
     }
     if (key.code == Key::Tab && key.shift) {
         return Action::PreviousIsland;
+    }
+    if (key.code >= first_panel_key && key.code <= last_panel_key) {
+        return static_cast<Action>(static_cast<int>(Action::FirstPanel) + key.code - first_panel_key);
     }
     for (const KeyBinding& binding : key_bindings) {
         if (binding.key == key.code) {

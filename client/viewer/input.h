@@ -10,10 +10,10 @@
 
 #include <SFML/Window/Event.hpp>
 
-#include <array>
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -44,10 +44,17 @@ enum class Action {
     Forces,
     Trails,
     Follow,
+    Start, // to the start screen
     Help,
-    Close, // the help, or else the window
+    Close, // the help, or else the panel in front, or else the window
     Quit,
+    FirstPanel, // and from here on the panels after it, by index
 };
+
+/// Which panel is to be shown or hidden; nullopt if that is not what the action says.
+std::optional<std::size_t> panel_of(Action action);
+/// "F2" for the first; empty for those beyond the keys.
+std::string panel_key(std::size_t index);
 
 constexpr unsigned step_many_ticks = 60;
 

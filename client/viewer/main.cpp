@@ -1,12 +1,44 @@
-// evoview: options → a window, or a screenshot, or a recording → exit status.
+// evoview: options → a window with the start screen and worlds in turn, or a screenshot, or a recording → exit status.
 #include "client/viewer/display.h"
 #include "client/viewer/options.h"
 #include "client/viewer/record.h"
 #include "client/viewer/screenshot.h"
+#include "client/viewer/start_screen.h"
 #include "client/viewer/window.h"
 
 #include <exception>
 #include <iostream>
+
+namespace evod::viewer {
+namespace {
+
+void run(Options options) {
+    Screen screen{options};
+    StartScreen start{screen, options.connection};
+    bool ask = options.start, must_connect = !options.server_given;
+    while (screen.window().isOpen()) {
+        if (ask) {
+            const auto chosen = start.run();
+            if (!chosen) {
+                return;
+            }
+            options = Options{};
+            options.connection = *chosen;
+            must_connect = true;
+        }
+        Window::Ending ending;
+        {
+            Window window{screen, options};
+            ending = window.run(must_connect, [&] { start.remember(options.connection.server); });
+        }
+        screen.stage().panels().begin_session(); // what they ask of the other server is never answered
+        ask = ending.elsewhere;
+        start.tell(ending.reason);
+    }
+}
+
+} // namespace
+} // namespace evod::viewer
 
 int main(int argc, char** argv) {
     using namespace evod::viewer;
@@ -22,7 +54,7 @@ int main(int argc, char** argv) {
         } else if (options.record) {
             record(options, *options.record);
         } else {
-            Window{options}.run();
+            run(options);
         }
     } catch (const std::exception& error) {
         std::cerr << "evoview: " << error.what() << '\n';

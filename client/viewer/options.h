@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/link/connection.h"
+#include "client/viewer/script.h"
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +18,17 @@ struct Options {
     bool all_islands = false;                     // at once, as tiles
     std::optional<std::string> beside;            // a second world, in the right half
     std::optional<std::uint64_t> past_generation; // begin in the past of the world, with this generation
-    unsigned width_pixels = 1280, height_pixels = 720;
+    /// Of the window or the pictures; nullopt: 1280 × 720 times the scale.
+    struct Size {
+        unsigned width, height; // in pixels
+    };
+    std::optional<Size> size;
+    std::optional<double> scale; // of text and widgets; nullopt: as the screen needs it
+
+    bool server_given = false; // or else the start screen comes up where there is none
+    bool start = false;        // with the start screen
+    std::optional<Script> script;
+    std::string script_path;
 
     /// Not a window, but one picture in a file.
     struct Screenshot {
@@ -38,6 +49,9 @@ struct Options {
     };
     std::optional<Record> record;
 };
+
+/// The size of the window or the screenshot.
+Options::Size size_of(const Options& options, double scale);
 
 /// The options; or the exit status, after help, version or an error was printed.
 std::variant<Options, int> parse_options(int argc, const char* const* argv);

@@ -25,7 +25,7 @@ class OrganismStory {
     struct Child {
         std::uint32_t id = 0;
         std::optional<std::uint32_t> other_parent{}; // nullopt: itself alone
-        bool same_genes = false;                   // it lives on in it as it was
+        bool same_genes = false;                     // it lives on in it as it was
     };
 
     OrganismStory(std::uint32_t id, std::uint64_t generation) : id_{id}, generation_{generation} {}

@@ -27,8 +27,8 @@ const Sight& Pane::sight_of(const Tile& tile) {
     return others_;
 }
 
-void Pane::lay_out(Rectangle place, bool with_timeline) {
-    const double height = with_timeline && watch.recording() ? Timeline::height_pixels : 0;
+void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
+    const double height = with_timeline && watch.recording() ? Timeline::height_pixels * scale : 0;
     place_ = {place.left, place.top, place.width, std::max(place.height - height, 1.0)};
     timeline_place_ = {place.left, place.top + place_.height, place.width, height};
     const std::vector<Tile> all = tiles();
@@ -39,7 +39,7 @@ void Pane::lay_out(Rectangle place, bool with_timeline) {
             aspect = picture->about.width_px() / std::max(picture->about.height_px(), 1.0);
         }
     }
-    const std::vector<Rectangle> places = in_tiles(viewport_of(place_), all.size(), aspect);
+    const std::vector<Rectangle> places = in_tiles(viewport_of(place_, scale), all.size(), aspect);
     for (std::size_t i = 0; i < all.size(); ++i) {
         all[i].camera.set_viewport(places[i]);
     }
@@ -68,10 +68,12 @@ void Panes::update(link::WorldView::Clock::time_point now) {
     }
 }
 
-void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool with_timelines) {
-    const auto columns = side_by_side({0, 0, double(width_pixels), double(height_pixels)}, panes_.size());
+void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale) {
+    const Rectangle whole = interactive ? below_panel_strip(width_pixels, height_pixels, scale)
+                                        : Rectangle{0, 0, double(width_pixels), double(height_pixels)};
+    const auto columns = side_by_side(whole, panes_.size());
     for (std::size_t i = 0; i < panes_.size(); ++i) {
-        panes_[i]->lay_out(columns[i], with_timelines);
+        panes_[i]->lay_out(columns[i], interactive, scale);
     }
 }
 

@@ -48,7 +48,7 @@ class Pane {
     /// Gives the pane its part of the window.
     ///
     /// with_timeline  a world that shows the past has its time line at the bottom
-    void lay_out(Rectangle place, bool with_timeline);
+    void lay_out(Rectangle place, bool with_timeline, double scale);
     const Rectangle& place() const { return place_; }                   // but for the time line
     const Rectangle& timeline_place() const { return timeline_place_; } // of no height if there is none
 
@@ -67,7 +67,8 @@ class Panes {
 
     /// Takes in what has come for each of them.
     void update(link::WorldView::Clock::time_point now);
-    void lay_out(unsigned width_pixels, unsigned height_pixels, bool with_timelines);
+    /// interactive  with what hands act upon: the strip of the panels, time lines
+    void lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale);
 
     std::size_t size() const { return panes_.size(); }
     Pane& operator[](std::size_t index) { return *panes_[index]; }

@@ -27,6 +27,10 @@ std::string with_separators(std::uint64_t number) {
     return digits;
 }
 
+std::string shown_number(double number) {
+    return print("%.1f", number);
+}
+
 std::string shown_duration(double seconds) {
     const double tenths = std::floor(seconds * 10 + 1e-6); // a time that has passed is never shown before it has
     const auto minutes = static_cast<std::uint64_t>(tenths / 600);

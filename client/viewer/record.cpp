@@ -35,9 +35,10 @@ bool is_over(const Watch& watch) {
 class Recorder {
   public:
     Recorder(const Options& options, const Options::Record& wanted)
-        : options_{options}
-        , wanted_{wanted}
-        , film_{begin_film(wanted.path, options.width_pixels, options.height_pixels, wanted.fps)}
+        : wanted_{wanted}
+        , scale_{options.scale.value_or(1)} // a film is on no screen
+        , size_{size_of(options, scale_)}
+        , film_{begin_film(wanted.path, size_.width, size_.height, wanted.fps)}
         , panes_{options, rate_hz} {}
 
     void run() {
@@ -94,9 +95,8 @@ class Recorder {
                 missed_ticks_ += shown.tick() - last_tick_ - wanted_.every_ticks;
             }
             last_tick_ = shown.tick();
-            film_->add(stage_.capture(panes_, {.width_pixels = options_.width_pixels,
-                                               .height_pixels = options_.height_pixels,
-                                               .now = Clock::now()}),
+            film_->add(stage_.capture(
+                           panes_, {.width_pixels = size_.width, .height_pixels = size_.height, .now = Clock::now()}),
                        last_tick_);
             if (wanted_.ticks && last_tick_ >= first_tick_ + *wanted_.ticks) {
                 return;
@@ -222,10 +222,11 @@ class Recorder {
         }
     }
 
-    const Options& options_;
     const Options::Record& wanted_;
+    double scale_;
+    Options::Size size_;
     std::unique_ptr<Film> film_; // first: without a place for its pictures no world is touched
-    Stage stage_;
+    Stage stage_{scale_};
     Panes panes_;
     std::vector<std::uint64_t> targets_;
     std::vector<std::string> run_ids_; // of each pane's world

@@ -26,7 +26,7 @@ void RunControl::see(const evod::v1::SnapshotFrame& picture) {
     begin_run(picture.world(), picture.run_id());
     tick_ = shows_past_ ? picture.tick() : std::max(tick_, picture.tick());
     // A picture from before the last answer or event knows less than that; and an answer under way will know more.
-    const bool newer = picture.tick() > told_tick_ || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
+    const bool newer = picture.tick() > told_.tick() || state_ == evod::v1::RUN_STATE_UNSPECIFIED;
     if (newer && unanswered_count_ == 0) {
         state_ = picture.state();
         take(picture.speed());
@@ -36,11 +36,11 @@ void RunControl::see(const evod::v1::SnapshotFrame& picture) {
 void RunControl::see(const evod::v1::WorldInfo& world) {
     begin_run(world.name(), world.run_id());
     shows_past_ = world.has_recording();
-    if (world.tick() < told_tick_ && !shows_past_) {
+    if (world.tick() < told_.tick() && !shows_past_) {
         return; // overtaken on its way
     }
     tick_ = shows_past_ ? world.tick() : std::max(tick_, world.tick());
-    told_tick_ = world.tick();
+    told_ = world;
     if (unanswered_count_ == 0) {
         state_ = world.state();
         outcome_ = world.outcome();
@@ -116,7 +116,7 @@ std::optional<evod::v1::Request> RunControl::ask_for(evod::v1::Speed speed) {
     return request;
 }
 
-std::optional<evod::v1::Request> RunControl::ask_for_factor(double factor) {
+std::optional<evod::v1::Request> RunControl::at_factor(double factor) {
     factor_ = std::clamp(factor, factor_min, factor_max);
     evod::v1::Speed speed;
     speed.set_real_time_factor(factor_);
@@ -124,24 +124,51 @@ std::optional<evod::v1::Request> RunControl::ask_for_factor(double factor) {
 }
 
 std::optional<evod::v1::Request> RunControl::faster() {
-    return speed_.max() ? std::nullopt : ask_for_factor(factor_ * 2);
+    return speed_.max() ? std::nullopt : at_factor(factor_ * 2);
 }
 
 std::optional<evod::v1::Request> RunControl::slower() {
-    return ask_for_factor(speed_.max() ? factor_ : factor_ / 2);
+    return at_factor(speed_.max() ? factor_ : factor_ / 2);
 }
 
 std::optional<evod::v1::Request> RunControl::real_time() {
-    return ask_for_factor(1);
+    return at_factor(1);
 }
 
 std::optional<evod::v1::Request> RunControl::max_speed() {
     if (speed_.max()) {
-        return ask_for_factor(factor_);
+        return at_factor(factor_);
     }
     evod::v1::Speed speed;
     speed.set_max(true);
     return ask_for(speed);
+}
+
+std::optional<evod::v1::Request> RunControl::run_generations(std::uint64_t generations) {
+    if (state_ == evod::v1::RUN_STATE_UNSPECIFIED || state_ == evod::v1::RUN_STATE_TERMINATED) {
+        return std::nullopt;
+    }
+    evod::v1::Request request;
+    request.mutable_run()->set_world(world_);
+    request.mutable_run()->set_generations(generations);
+    state_ = evod::v1::RUN_STATE_RUNNING;
+    step_target_ = held_step_ = 0;
+    ++unanswered_count_;
+    return request;
+}
+
+std::optional<evod::v1::Request> RunControl::reset(std::optional<std::uint64_t> seed) {
+    if (!known()) {
+        return std::nullopt;
+    }
+    evod::v1::Request request;
+    request.mutable_reset_world()->set_world(world_);
+    if (seed) {
+        request.mutable_reset_world()->set_seed(*seed);
+    }
+    step_target_ = held_step_ = 0;
+    ++unanswered_count_;
+    return request;
 }
 
 std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* response) {

@@ -34,8 +34,15 @@ class RunControl {
     std::optional<evod::v1::Request> faster();
     std::optional<evod::v1::Request> slower();
     std::optional<evod::v1::Request> real_time();
+    /// So many times real time; put within factor_min and factor_max.
+    std::optional<evod::v1::Request> at_factor(double factor);
     /// The highest, or if it is that already, the speed before.
     std::optional<evod::v1::Request> max_speed();
+
+    /// So many generations more, >= 1, then wait. Nullopt when the run has ended, or nothing is known yet.
+    std::optional<evod::v1::Request> run_generations(std::uint64_t generations);
+    /// The run from its beginning; without a seed, with the same again. Nullopt while nothing is known.
+    std::optional<evod::v1::Request> reset(std::optional<std::uint64_t> seed);
 
     /// An answer has come, or none ever will (null). Returns a request that is needed to end what was begun.
     std::optional<evod::v1::Request> answered(const evod::v1::Response* response);
@@ -49,6 +56,8 @@ class RunControl {
     evod::v1::RunState state() const { return state_; }
     const evod::v1::Speed& speed() const { return speed_; }
     evod::v1::Outcome outcome() const { return outcome_; }
+    /// The newest WorldInfo; empty before the first. Pictures know of later ticks.
+    const evod::v1::WorldInfo& told() const { return told_; }
 
     static constexpr double factor_min = 0.001, factor_max = 10'000; // of real time, as the server takes them
 
@@ -56,16 +65,15 @@ class RunControl {
     void begin_run(const std::string& world, const std::string& run_id);
     void take(const evod::v1::Speed& speed);
     std::optional<evod::v1::Request> ask_for(evod::v1::Speed speed);
-    std::optional<evod::v1::Request> ask_for_factor(double factor);
 
     std::string world_, run_id_;
     std::uint64_t tick_ = 0;        // the newest known
-    std::uint64_t told_tick_ = 0;   // of the newest WorldInfo
     std::uint64_t step_target_ = 0; // of an unfinished step; else in the past
     bool shows_past_ = false;       // its ticks may fall
     evod::v1::RunState state_ = evod::v1::RUN_STATE_UNSPECIFIED;
     evod::v1::Outcome outcome_ = evod::v1::OUTCOME_UNSPECIFIED;
     evod::v1::Speed speed_;
+    evod::v1::WorldInfo told_;
     double factor_ = 1; // the last that was not max
     unsigned unanswered_count_ = 0;
     bool resuming_ = false;          // a Resume is among the unanswered

@@ -14,7 +14,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float label_pixels = 14;      // height of the numbers
+constexpr float label_pixels = 14;      // height of the numbers, at scale 1
 constexpr double label_zoom_min = 0.45; // below it an organism is smaller than its number
 
 const Look food_look{.fill = palette::food, .half_pixels_min = 1};
@@ -305,14 +305,15 @@ void Scene::draw_labels(link::WorldView& view, double blend, const Camera& camer
         const char* end = std::to_chars(digits.begin(), digits.end(), shown_health(picture->organisms.health[i])).ptr;
         const Point centre = camera.to_screen({organisms.x_px[i], organisms.y_px[i]});
         const double radius = picture->organisms.radius_px[i] * camera.zoom();
-        const double width = font.CalcTextSizeA(label_pixels, 1e9f, 0, digits.data(), end).x;
+        const double width = font.CalcTextSizeA(font.FontSize, 1e9f, 0, digits.data(), end).x;
         // Black on the black wall could not be read: at a side the number moves inwards, at the top below the organism.
-        const double above = centre.y - radius - label_pixels - 1;
+        const double above = centre.y - radius - font.FontSize - 1;
         const double top = above < corner.y ? centre.y + radius + 1 : above;
         const double left = std::max(std::min(centre.x - width / 2, other.x - width - 1), corner.x + 1);
         // Whole pixels keep the glyphs sharp.
         const ImVec2 place{static_cast<float>(std::floor(left)), static_cast<float>(std::floor(top))};
-        list.AddText(&font, label_pixels, place, IM_COL32(ink.red, ink.green, ink.blue, ink.alpha), digits.data(), end);
+        list.AddText(&font, font.FontSize, place, IM_COL32(ink.red, ink.green, ink.blue, ink.alpha), digits.data(),
+                     end);
     }
 }
 

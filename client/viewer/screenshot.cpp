@@ -2,9 +2,9 @@
 
 #include "client/viewer/png.h"
 #include "client/viewer/readout.h"
+#include "client/viewer/screen.h"
 #include "client/viewer/stage.h"
 #include "client/viewer/waiting.h"
-#include "client/viewer/window.h"
 
 #include <SFML/Window/Context.hpp>
 
@@ -35,7 +35,8 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};
-    Stage stage;
+    const double scale = options.scale.value_or(1); // a file is on no screen
+    Stage stage{scale};
     Panes panes{options, rate_hz};
     bool told = false;
     const auto late = [&]() -> const Watch* { // a world that is not there yet
@@ -65,8 +66,8 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
         }
         std::this_thread::sleep_for(look_again);
     }
-    const Stage::Frame frame{
-        .width_pixels = options.width_pixels, .height_pixels = options.height_pixels, .now = Clock::now()};
+    const Options::Size size = size_of(options, scale);
+    const Stage::Frame frame{.width_pixels = size.width, .height_pixels = size.height, .now = Clock::now()};
     write_file(screenshot.path, png_of(stage.capture(panes, frame)));
     const auto& about = panes[0].watch.picture()->about;
     std::cout << screenshot.path << ": " << quoted(about.world()) << " at tick " << about.tick() << '\n';

@@ -21,6 +21,12 @@ std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const wire:
                                                : std::nullopt;
 }
 
+void clear(Colour colour, const Stage::Frame& frame) {
+    glViewport(0, 0, static_cast<int>(frame.width_pixels), static_cast<int>(frame.height_pixels));
+    glClearColor(colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
+
 } // namespace
 
 void Stage::select_at(Pane& pane, Point screen) {
@@ -35,13 +41,10 @@ void Stage::select_at(Pane& pane, Point screen) {
 }
 
 void Stage::draw(Panes& panes, const Frame& frame) {
-    panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive);
+    panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
     drawn_ = frame.now;
-    const Colour between = palette::strip_edge; // of panes and tiles
-    glViewport(0, 0, static_cast<int>(frame.width_pixels), static_cast<int>(frame.height_pixels));
-    glClearColor(between.red / 255.f, between.green / 255.f, between.blue / 255.f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    clear(palette::strip_edge, frame); // between panes and tiles
     std::size_t scene = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         Pane& pane = panes[i];
@@ -54,8 +57,10 @@ void Stage::draw(Panes& panes, const Frame& frame) {
         overlay_.build_world(pane.watch, gui_, pane.place(), frame.interactive && panes.has_focus(pane));
         pane.timeline.build(pane.watch, gui_, pane.timeline_place(), static_cast<int>(i));
     }
-    overlay_.build(gui_, frame.now);
-    panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
+    overlay_.build(gui_, panels_.titles(), frame.now);
+    if (frame.interactive) {
+        panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
+    }
     gui_.draw();
 }
 
@@ -97,8 +102,16 @@ void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& f
     }
 }
 
-sf::Image Stage::capture(Panes& panes, const Frame& frame) {
-    return draw_off_screen(frame.width_pixels, frame.height_pixels, [&] { draw(panes, frame); });
+void Stage::draw(const std::function<void(const Gui&)>& build, const Frame& frame) {
+    gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
+    drawn_ = frame.now;
+    clear(palette::background, frame);
+    build(gui_);
+    gui_.draw();
+}
+
+sf::Image Stage::capture(const Frame& frame, const std::function<void()>& draw) {
+    return draw_off_screen(frame.width_pixels, frame.height_pixels, draw);
 }
 
 } // namespace evod::viewer

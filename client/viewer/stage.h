@@ -12,6 +12,7 @@
 
 #include <SFML/Graphics/Image.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -22,19 +23,28 @@ class Stage {
   public:
     using Clock = link::WorldView::Clock;
 
+    /// scale  of all text and widgets
+    explicit Stage(double scale = 1) : gui_{scale} {}
+
     struct Frame {
         unsigned width_pixels = 1, height_pixels = 1;
         Clock::time_point now;
         bool glide = false;                // between the two newest pictures; otherwise the newest as they are
-        bool interactive = false;          // with what hands act upon: time lines, the mark of the focus
+        bool interactive = false;          // with what hands act upon: panels, time lines, the mark of the focus
         std::optional<Point> pointed_at{}; // on the screen
     };
 
     /// Draws on the current framebuffer.
     void draw(Panes& panes, const Frame& frame);
 
-    /// Draws the same off the screen, which a covered or small window cannot spoil.
-    sf::Image capture(Panes& panes, const Frame& frame);
+    /// Draws widgets alone, where nothing is watched.
+    void draw(const std::function<void(const Gui&)>& build, const Frame& frame);
+
+    /// What `draw` draws, off the screen, which a covered or small window cannot spoil.
+    sf::Image capture(const Frame& frame, const std::function<void()>& draw);
+    sf::Image capture(Panes& panes, const Frame& frame) {
+        return capture(frame, [&] { draw(panes, frame); });
+    }
 
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }

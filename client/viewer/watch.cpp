@@ -275,11 +275,24 @@ void Watch::step(std::uint64_t ticks) {
     }
 }
 
+void Watch::run_generations(std::uint64_t generations) {
+    if (!is_over()) {
+        send(control_.run_generations(generations));
+    }
+}
+
+std::string_view Watch::why_only_watching() const {
+    return role_ == evod::v1::ROLE_VIEWER && !opened_past()
+               ? "You came as a viewer, who sees everything and changes nothing"
+               : "";
+}
+
 // ---- what comes ------------------------------------------------------------------------------------------------
 
 bool Watch::update(link::WorldView::Clock::time_point now) {
     if (const auto status = connection_.status(); status.connected_count != connected_count_) {
         connected_count_ = status.connected_count;
+        role_ = status.welcome ? status.welcome->role() : evod::v1::ROLE_UNSPECIFIED;
         storage_ = status.welcome ? status.welcome->storage() : evod::v1::Storage{};
         if (present_) {
             notices_.push_back("The connection was lost, and the look at the past with it");

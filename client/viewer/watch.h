@@ -21,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,11 @@ class Watch {
     void slower() { send(control_.slower()); }
     void real_time() { send(control_.real_time()); }
     void max_speed() { send(control_.max_speed()); }
+    void at_factor(double factor) { send(control_.at_factor(factor)); }
+    void run_generations(std::uint64_t generations);
+    void reset(std::optional<std::uint64_t> seed) { send(control_.reset(seed)); }
+    /// Why this session may not change the world; empty if it may.
+    std::string_view why_only_watching() const;
 
     // For panels.
     using Answer = std::function<void(const link::Result<evod::v1::Response>&)>;
@@ -66,6 +72,7 @@ class Watch {
     /// Pictures of every island, and not only of the one that is chosen.
     void show_all_islands(bool all);
     void next_world();
+    void look_at(std::string world, std::uint32_t island);
 
     /// The organism that panels tell of and the camera may follow: an id of the generation that runs.
     void select(std::optional<std::uint32_t> organism) { selected_ = organism; }
@@ -104,6 +111,8 @@ class Watch {
     /// Of the generation before, on this island; null in the first.
     const evod::v1::GenerationStatistics* last_generation() const;
     const std::string& world() const { return wanted_.world; } // empty: the server's choice
+    /// The same, by its name as soon as that is known.
+    const std::string& name() const { return control_.known() ? control_.world() : wanted_.world; }
     std::uint32_t island() const { return wanted_.island; }
     const link::Endpoint& server() const { return wanted_.connection.server; }
     /// Whether the server has answered everything, the questions of the beginning among it.
@@ -125,14 +134,12 @@ class Watch {
 
     void subscribe();
     void subscribe_overview();
-    void look_at(std::string world, std::uint32_t island);
     void send(std::optional<evod::v1::Request> request);
     void ask_state();
     void see(const evod::v1::WorldInfo& world);
     void send_seek(std::optional<evod::v1::RunMoment> to);
     void take_opened();
     void close_past(const std::string& world);
-    const std::string& name() const { return control_.known() ? control_.world() : wanted_.world; }
     bool is_over();
     void take_answers();
     void take_command_answer(const link::Result<evod::v1::Response>& response);
@@ -155,6 +162,7 @@ class Watch {
     std::optional<std::uint32_t> selected_;
     std::vector<std::string> notices_;
     std::uint64_t connected_count_ = 0;
+    evod::v1::Role role_ = evod::v1::ROLE_UNSPECIFIED; // that the server has given us
 
     // The past.
     std::optional<evod::v1::Recording> recording_;

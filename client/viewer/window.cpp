@@ -2,18 +2,13 @@
 
 #include "client/viewer/png.h"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <stdexcept>
-#include <thread>
 
 namespace evod::viewer {
 
 namespace {
-
-// The screen paces the window where it can; this is for where it cannot, and too short to miss a beat at 60 Hz.
-constexpr std::chrono::milliseconds frame_min{15};
 
 void toggle(bool& shown) {
     shown = !shown;
@@ -21,50 +16,44 @@ void toggle(bool& shown) {
 
 } // namespace
 
-sf::ContextSettings context_settings() {
-    return sf::ContextSettings{0, 0, 0, 3, 3, sf::ContextSettings::Core};
-}
+Window::Window(Screen& screen, const Options& options)
+    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{options} {}
 
-Window::Window(const Options& options)
-    : window_{sf::VideoMode{options.width_pixels, options.height_pixels}, "evoview", sf::Style::Default,
-              context_settings()}
-    , panes_{options} {
-    window_.setVerticalSyncEnabled(true);
-}
-
-Stage::Frame Window::frame() const {
-    const sf::Vector2u size = window_.getSize();
-    return {
-        .width_pixels = std::max(size.x, 1u), .height_pixels = std::max(size.y, 1u), .now = now_, .interactive = true};
-}
-
-void Window::run() {
+Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = link::WorldView::Clock;
     now_ = Clock::now();
-    while (window_.isOpen()) {
+    bool was_connected = false;
+    while (window_.isOpen() && !elsewhere_) {
         const double seconds = std::chrono::duration<double>{Clock::now() - now_}.count();
         now_ = Clock::now();
         handle_events();
         input_.move(panes_.focused().camera(), seconds);
         panes_.link_cameras(panes_.focused().camera());
         panes_.update(now_);
+        if (!was_connected) {
+            const link::ConnectionStatus status = panes_[0].watch.connection_status();
+            was_connected = status.connected_count > 0;
+            if (was_connected) {
+                connected();
+            } else if (must_connect && !status.reason.empty()) {
+                return {.elsewhere = true, .reason = status.reason};
+            }
+        }
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             for (std::string& notice : panes_[i].watch.take_notices()) {
                 stage_.overlay().notice(std::move(notice), now_);
             }
         }
-        Stage::Frame next = frame();
+        Stage::Frame next = screen_.frame(now_);
         next.glide = true;
         next.pointed_at = stage_.gui().captured().mouse ? std::nullopt : input_.pointed_at();
-        stage_.draw(panes_, next);
-        window_.display();
-        std::this_thread::sleep_until(now_ + frame_min);
+        screen_.show(&panes_.focused().watch, next, [&] { stage_.draw(panes_, next); });
     }
+    return {.elsewhere = elsewhere_ && window_.isOpen(), .reason = ""};
 }
 
 void Window::handle_events() {
-    for (sf::Event event; window_.pollEvent(event);) {
-        stage_.gui().handle(event);
+    for (sf::Event event; screen_.poll(event);) {
         const Captured captured = stage_.gui().captured();
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
@@ -84,6 +73,9 @@ void Window::handle_events() {
 }
 
 void Window::carry_out(Action action) {
+    if (const auto panel = panel_of(action)) {
+        return stage_.panels().toggle(*panel);
+    }
     Watch& watch = panes_.focused().watch;
     Sight& sight = panes_.focused().sight;
     switch (action) {
@@ -137,10 +129,20 @@ void Window::carry_out(Action action) {
         return save_screenshot();
     case Action::Help:
         return stage_.overlay().toggle_help();
+    case Action::Start:
+        elsewhere_ = true;
+        return;
     case Action::Close:
-        return stage_.overlay().help() ? stage_.overlay().toggle_help() : window_.close();
+        if (stage_.overlay().help()) {
+            stage_.overlay().toggle_help();
+        } else if (!stage_.panels().close_front()) {
+            window_.close();
+        }
+        return;
     case Action::Quit:
         return window_.close();
+    case Action::FirstPanel: // a panel: above
+        break;
     }
 }
 
@@ -170,7 +172,7 @@ void Window::save_screenshot() {
     const std::string path = std::filesystem::absolute(name).string();
     try {
         // Latest positions, as the tick in the name says, and not those on the way there.
-        write_file(path, png_of(stage_.capture(panes_, frame())));
+        write_file(path, png_of(stage_.capture(panes_, screen_.frame(now_))));
         stage_.overlay().notice("Saved " + path, now_);
     } catch (const std::runtime_error& error) {
         stage_.overlay().notice(error.what(), now_);

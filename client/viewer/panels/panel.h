@@ -19,12 +19,20 @@ class Panel {
         const Gui& gui;
         link::WorldView::Clock::time_point now;
         Sight& sight;
+        /// The first time since it was hidden: the events of meanwhile were not heard.
+        bool shown_anew = false;
+    };
+    struct Size {
+        float width, height; // in pixels at scale 1
     };
 
     virtual ~Panel() = default;
 
     /// Also of the window, and of its line in the help: "Parameters".
     virtual std::string_view title() const = 0;
+
+    /// Until a person makes it another.
+    virtual Size first_size() const { return {380, 480}; }
 
     /// The widgets, between ImGui::Begin() and ImGui::End(); called only while it is shown.
     virtual void build(Context& context) = 0;

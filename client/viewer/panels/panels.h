@@ -17,19 +17,30 @@ class Panels {
 
     /// Shows or hides panel `index`; one that is not there is nothing.
     void toggle(std::size_t index);
+    /// Hides the panel that is in front; false if none is shown.
+    bool close_front();
+    /// Another server: what the panels know is forgotten, those that are shown stay.
+    void begin_session();
 
     /// Shows the panel of that title.
     void show(std::string_view title);
 
-    /// Between Gui::begin() and Gui::draw().
+    /// Of all panels, in the order of their keys.
+    const std::vector<std::string_view>& titles() const { return titles_; }
+
+    /// The strip of names and the panels that are shown, between Gui::begin() and Gui::draw().
     void build(Panel::Context context);
 
   private:
     struct Place {
         std::unique_ptr<Panel> panel;
         bool shown = false;
+        int built = -1; // the last frame of Dear ImGui in which it was
     };
+    void build_strip(const Gui& gui);
     std::vector<Place> places_;
+    std::vector<std::string_view> titles_;
+    std::size_t front_ = 0; // index: the one that was used last
 };
 
 } // namespace evod::viewer

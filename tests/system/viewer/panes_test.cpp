@@ -92,7 +92,10 @@ struct TimelineTest : PanesTest {
     }
 
     /// Where the island is seen above the time line.
-    static Rectangle viewport() { return viewport_of(Rectangle{0, 0, 800, 500 - Timeline::height_pixels}); }
+    static Rectangle viewport() {
+        const Rectangle below = below_panel_strip(800, 500);
+        return viewport_of({below.left, below.top, below.width, below.height - Timeline::height_pixels});
+    }
 
     bool shows(const wire::Picture& picture, Rectangle place) {
         const ExpectedPicture expected{picture, camera_in(place, picture.about)};
@@ -127,7 +130,8 @@ TEST_F(TimelineTest, KeysGoFromGenerationToGenerationAndBackToThePresent) {
     person.press(XK_period);
     EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(241)), viewport()));
     person.press(XK_p);
-    EXPECT_TRUE(shows(*picture_of(server, "one"), viewport_of(800, 500))) << "the present, without a time line";
+    EXPECT_TRUE(shows(*picture_of(server, "one"), viewport_of(below_panel_strip(800, 500))))
+        << "the present, without a time line";
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);
 }

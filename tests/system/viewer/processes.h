@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -103,6 +104,7 @@ class Process {
         std::array<char, 512> line{};
         return std::fgets(line.data(), line.size(), output_) == nullptr ? "" : line.data();
     }
+    void terminate() { kill(id_, SIGTERM); }
     /// Its exit status; -1 if a signal ended it.
     int wait() {
         int status = 0;
@@ -144,14 +146,30 @@ class RealServer {
         return ask(request);
     }
 
+    evod::v1::ParameterSet parameters() {
+        evod::v1::Request request;
+        request.mutable_get_parameters();
+        return connection->request(request).value().parameters();
+    }
+    /// Ends it; everything that it has said since it began to listen.
+    std::string end() {
+        connection.reset();
+        process_.terminate();
+        std::string said;
+        for (std::string line = process_.read_line(); !line.empty(); line = process_.read_line()) {
+            said += line;
+        }
+        return said;
+    }
+
     std::optional<link::Connection> connection;
 
   private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), {"--port", "0"});
         if (std::ranges::find(arguments, "--data") == arguments.end()) {
             arguments.emplace_back("--keep-nothing");
         }
+        arguments.insert(arguments.end(), {"--port", "0"});
         return arguments;
     }
     Process process_;

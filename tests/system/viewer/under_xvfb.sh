@@ -12,4 +12,5 @@ server=$!
 trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -rf "$folder"' EXIT
 trap 'exit 143' TERM INT
 read -r number <"$folder/display" || { echo "Xvfb did not start:"; cat "$folder/errors"; exit 1; }
-DISPLAY=:$number "$@"
+# What evoview remembers is the test's own, too.
+DISPLAY=:$number XDG_STATE_HOME=$folder/state "$@"

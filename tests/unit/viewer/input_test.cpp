@@ -76,6 +76,7 @@ TEST_F(InputTest, EveryKeyOfTheHelpDoesWhatItSays) {
     EXPECT_EQ(handle(press(Key::T)), Action::Trails);
     EXPECT_EQ(handle(press(Key::L)), Action::Follow);
     EXPECT_EQ(handle(press(Key::S)), Action::Screenshot);
+    EXPECT_EQ(handle(press(Key::Backspace)), Action::Start);
     EXPECT_EQ(handle(press(Key::H)), Action::Help);
     EXPECT_EQ(handle(press(Key::F1)), Action::Help);
     EXPECT_EQ(handle(press(Key::Q)), Action::Quit);
@@ -88,6 +89,17 @@ TEST_F(InputTest, EveryKeyOfTheHelpDoesWhatItSays) {
     EXPECT_EQ(handle(press(Key::K)), Action::LinkCameras);
     EXPECT_EQ(handle(press(Key::I)), Action::AllIslands);
     EXPECT_EQ(handle(press(Key::J)), std::nullopt);
+}
+
+TEST_F(InputTest, TheFunctionKeysAfterTheHelpAreThePanels) {
+    EXPECT_EQ(panel_of(handle(press(Key::F2)).value()), 0u);
+    EXPECT_EQ(panel_of(handle(press(Key::F12)).value()), 10u);
+    EXPECT_EQ(handle(press(Key::F2)), std::nullopt) << "it is held";
+    EXPECT_EQ(handle(press(Key::F4), {.keyboard = true}), std::nullopt);
+    EXPECT_EQ(panel_of(Action::Quit), std::nullopt);
+    EXPECT_EQ(panel_key(0), "F2");
+    EXPECT_EQ(panel_key(10), "F12");
+    EXPECT_EQ(panel_key(11), "");
 }
 
 TEST_F(InputTest, AHeldKeyActsOnceButStepsRepeat) {

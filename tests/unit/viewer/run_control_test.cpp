@@ -89,6 +89,31 @@ TEST(RunControl, AsksNothingOfAWorldThatHasEndedOrIsNotKnownYet) {
     EXPECT_FALSE(control.step(1));
 }
 
+TEST(RunControl, RunsGenerationsAndIsResetWithASeedOrTheSameAgain) {
+    RunControl control;
+    EXPECT_FALSE(control.run_generations(3));
+    EXPECT_FALSE(control.reset(std::nullopt));
+    control.see(world(waiting, 0));
+    const auto run = control.run_generations(3);
+    EXPECT_EQ(run->run().world(), "default");
+    EXPECT_EQ(run->run().generations(), 3u);
+    EXPECT_EQ(control.state(), running);
+    control.answered(nullptr);
+    control.see(world(terminated, 100));
+    EXPECT_FALSE(control.run_generations(3)) << "it has ended";
+    EXPECT_FALSE(control.reset(std::nullopt)->reset_world().has_seed());
+    EXPECT_EQ(control.reset(0)->reset_world().seed(), 0u);
+    EXPECT_TRUE(control.reset(0)->reset_world().has_seed());
+}
+
+TEST(RunControl, ASpeedIsPutWithinWhatTheServerTakes) {
+    RunControl control;
+    EXPECT_FALSE(control.at_factor(2));
+    control.see(world(waiting, 0));
+    EXPECT_EQ(control.at_factor(2.5)->set_speed().speed().real_time_factor(), 2.5);
+    EXPECT_EQ(control.at_factor(1e9)->set_speed().speed().real_time_factor(), RunControl::factor_max);
+}
+
 TEST(RunControl, ASecondPressMeansWhatThePersonSees) {
     RunControl control;
     control.see(picture(running, 10));

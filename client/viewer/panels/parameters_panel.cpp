@@ -1,0 +1,388 @@
+#include "client/viewer/panels/parameters_panel.h"
+
+#include "client/viewer/readout.h"
+#include "client/viewer/widgets.h"
+
+#include <SFML/Window/Keyboard.hpp>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+namespace {
+
+using evod::v1::ParameterDescription;
+using evod::v1::ParameterValue;
+
+struct EffectWords {
+    const char *mark, *sentence;
+};
+EffectWords words_of(evod::v1::ParameterEffect effect) {
+    switch (effect) {
+    case evod::v1::PARAMETER_EFFECT_NEXT_TICK:
+        return {"now", "Holds at once; for breeding, the next time it happens."};
+    case evod::v1::PARAMETER_EFFECT_NEXT_GENERATION:
+        return {"generation", "Holds from the next generation on."};
+    case evod::v1::PARAMETER_EFFECT_RESET:
+        return {"reset", "Holds when the world is reset."};
+    default:
+        return {"", ""};
+    }
+}
+
+/// With every % doubled, as formats want it.
+std::string as_format(const std::string& text) {
+    std::string escaped;
+    for (const char sign : text) {
+        escaped += sign == '%' ? "%%" : std::string(1, sign);
+    }
+    return escaped;
+}
+
+/// Of the widget made last, which is of this parameter.
+void explain(const ParameterDescription& about, const ParameterEdits& edits, std::size_t i,
+             std::string_view more = "") {
+    if (!widgets::wants_note()) {
+        return;
+    }
+    std::string text = about.help() + "\n\nAllowed: " + allowed_text(about) +
+                       (about.unit().empty() ? "" : " " + about.unit()) +
+                       "\nDefault: " + to_text(about.default_value()) + "\nNow: " + to_text(edits.holds(i));
+    if (edits.is_pending(i)) {
+        text += ", then " + to_text(edits.asked_for(i));
+    }
+    widgets::note(text + "\n" + words_of(about.effect()).sentence + std::string{more});
+}
+
+} // namespace
+
+void ParametersPanel::build(Context& context) {
+    Watch& watch = context.watch;
+    follow(watch, context.shown_anew);
+    if (apply_ && !edits_.busy()) {
+        apply_ = false;
+        send(watch, edits_.apply(watch.name()));
+    }
+    if (!problem_.empty()) {
+        widgets::say(problem_, palette::warning);
+    }
+    if (!edits_.known()) {
+        widgets::say("Asking the server for its parameters …");
+        return;
+    }
+    std::string_view why = watch.why_only_watching();
+    if (watch.recording() != nullptr) {
+        why = "This world shows the past, which stays as it was.";
+    }
+    const float scale = context.gui.scale();
+    if (!why.empty()) {
+        widgets::say(why, palette::stopped);
+    }
+    ImGui::BeginDisabled(!why.empty());
+    build_head(watch, scale);
+    ImGui::EndDisabled();
+    ImGui::SetNextItemWidth(-1);
+    ImGui::InputTextWithHint("##search", "search: name, unit or meaning", search_.data(), search_.size());
+    widgets::mark("Search");
+    ImGui::BeginChild("rows");
+    ImGui::BeginDisabled(!why.empty());
+    build_rows(scale);
+    ImGui::EndDisabled();
+    ImGui::EndChild();
+}
+
+// ---- the server ------------------------------------------------------------------------------------------------
+
+void ParametersPanel::follow(Watch& watch, bool shown_anew) {
+    using Kind = evod::v1::Event::EventCase;
+    if (watch.world() != world_ || watch.control().run_id() != run_id_) { // what was asked before may stay unanswered
+        world_ = watch.world();
+        run_id_ = watch.control().run_id();
+        edits_.forget();
+        ++run_number_;
+        asked_ = apply_ = false;
+        stale_ = true;
+    }
+    stale_ = stale_ || shown_anew;
+    for (const evod::v1::Event& event : watch.events()) {
+        if (event.event_case() == Kind::kEventsDropped) {
+            stale_ = true;
+        } else if (event.world() != watch.name()) {
+            continue;
+        } else if (event.event_case() == Kind::kParametersChanged && edits_.known()) {
+            stale_ = !edits_.see(event.parameters_changed()) || stale_;
+        } else if (event.event_case() == Kind::kGenerationFinished) {
+            stale_ = stale_ || edits_.has_pending(); // it holds now
+        }
+    }
+    if (stale_ && !asked_) {
+        ask(watch);
+    }
+}
+
+void ParametersPanel::ask(Watch& watch) {
+    stale_ = false;
+    asked_ = true;
+    if (edits_.registry().empty()) {
+        evod::v1::Request describe;
+        describe.mutable_describe();
+        watch.ask(std::move(describe), [this](const auto& response) {
+            if (response && response->has_description()) {
+                const auto& registry = response->description().parameters();
+                edits_.describe({registry.begin(), registry.end()});
+                groups_ = group(edits_.registry());
+            }
+        });
+    }
+    evod::v1::Request request;
+    request.mutable_get_parameters()->set_world(watch.world());
+    watch.ask(std::move(request), [this, run_number = run_number_](const auto& response) {
+        if (run_number != run_number_) {
+            return;
+        }
+        asked_ = false;
+        problem_ = !response                    ? response.error().what
+                   : !link::accepted(*response) ? shown_refusal(response->status())
+                                                : "";
+        if (problem_.empty()) {
+            edits_.see(response->parameters());
+        }
+    });
+}
+
+void ParametersPanel::send(Watch& watch, std::optional<evod::v1::Request> request) {
+    if (request) {
+        watch.ask(*std::move(request), [this, run_number = run_number_](const auto& response) {
+            if (run_number != run_number_) {
+                return;
+            }
+            stale_ = edits_.answered(response ? &*response : nullptr) || stale_;
+        });
+    }
+}
+
+// ---- what is drawn ---------------------------------------------------------------------------------------------
+
+void ParametersPanel::build_head(Watch& watch, float scale) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool keys = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !io.WantTextInput && io.KeyCtrl;
+    const bool undo_key = keys && ImGui::IsKeyPressed(sf::Keyboard::Z, false) && !io.KeyShift;
+    const bool redo_key = keys && (ImGui::IsKeyPressed(sf::Keyboard::Y, false) ||
+                                   (ImGui::IsKeyPressed(sf::Keyboard::Z, false) && io.KeyShift));
+    const std::size_t count = edits_.edit_count();
+    ImGui::BeginDisabled(count == 0 || edits_.busy());
+    if (widgets::button("Apply")) {
+        apply_ = true;
+    }
+    widgets::explain("Sends every edit as one change, which holds whole or not at all.");
+    ImGui::SameLine();
+    if (widgets::button("Discard")) {
+        edits_.revert_all();
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine(0, 20 * scale);
+    ImGui::BeginDisabled(!edits_.can_undo());
+    if (widgets::button("Undo") || (undo_key && edits_.can_undo())) {
+        send(watch, edits_.undo(watch.name()));
+    }
+    widgets::explain("Ctrl+Z: the values before your last change, but for what others have changed since.");
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!edits_.can_redo());
+    if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
+        send(watch, edits_.redo(watch.name()));
+    }
+    widgets::explain("Ctrl+Shift+Z");
+    ImGui::EndDisabled();
+    ImGui::SameLine(0, 20 * scale);
+    ImGui::Checkbox("apply on release", &apply_on_release_);
+    widgets::mark("apply on release");
+    widgets::explain("A value is sent as soon as the mouse lets it go.");
+    if (!edits_.problem().empty()) {
+        widgets::say(edits_.problem(), palette::warning);
+        widgets::mark("problem");
+        return;
+    }
+    const std::string revision = "Revision " + std::to_string(edits_.revision());
+    widgets::say(edits_.busy() ? "Sending …"
+                 : count == 0  ? revision + "; nothing is edited"
+                               : std::to_string(count) + (count == 1 ? " value is" : " values are") +
+                                    " edited and not applied yet");
+    if (!edits_.busy()) {
+        widgets::mark(count == 0 ? revision : std::to_string(count) + " edited");
+    }
+}
+
+void ParametersPanel::build_rows(float scale) {
+    const bool searching = search_[0] != '\0';
+    bool any = false;
+    for (const ParameterGroup& part : groups_) {
+        const auto hit = [&](std::size_t i) { // what was refused is seen whatever is searched for
+            return edits_.violation(i) != nullptr || matches(edits_.registry()[i], search_.data());
+        };
+        bool hits = false, of_note = false;
+        for (std::size_t i = part.first; i < part.end; ++i) {
+            hits = hits || hit(i);
+            of_note = of_note || edits_.is_edited(i) || edits_.violation(i) != nullptr;
+        }
+        if (!hits) {
+            continue;
+        }
+        any = true;
+        const std::string title{part.title};
+        if (searching || of_note) { // nothing that is looked for, or waits to be applied, is folded away
+            ImGui::SetNextItemOpen(true);
+        }
+        if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
+            continue;
+        }
+        if (!ImGui::BeginTable(title.c_str(), 3, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
+            continue;
+        }
+        ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 4);
+        ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 5);
+        ImGui::TableSetupColumn("holds from", ImGuiTableColumnFlags_WidthFixed, 76 * scale);
+        for (std::size_t i = part.first; i < part.end; ++i) {
+            if (hit(i)) {
+                ImGui::PushID(static_cast<int>(i));
+                build_row(i);
+                ImGui::PopID();
+            }
+        }
+        ImGui::EndTable();
+    }
+    if (!any) {
+        widgets::say("No parameter is like that.");
+    }
+}
+
+void ParametersPanel::build_row(std::size_t i) {
+    const ParameterDescription& about = edits_.registry()[i];
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    const Colour ink = edits_.violation(i) != nullptr ? palette::warning
+                       : edits_.is_edited(i)          ? palette::stopped
+                                                      : palette::text;
+    ImGui::PushStyleColor(ImGuiCol_Text, widgets::ink(ink));
+    ImGui::TextUnformatted(about.name().c_str());
+    ImGui::PopStyleColor();
+    explain(about, edits_, i);
+    build_menu(i);
+    ImGui::TableNextColumn();
+    build_field(i);
+    build_remarks(i);
+    ImGui::TableNextColumn();
+    ImGui::AlignTextToFramePadding();
+    const EffectWords effect = words_of(about.effect());
+    ImGui::PushStyleColor(
+        ImGuiCol_Text,
+        widgets::ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::running : palette::text_quiet));
+    ImGui::TextUnformatted(effect.mark);
+    ImGui::PopStyleColor();
+    widgets::explain(effect.sentence);
+}
+
+void ParametersPanel::build_field(std::size_t i) {
+    const ParameterDescription& about = edits_.registry()[i];
+    ImGui::SetNextItemWidth(-1);
+    bool released = false;
+    switch (about.kind()) {
+    case evod::v1::PARAMETER_KIND_FLAG: {
+        ParameterValue value = edits_.shown(i);
+        bool flag = value.flag();
+        if (ImGui::Checkbox("##value", &flag)) {
+            value.set_flag(flag);
+            edits_.edit(i, value);
+            released = true;
+        }
+        widgets::mark(about.name());
+        explain(about, edits_, i);
+        break;
+    }
+    case evod::v1::PARAMETER_KIND_CHOICE:
+        released = build_choice(i);
+        break;
+    default:
+        released = build_number(i);
+        break;
+    }
+    if (released && apply_on_release_) {
+        apply_ = true;
+    }
+}
+
+bool ParametersPanel::build_number(std::size_t i) {
+    const ParameterDescription& about = edits_.registry()[i];
+    double number = number_of(edits_.shown(i));
+    const double least = about.min(), most = about.max();
+    const std::string format = (about.kind() == evod::v1::PARAMETER_KIND_COUNT ? "%.0f" : "%.6g") +
+                               (about.unit().empty() ? "" : " " + as_format(about.unit()));
+    if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &number, &least, &most, format.c_str(),
+                            spans_decades(about) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None)) {
+        edits_.edit(i, value_of(about, number));
+    }
+    widgets::mark(about.name());
+    const bool released = ImGui::IsItemDeactivatedAfterEdit();
+    if (!ImGui::IsItemActive()) {
+        explain(about, edits_, i, "\n\nDrag it; Ctrl and click to type.");
+    }
+    return released;
+}
+
+bool ParametersPanel::build_choice(std::size_t i) {
+    const ParameterDescription& about = edits_.registry()[i];
+    ParameterValue value = edits_.shown(i);
+    bool released = false;
+    const bool open = ImGui::BeginCombo("##value", value.choice().c_str());
+    widgets::mark(about.name());
+    if (open) {
+        for (const std::string& choice : about.choices()) {
+            if (ImGui::Selectable(choice.c_str(), choice == value.choice())) {
+                value.set_choice(choice);
+                edits_.edit(i, value);
+                released = true;
+            }
+            widgets::mark(about.name() + ": " + choice);
+        }
+        ImGui::EndCombo();
+    } else {
+        explain(about, edits_, i);
+    }
+    return released;
+}
+
+void ParametersPanel::build_menu(std::size_t i) {
+    const ParameterDescription& about = edits_.registry()[i];
+    if (!ImGui::BeginPopupContextItem("menu")) {
+        return;
+    }
+    if (ImGui::MenuItem("Take the edit back", nullptr, false, edits_.is_edited(i))) {
+        edits_.revert(i);
+    }
+    if (ImGui::MenuItem(("Default: " + to_text(about.default_value())).c_str())) {
+        edits_.edit(i, about.default_value());
+        apply_ = apply_ || apply_on_release_;
+    }
+    ImGui::EndPopup();
+}
+
+void ParametersPanel::build_remarks(std::size_t i) {
+    if (const evod::v1::Violation* violation = edits_.violation(i)) {
+        widgets::say((violation->got().empty() ? "" : violation->got() + " is refused; ") +
+                         "allowed: " + violation->allowed(),
+                     palette::warning);
+        widgets::mark(edits_.registry()[i].name() + " is refused");
+    }
+    if (edits_.is_edited(i)) {
+        widgets::say("was " + to_text(edits_.asked_for(i)), palette::stopped);
+    } else if (edits_.is_pending(i)) {
+        widgets::say("still " + to_text(edits_.holds(i)));
+    }
+    if (!edits_.changed_by(i).empty()) {
+        widgets::say("set by " + edits_.changed_by(i));
+    }
+}
+
+} // namespace evod::viewer

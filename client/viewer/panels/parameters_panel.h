@@ -1,0 +1,51 @@
+// ParametersPanel: every parameter of the world that is looked at, as the server's registry describes it, to be
+// searched, changed, applied and undone.
+//
+// What is being changed and what comes of it is ParameterEdits' affair; this draws it, and carries its requests.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/panels/panel.h"
+#include "client/viewer/parameter_edits.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace evod::viewer {
+
+class ParametersPanel : public Panel {
+  public:
+    std::string_view title() const override { return "Parameters"; }
+    Size first_size() const override { return {560, 600}; }
+    void build(Context& context) override;
+
+  private:
+    void follow(Watch& watch, bool shown_anew);
+    void ask(Watch& watch);
+    void send(Watch& watch, std::optional<evod::v1::Request> request);
+
+    void build_head(Watch& watch, float scale);
+    void build_rows(float scale);
+    void build_row(std::size_t i);
+    void build_field(std::size_t i);
+    bool build_number(std::size_t i);
+    bool build_choice(std::size_t i);
+    void build_menu(std::size_t i);
+    void build_remarks(std::size_t i);
+
+    ParameterEdits edits_;
+    std::vector<ParameterGroup> groups_;
+    std::string world_;  // by the name that was asked for
+    std::string run_id_; // that the undo stack is of
+    std::string problem_;
+    unsigned run_number_ = 0; // counts the runs and worlds that were shown: answers about another are late
+    bool asked_ = false;      // for the set, and no answer has come
+    bool stale_ = true;
+    std::array<char, 64> search_{};
+    bool apply_on_release_ = false;
+    bool apply_ = false; // as soon as no transaction is under way
+};
+
+} // namespace evod::viewer

@@ -1,0 +1,174 @@
+#include "client/viewer/panels/worlds_panel.h"
+
+#include "client/viewer/readout.h"
+#include "client/viewer/widgets.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+namespace {
+
+// Ticks rise all the time; nobody reads them faster.
+constexpr std::chrono::seconds ask_again{1};
+
+void cell(const std::string& text) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(text.c_str());
+}
+
+const char* state_word(const evod::v1::WorldInfo& world) {
+    return world.state() == evod::v1::RUN_STATE_WAITING ? "waiting" : shown_state(world.state(), world.storage());
+}
+
+} // namespace
+
+void WorldsPanel::build(Context& context) {
+    Watch& watch = context.watch;
+    if (watch.world() != world_) { // what was asked before will not be answered
+        world_ = watch.world();
+        statistics_.Clear();
+        unanswered_count_ = 0;
+        stale_ = true;
+    }
+    hear(watch);
+    stale_ = stale_ || context.shown_anew;
+    if (unanswered_count_ == 0 && (stale_ || context.now - asked_ >= ask_again)) {
+        ask(watch, context.now);
+    }
+    if (!problem_.empty()) {
+        widgets::say(problem_, palette::warning);
+    }
+    build_worlds(watch);
+    build_islands(watch);
+}
+
+void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
+    asked_ = now;
+    stale_ = false;
+    evod::v1::Request worlds, statistics;
+    worlds.mutable_list_worlds();
+    statistics.mutable_get_statistics()->set_world(watch.world());
+    unanswered_count_ = 2;
+    watch.ask(std::move(worlds), [this](const auto& response) {
+        --unanswered_count_;
+        problem_ = !response                    ? response.error().what
+                   : !link::accepted(*response) ? shown_refusal(response->status())
+                                                : "";
+        if (problem_.empty()) {
+            worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+        }
+    });
+    watch.ask(std::move(statistics), [this](const auto& response) {
+        --unanswered_count_;
+        if (response && response->has_statistics()) {
+            statistics_ = response->statistics();
+        } // a world that is not there has no islands; that it is not, stands above
+    });
+}
+
+void WorldsPanel::hear(Watch& watch) {
+    using Kind = evod::v1::Event::EventCase;
+    for (const evod::v1::Event& event : watch.events()) {
+        switch (event.event_case()) {
+        case Kind::kRunControlChanged:
+        case Kind::kRunTerminated:
+        case Kind::kWorldCreated:
+        case Kind::kWorldReset:
+        case Kind::kWorldDeleted:
+        case Kind::kEventsDropped:
+            stale_ = true;
+            break;
+        default: // a world that runs is looked at anew all the time
+            break;
+        }
+    }
+}
+
+void WorldsPanel::build_worlds(Watch& watch) {
+    constexpr ImGuiTableFlags flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
+                                      ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const float height =
+        std::min(line * (static_cast<float>(worlds_.size()) + 1.5f), ImGui::GetContentRegionAvail().y * 0.6f);
+    if (!ImGui::BeginTable("worlds", 5, flags, {0, height})) {
+        return;
+    }
+    for (const char* heading : {"World", "State", "Generation", "Tick", "Speed"}) {
+        ImGui::TableSetupColumn(heading);
+    }
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableHeadersRow();
+    std::optional<std::string> chosen;
+    for (const evod::v1::WorldInfo& world : worlds_) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (ImGui::Selectable(world.name().c_str(), world.name() == watch.name(),
+                              ImGuiSelectableFlags_SpanAllColumns)) {
+            chosen = world.name();
+        }
+        widgets::mark(world.name());
+        cell(state_word(world));
+        cell(with_separators(world.generation()));
+        cell(with_separators(world.tick()));
+        cell(shown_speed(world.speed()) + (world.slowed() ? " (slower)" : ""));
+    }
+    ImGui::EndTable();
+    if (chosen && *chosen != watch.name()) {
+        watch.look_at(*chosen, 0);
+    }
+}
+
+void WorldsPanel::build_islands(Watch& watch) {
+    const auto count = static_cast<int>(statistics_.world().island_count());
+    if (count == 0) {
+        return;
+    }
+    widgets::say("Islands of " + statistics_.world().name());
+    constexpr ImGuiTableFlags flags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_ScrollY;
+    if (!ImGui::BeginTable("islands", 4, flags)) {
+        return;
+    }
+    for (const char* heading : {"Island", "Alive", "Mean health", "Best before"}) {
+        ImGui::TableSetupColumn(heading);
+    }
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableHeadersRow();
+    std::optional<std::uint32_t> chosen;
+    ImGuiListClipper clipper;
+    clipper.Begin(count);
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            const std::string name = "island " + std::to_string(i);
+            if (ImGui::Selectable(name.c_str(), static_cast<std::uint32_t>(i) == watch.island(),
+                                  ImGuiSelectableFlags_SpanAllColumns)) {
+                chosen = static_cast<std::uint32_t>(i);
+            }
+            widgets::mark(name);
+            // Absent where the fitness is a function of the chromosome alone, and in the first generation.
+            if (i < statistics_.live_size()) {
+                const evod::v1::LiveStatistics& live = statistics_.live(i);
+                cell(with_separators(live.alive_count()) + " of " + with_separators(live.organism_count()));
+                cell(shown_number(live.health_mean()));
+            } else {
+                ImGui::TableNextColumn();
+                ImGui::TableNextColumn();
+            }
+            ImGui::TableNextColumn();
+            if (i < statistics_.last_size()) {
+                ImGui::TextUnformatted(shown_number(statistics_.last(i).fitness_best()).c_str());
+            }
+        }
+    }
+    ImGui::EndTable();
+    if (chosen && *chosen != watch.island()) {
+        watch.look_at(watch.world(), *chosen);
+    }
+}
+
+} // namespace evod::viewer

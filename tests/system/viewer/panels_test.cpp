@@ -1,0 +1,274 @@
+// The start screen and the panels of evoview, moved by scripts, against evod: what is done there is what the server
+// has.
+//
+// Runs under Xvfb.
+#include "tests/system/viewer/processes.h"
+
+#include <SFML/Graphics/Image.hpp>
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace evod::viewer {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string read_file(const std::string& path) {
+    std::ifstream file{path};
+    return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+struct PanelsTest : testing::Test {
+    PanelsTest() { setenv("XDG_STATE_HOME", folder.file("state").c_str(), 1); }
+
+    std::string write(const std::string& script) const {
+        std::string path = folder.file("script");
+        std::ofstream{path} << script;
+        return path;
+    }
+    Ran play(const std::string& arguments, const std::string& script) const {
+        return run_evoview(arguments + " --script " + write(script));
+    }
+    std::string token(const std::string& role) const {
+        FILE* pipe = popen((std::string{EVOD} + " token add " + role + " --role " + role + " --data " +
+                            folder.file("data") + " 2>" + folder.file("token"))
+                               .c_str(),
+                           "r");
+        std::array<char, 128> line{};
+        EXPECT_NE(std::fgets(line.data(), line.size(), pipe), nullptr);
+        EXPECT_EQ(pclose(pipe), 0);
+        std::string secret = line.data();
+        secret.erase(secret.find_last_not_of('\n') + 1);
+        return secret;
+    }
+
+    TemporaryFolder folder;
+};
+
+double chance_of(const evod::v1::ParameterSet& set) {
+    for (const auto& parameter : set.parameters()) {
+        if (parameter.name() == "mutation_chance") {
+            return parameter.value().real();
+        }
+    }
+    ADD_FAILURE() << "there is no mutation_chance";
+    return 0;
+}
+
+TEST_F(PanelsTest, WhatIsAppliedTheServerHasAndWhatIsUndoneItHasNoMore) {
+    RealServer server{{"--seed", "7"}};
+    const Ran applied = play(server.address(), R"(
+wait connected
+wait picture
+key F4
+wait widget "Revision 1"
+set Search "mutation chance"
+set mutation_chance 0.2
+wait widget "1 edited"
+click Apply
+wait widget "Revision 2"
+quit
+)");
+    ASSERT_EQ(applied.status, 0) << applied.output;
+    EXPECT_EQ(server.parameters().revision(), 2u);
+    EXPECT_EQ(chance_of(server.parameters()), 0.2);
+
+    const Ran undone = play("--server " + server.address(), R"(
+wait picture
+click Parameters
+set Search "mutation chance"
+set mutation_chance 0.4
+click Apply
+wait widget "Revision 3"
+click Undo
+wait widget "Revision 4"
+click Search
+key Escape
+click Redo
+wait widget "Revision 5"
+key Ctrl+Z
+wait widget "Revision 6"
+quit
+)");
+    ASSERT_EQ(undone.status, 0) << undone.output;
+    EXPECT_EQ(chance_of(server.parameters()), 0.2);
+}
+
+TEST_F(PanelsTest, WhatIsRefusedIsMarkedAndNothingIsChanged) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F4
+set Search tournament
+set tournament_size 5
+set tournament_winners 7
+wait widget "2 edited"
+click Apply
+wait widget "tournament_size is refused"
+click Discard
+wait widget "Revision 1"
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(server.parameters().revision(), 1u);
+}
+
+TEST_F(PanelsTest, KeysThatAreTypedIntoAFieldCommandNothing) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F4
+click Search
+key Space
+type " q1+"
+key Q
+key M
+key Escape
+wait widget Apply
+key F4
+wait gone Apply
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    const auto world = server.state();
+    EXPECT_EQ(world.state(), evod::v1::RUN_STATE_WAITING);
+    EXPECT_EQ(world.tick(), 0u);
+    EXPECT_EQ(world.speed().real_time_factor(), 1);
+}
+
+TEST_F(PanelsTest, RunsGenerationsAndResetsWithASeed) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F3
+click "as fast as the server can"
+set generations 2
+click "Run generations"
+wait generation 2
+wait state waiting
+set seed 12345
+click "Reset …"
+click "Keep it"
+wait gone "Keep it"
+click "Reset …"
+click "Reset the world"
+wait widget "seed 12345"
+key F2
+click "Worlds/default"
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    const auto world = server.state();
+    EXPECT_EQ(world.seed(), 12345u);
+    EXPECT_EQ(world.generation(), 1u);
+    EXPECT_TRUE(world.speed().max());
+}
+
+TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
+    RealServer server{{"--seed", "7"}};
+    evod::v1::Request create;
+    create.mutable_create_world()->set_name("mars");
+    auto& islands = *create.mutable_create_world()->add_parameters();
+    islands.set_name("island_count");
+    islands.mutable_value()->set_count(3);
+    server.ask(create);
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F2
+click mars
+click "island 2"
+key Space
+wait state running
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    evod::v1::Request statistics;
+    statistics.mutable_get_statistics()->set_world("mars");
+    EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_RUNNING);
+    statistics.mutable_get_statistics()->set_world("default");
+    EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_WAITING);
+}
+
+TEST_F(PanelsTest, AViewerComesInThroughTheStartScreenAndChangesNothing) {
+    const std::string admin = token("admin"), secret = token("viewer");
+    RealServer server{{"--seed", "7", "--require-token", "--data", folder.file("data"), "--log-level", "debug"}};
+    const Ran ran = play("--start", "set Server " + server.address() + "\nwait widget error\nset Token " + secret + R"(
+wait picture
+key F4
+wait widget "Revision 1"
+set Search "mutation chance"
+set mutation_chance 0.9
+click Apply
+key F4
+key F3
+click "as fast as the server can"
+click Run/Run
+click "Run generations"
+click "Reset …"
+key F2
+wait widget default
+screenshot )" + folder.file("viewer.png") +
+                                        "\nquit\n");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    sf::Image image;
+    EXPECT_TRUE(image.loadFromFile(folder.file("viewer.png")));
+    server.connection.emplace(link::Options{
+        .server = link::parse_endpoint(server.address()).value(), .token = admin, .client_name = "a test"});
+    EXPECT_EQ(server.parameters().revision(), 1u);
+    EXPECT_EQ(chance_of(server.parameters()), 0.15);
+    EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_WAITING);
+    EXPECT_FALSE(server.state().speed().max());
+    EXPECT_THAT(server.end(), Not(HasSubstr("needs the role"))) << "it did not even ask for it";
+
+    const std::string recent = folder.file("state/evod/recent_servers");
+    EXPECT_EQ(read_file(recent), server.address() + "\n");
+    struct stat about {};
+    ASSERT_EQ(stat(recent.c_str(), &about), 0);
+    EXPECT_EQ(about.st_mode & 0777, 0600u);
+}
+
+TEST_F(PanelsTest, TheStartScreenSaysWhyThereIsNoConnectionAndIsComeBackTo) {
+    RealServer server{{"--seed", "7"}};
+    const std::string address = "\"" + server.address() + "\"\n";
+    const Ran ran =
+        play("--start", "set Server localhost:1\nwait widget error\nset Server " + address +
+                            "wait picture\nkey Backspace\nset Server elsewhere:1\nwait widget error\nclick " + address +
+                            "click Connect\nwait picture\nquit\n");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
+    const Ran wrong = play("--start", "wait widget Connect\nclik Connect\n");
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_THAT(wrong.output, HasSubstr("script:2: word 1: \"clik\""));
+    const Ran late = play("--start", "timeout 0.1\n\nclick Disconnect\n");
+    EXPECT_EQ(late.status, 1);
+    EXPECT_THAT(late.output, HasSubstr("script:3: click Disconnect: "));
+}
+
+TEST_F(PanelsTest, TextAndWidgetsAreAsLargeAsTheScale) {
+    const auto size_of_page = [&](const std::string& scale) {
+        const Ran ran = play("--start --size 1280x720 --scale " + scale,
+                             "wait widget Connect\nscreenshot " + folder.file("start.png") + "\nquit\n");
+        EXPECT_EQ(ran.status, 0) << ran.output;
+        sf::Image image;
+        EXPECT_TRUE(image.loadFromFile(folder.file("start.png")));
+        // The sheet in the middle of the window: from where the background ends to where it begins again.
+        const sf::Color background = image.getPixel(0, 0);
+        unsigned width = 0;
+        for (unsigned x = 0; x < image.getSize().x; ++x) {
+            width += image.getPixel(x, image.getSize().y / 2) != background;
+        }
+        return width;
+    };
+    const unsigned plain = size_of_page("1");
+    EXPECT_EQ(plain, 540u);
+    EXPECT_EQ(size_of_page("2"), 2 * plain);
+}
+
+} // namespace
+} // namespace evod::viewer
