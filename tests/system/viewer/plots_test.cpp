@@ -36,7 +36,7 @@ class Person {
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize({width, height});
             ImGui::Begin("Plots");
-            Panel::Context context{watch_, gui_, std::chrono::steady_clock::now()};
+            Panel::Context context{watch_, gui_, std::chrono::steady_clock::now(), sight_};
             panel_.build(context);
             ImGui::End();
             gui_.draw();
@@ -75,6 +75,7 @@ class Person {
     sf::Context context_;
     Gui gui_;
     PlotsPanel panel_;
+    Sight sight_;
     Watch watch_;
 };
 
