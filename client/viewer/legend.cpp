@@ -95,14 +95,16 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     if (legend.empty()) {
         return;
     }
-    constexpr float inside = 8, line = 18, bar_width = 200, bar_height = 12, swatch = 12;
+    const float pixel = gui.scale();
+    const float inside = 8 * pixel, line = 18 * pixel, bar_width = 200 * pixel, bar_height = 12 * pixel,
+                swatch = 12 * pixel, gap = 6 * pixel;
     const ImFont& font = gui.label();
     const auto width_of = [&](const std::string& text) {
         return font.CalcTextSizeA(font.FontSize, 1e9f, 0, text.data(), text.data() + text.size()).x;
     };
     float width = legend.ramp ? std::max(bar_width, width_of(legend.ramp->title)) : 0;
     for (const Legend::Entry& entry : legend.entries) {
-        width = std::max(width, width_of(entry.text) + swatch + 6);
+        width = std::max(width, width_of(entry.text) + swatch + gap);
     }
     const float height =
         (legend.ramp ? 2 * line + bar_height + 4 : 0) + static_cast<float>(legend.entries.size()) * line + 2 * inside;
@@ -135,7 +137,7 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     }
     for (const Legend::Entry& entry : legend.entries) {
         list.AddRectFilled({left, top + 2}, {left + swatch, top + 2 + swatch}, ink(entry.colour), 2);
-        write(left + swatch + 6, top, entry.text);
+        write(left + swatch + gap, top, entry.text);
         top += line;
     }
 }

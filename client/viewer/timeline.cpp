@@ -98,8 +98,9 @@ void Timeline::learn_beginnings(Watch& watch, const evod::v1::Recording& recordi
 void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     const evod::v1::Recording recording = *watch.recording(); // a seek that is answered changes it
     const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float pixel = gui.scale(), label_size = label_height * pixel;
     const float width = std::max(static_cast<float>(place.width) - 24, 1.f);
-    ImGui::InvisibleButton("line", {width, line_height});
+    ImGui::InvisibleButton("line", {width, line_height * pixel});
     const TimeScale scale{recording.first_tick(), std::max(recording.last_tick(), recording.first_tick()), corner.x + 6,
                           width - 12};
     const auto under_mouse = scale.tick_at(ImGui::GetIO().MousePos.x);
@@ -120,12 +121,12 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     }
 
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float top = corner.y + label_height + 3, bottom = corner.y + line_height - 2;
+    const float top = corner.y + label_size + 3, bottom = corner.y + line_height * pixel - 2;
     const auto left = static_cast<float>(scale.left), right = left + static_cast<float>(scale.width);
     const auto x = std::round(static_cast<float>(scale.x_of(shown)));
     list.AddRectFilled({left, top}, {right, bottom}, ink(palette::strip_edge), 3);
     list.AddRectFilled({left, top}, {x, bottom}, ink(palette::past), 3);
-    const auto count_max = static_cast<std::size_t>(width / mark_room);
+    const auto count_max = static_cast<std::size_t>(width / (mark_room * pixel));
     learn_beginnings(watch, recording, count_max);
     for (const std::uint64_t generation :
          marked_generations(recording.first_generation(), recording.last_generation(), count_max)) {
@@ -136,7 +137,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
         const float at = std::round(static_cast<float>(scale.x_of(begin->second)));
         list.AddLine({at, top - 3}, {at, bottom}, ink(palette::text_quiet));
         const std::string text = std::to_string(generation);
-        list.AddText(&gui.label(), label_height, {at + 2, corner.y - 1}, ink(palette::text_quiet), text.c_str());
+        list.AddText(&gui.label(), label_size, {at + 2, corner.y - 1}, ink(palette::text_quiet), text.c_str());
     }
     list.AddRectFilled({x - 4, top - 3}, {x + 4, bottom + 2}, ink(held ? palette::focus : palette::text), 2);
 }
@@ -154,7 +155,7 @@ void Timeline::build_buttons(Watch& watch) {
     tell("the generation before: [");
     ImGui::SameLine();
     const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING;
-    if (ImGui::Button(runs ? "Pause" : "Play", {58, 0})) {
+    if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20, 0})) {
         watch.pause_or_resume();
     }
     tell("Space");
@@ -185,7 +186,7 @@ void Timeline::build_buttons(Watch& watch) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(70);
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5);
     if (ImGui::InputInt("##generation", &typed_generation_, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue)) {
         watch.seek(beginning_of(static_cast<std::uint64_t>(std::max(typed_generation_, 0))));
     } else if (!ImGui::IsItemActive()) {
