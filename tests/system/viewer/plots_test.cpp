@@ -36,7 +36,7 @@ class Person {
             ImGui::SetNextWindowPos({0, 0});
             ImGui::SetNextWindowSize({width, height});
             ImGui::Begin("Plots");
-            Panel::Context context{watch_, gui_, std::chrono::steady_clock::now()};
+            Panel::Context context{watch_, gui_, std::chrono::steady_clock::now(), sight_};
             panel_.build(context);
             ImGui::End();
             gui_.draw();
@@ -76,6 +76,7 @@ class Person {
     Gui gui_;
     PlotsPanel panel_;
     Watch watch_;
+    Sight sight_;
 };
 
 struct PlotsTest : testing::Test {
