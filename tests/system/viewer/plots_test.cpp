@@ -77,6 +77,7 @@ class Person {
     PlotsPanel panel_;
     Sight sight_;
     Watch watch_;
+    Sight sight_;
 };
 
 struct PlotsTest : testing::Test {
