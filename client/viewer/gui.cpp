@@ -171,16 +171,11 @@ bool Gui::give(const sf::Event& event, Given& given) {
             given.text = true;
             io.AddInputCharacter(event.text.unicode);
         }
-        io.KeyCtrl = event.key.control;
-        io.KeyShift = event.key.shift;
         break;
     case sf::Event::LostFocus:
         std::ranges::fill(io.MouseDown, false);
         std::ranges::fill(io.KeysDown, false);
         io.KeyCtrl = io.KeyShift = io.KeyAlt = io.KeySuper = false;
-        break;
-    case sf::Event::TextEntered:
-        io.AddInputCharacter(event.text.unicode);
         break;
     default:
         break;
