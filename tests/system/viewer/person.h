@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/viewer/palette.h"
+#include "tests/system/viewer/processes.h"
 
 #include <SFML/Graphics/Image.hpp>
 #include <X11/Xlib.h>
@@ -14,24 +15,9 @@
 #undef Status
 #undef Success
 
-#include <chrono>
 #include <string>
-#include <thread>
 
 namespace evod::viewer {
-
-/// Whether it does within 20 s.
-template <class Condition>
-bool comes_true(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) {
-            return false;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
-    }
-    return true;
-}
 
 /// A person at the window of evoview.
 class Person {

@@ -85,10 +85,13 @@ TEST_F(RecordTest, AGenerationOfThePastIsRecordedAndTheWorldIsNotTouched) {
 TEST_F(RecordTest, TwoWorldsGoOnByAsManyTicks) {
     make_world(server, "one", 50);
     make_world(server, "other", 200, 8);
-    const Ran ran = record(pictures, "--beside other --record-ticks 20 --every 10");
+    // Large enough for the smallest item to be a pixel in its half.
+    const Ran ran =
+        run_evoview("--server " + server.address() + " --world one --beside other --size 1280x720 --record " +
+                    pictures + " --record-ticks 20 --every 10");
     ASSERT_EQ(ran.status, 0) << ran.output;
     EXPECT_EQ(picture_count(), 3);
-    const auto halves = side_by_side({0, 0, 640, 400}, 2);
+    const auto halves = side_by_side({0, 0, 1280, 720}, 2);
     for (std::size_t i = 0; i < 3; ++i) {
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(pictures + "/" + picture_name(i, 50 + 10 * i)));
