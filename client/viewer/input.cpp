@@ -142,7 +142,7 @@ std::optional<Action> Input::handle(const sf::Event& event, Captured captured, C
         pressed_at_.reset();
         break;
     case sf::Event::KeyPressed:
-        if (!captured.keyboard) {
+        if (!captured.keyboard || (event.key.code >= Key::F1 && event.key.code <= last_panel_key)) { // no text
             return press(event.key);
         }
         break;

@@ -251,11 +251,12 @@ void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint
         }
     }
     const double span = most > least ? most - least : 1;
-    const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(sheet.size.y / 22));
+    const float row_height = line_height(sheet) + 4;
+    const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(sheet.size.y / row_height));
     const std::size_t columns = (contestants.size() + rows - 1) / rows;
-    const float width = sheet.size.x / static_cast<float>(columns), height = columns > 1 ? 22.f : 30.f;
-    constexpr float label_width = 62;
-    const float bar_width = width - label_width - 74;
+    const float width = sheet.size.x / static_cast<float>(columns),
+                height = columns > 1 ? row_height : 1.4f * row_height;
+    const float label_width = 4.4f * sheet.font.FontSize, bar_width = width - 9.7f * sheet.font.FontSize;
     for (std::size_t i = 0; i < contestants.size(); ++i) {
         const Contestant& contestant = contestants[i];
         const ImVec2 corner{sheet.corner.x + static_cast<float>(i / rows) * width,
@@ -390,13 +391,14 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
     }
 }
 
-float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names) {
+float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
+                  const google::protobuf::RepeatedPtrField<std::string>& gene_names) {
     const Family family = family_of(descendant);
     const std::size_t count = family.genes.size();
     if (count == 0) {
         return 0;
     }
-    const float label_width = std::min(132.f, sheet.size.x / 4);
+    const float label_width = std::min(8 * sheet.font.FontSize, sheet.size.x / 4);
     const float cell = (sheet.size.x - label_width) / static_cast<float>(count);
     const float line = line_height(sheet), bar = line + 6;
     const auto left_of = [&](std::size_t gene) {
@@ -413,7 +415,8 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, st
     const bool alone = descendant.second_genes().empty() || descendant.kind() != evod::v1::DESCENDANT_KIND_CHILD;
 
     for (std::size_t gene = 0; gene < count; ++gene) {
-        const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
+        const std::string name = gene < static_cast<std::size_t>(gene_names.size()) ? gene_names[static_cast<int>(gene)]
+                                                                                    : "gene " + std::to_string(gene);
         // Two words one above the other: cells are narrow.
         const std::size_t cut = name.find('_');
         write_centred(sheet, {middle_of(gene), y + line / 2}, palette::text_quiet, name.substr(0, cut));

@@ -44,6 +44,7 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
 /// Parents, cuts, child, rearrangement and mutations of one descendant, as high as it takes.
 ///
 /// returns  its height in pixels
-float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant, std::span<const std::string> gene_names);
+float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
+                  const google::protobuf::RepeatedPtrField<std::string>& gene_names);
 
 } // namespace evod::viewer

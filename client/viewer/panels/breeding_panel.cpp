@@ -2,8 +2,8 @@
 
 #include "client/viewer/breeding/caption.h"
 #include "client/viewer/breeding/drawing.h"
-#include "client/viewer/palette.h"
 #include "client/viewer/readout.h"
+#include "client/viewer/widgets.h"
 
 #include <imgui.h>
 
@@ -17,19 +17,6 @@ namespace {
 
 // Following a fast world: one breeding is shown at least so long, and after it was played a little longer.
 constexpr std::chrono::milliseconds shown_min{500}, shown_after_playing{1500};
-
-void quiet(const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(palette::text_quiet.red, palette::text_quiet.green,
-                                                  palette::text_quiet.blue, palette::text_quiet.alpha));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
-}
-
-void explain(const char* text) {
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("%s", text);
-    }
-}
 
 /// A rectangle of the window to draw in, as wide as there is room.
 Sheet sheet_of(const Gui& gui, float height) {
@@ -58,11 +45,6 @@ bool pressed(ImGuiKey key) {
 } // namespace
 
 void BreedingPanel::build(Context& context) {
-    if (!sized_) {
-        const ImVec2 window = ImGui::GetIO().DisplaySize;
-        ImGui::SetWindowSize({std::min(900.f, window.x - 20), std::min(620.f, window.y - 90)});
-        sized_ = true;
-    }
     if (context.watch.picture() == nullptr) {
         ImGui::TextUnformatted("Waiting for the first picture …");
         return;
@@ -73,7 +55,7 @@ void BreedingPanel::build(Context& context) {
     build_generation(context);
     if (!error_.empty()) {
         ImGui::TextWrapped("%s", error_.c_str());
-        if (ImGui::Button("Ask again")) {
+        if (widgets::button("Ask again")) {
             error_.clear();
         }
     }
@@ -86,7 +68,7 @@ void BreedingPanel::build(Context& context) {
         }
         return;
     }
-    build_transport();
+    build_transport(context.gui);
     take_keys();
     const Moment moment = stepper_.moment();
     const bool here = moment.stage == BreedingStage::Picking    ? shown_->pick(moment.index) != nullptr
@@ -97,7 +79,7 @@ void BreedingPanel::build(Context& context) {
     }
     const float theory_width = std::floor(ImGui::GetContentRegionAvail().x * 0.4f);
     ImGui::BeginChild("stage", {-theory_width - 8, 0});
-    build_stage(context.gui);
+    build_stage(context);
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("theory", {0, 0});
@@ -143,7 +125,6 @@ void BreedingPanel::choose(const Context& context) {
         error_.clear();
         next_look_ = context.now + shown_min;
     }
-    ask_gene_names(context.watch, key);
 }
 
 void BreedingPanel::ask(Watch& watch) {
@@ -200,39 +181,13 @@ void BreedingPanel::show_coming() {
     }
 }
 
-void BreedingPanel::ask_gene_names(Watch& watch, const BreedingRecord::Key& key) {
-    if (named_run_ == key.run_id) {
-        return;
-    }
-    named_run_ = key.run_id;
-    evod::v1::Request request;
-    request.mutable_get_statistics()->set_world(key.world);
-    watch.ask(std::move(request), [this, run = key.run_id](const link::Result<evod::v1::Response>& response) {
-        if (response && response->statistics().world().run_id() == run) {
-            const evod::v1::WorldInfo& world = response->statistics().world();
-            gene_names_.assign(world.gene_names().begin(), world.gene_names().end());
-            past_ = world.has_recording();
-        }
-    });
-}
-
 void BreedingPanel::hold_world(Watch& watch) {
     switch (hold_.update(watch.control().run_id(), watch.control().state(), watch.control().stepping())) {
     case GenerationHold::Ask::Nothing:
         break;
-    case GenerationHold::Ask::RunOneGeneration: {
-        evod::v1::Request request;
-        request.mutable_run()->set_world(watch.control().world());
-        request.mutable_run()->set_generations(1);
-        watch.ask(std::move(request), [this](const link::Result<evod::v1::Response>& response) {
-            if (!response || !link::accepted(*response)) {
-                hold_.set(false);
-                error_ =
-                    "The world is not held: " + (response ? shown_refusal(response->status()) : response.error().what);
-            }
-        });
+    case GenerationHold::Ask::RunOneGeneration:
+        watch.run_generations(1);
         break;
-    }
     case GenerationHold::Ask::RunOneTick:
         watch.step(1);
         break;
@@ -245,47 +200,50 @@ void BreedingPanel::build_generation(const Context& context) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Generation");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(130);
+    ImGui::SetNextItemWidth(130 * context.gui.scale());
     const std::uint64_t one = 1;
     std::uint64_t wanted = chosen_;
     if (ImGui::InputScalar("##generation", ImGuiDataType_U64, &wanted, &one, nullptr) && newest_ > 0) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
-    explain("Of the parents: any that was bred from");
+    widgets::explain("Of the parents: any that was bred from");
     ImGui::SameLine();
     ImGui::Checkbox("the newest", &follow_);
-    explain("Shows each breeding when it has happened, once the one before was looked at");
+    widgets::mark("the newest");
+    widgets::explain("Shows each breeding when it has happened, once the one before was looked at");
     ImGui::SameLine();
     ImGui::Checkbox("play each", &play_each_);
-    explain("Begins to play when another breeding is shown");
-    const auto welcome = context.watch.connection_status().welcome;
-    if (welcome && welcome->role() >= evod::v1::ROLE_CONTROLLER && !past_) {
+    widgets::mark("play each");
+    widgets::explain("Begins to play when another breeding is shown");
+    if (context.watch.why_only_watching().empty() && !context.watch.control().told().has_recording()) {
         ImGui::SameLine();
         bool held = hold_.on();
         if (ImGui::Checkbox("hold the world", &held)) {
             hold_.set(held);
         }
-        explain(
+        widgets::mark("hold the world");
+        widgets::explain(
             "Pauses the world after each generation, one tick into the next, as long as this is shown. Going on runs "
             "the next one.");
     }
     if (const auto selected = context.watch.selected();
         shown_ && selected && shown_->key().generation == newest_ && *selected < shown_->descendant_count()) {
         ImGui::SameLine();
-        if (ImGui::Button("birth of the selected")) {
+        if (widgets::button("birth of the selected")) {
             stepper_.go_to(1 + shown_->pick_count() + *selected);
         }
     }
     if (shown_) {
-        quiet("Generation " + with_separators(shown_->key().generation) + ": " + breeding_summary(*shown_));
+        widgets::say("Generation " + with_separators(shown_->key().generation) + ": " + breeding_summary(*shown_));
     }
 }
 
-void BreedingPanel::build_transport() {
+void BreedingPanel::build_transport(const Gui& gui) {
     const auto button = [](const char* text, const char* what) {
         const bool hit = ImGui::Button(text);
-        explain(what);
+        widgets::mark(std::string_view{text}.substr(0, std::string_view{text}.find('#')));
+        widgets::explain(what);
         ImGui::SameLine();
         return hit;
     };
@@ -310,7 +268,7 @@ void BreedingPanel::build_transport() {
     if (button(">|", "To the end (End)")) {
         stepper_.to_end();
     }
-    ImGui::SetNextItemWidth(120);
+    ImGui::SetNextItemWidth(120 * gui.scale());
     auto speed = static_cast<float>(stepper_.speed());
     if (ImGui::SliderFloat("##speed", &speed, static_cast<float>(Stepper::speed_min),
                            static_cast<float>(Stepper::speed_max), "%.3g steps/s", ImGuiSliderFlags_Logarithmic)) {
@@ -346,13 +304,14 @@ void BreedingPanel::take_keys() {
     }
 }
 
-void BreedingPanel::build_stage(const Gui& gui) {
+void BreedingPanel::build_stage(const Context& context) {
+    const Gui& gui = context.gui;
     const Moment moment = stepper_.moment();
     ImGui::BeginChild("caption", {0, 3 * ImGui::GetTextLineHeightWithSpacing()});
     ImGui::TextWrapped("%s", caption(*shown_, moment).c_str());
     ImGui::EndChild();
     const float height = ImGui::GetContentRegionAvail().y - 8;
-    constexpr float strip = 14;
+    const float strip = 14 * gui.scale();
     switch (moment.stage) {
     case BreedingStage::Scaling:
         if (comparison_) {
@@ -361,7 +320,7 @@ void BreedingPanel::build_stage(const Gui& gui) {
         break;
     case BreedingStage::Picking: {
         const evod::v1::Pick* pick = shown_->pick(moment.index);
-        const Sheet sheet = sheet_of(gui, height - strip - 34);
+        const Sheet sheet = sheet_of(gui, height - strip - 34 * gui.scale());
         if (pick != nullptr && pick->has_turns()) {
             draw_wheel(sheet, *shown_, moment.index);
         } else if (pick != nullptr && pick->has_tournament() && !pick->contestants().empty()) {
@@ -370,24 +329,25 @@ void BreedingPanel::build_stage(const Gui& gui) {
             draw_ranking(sheet, *shown_, *comparison_, copies_after(*shown_, moment.index + 1), pick);
         }
         draw_picks(sheet_of(gui, strip), *shown_, moment.index);
-        quiet("the picks in order, light: the fittest, dark: the last in rank");
+        widgets::say("the picks in order, light: the fittest, dark: the last in rank");
         break;
     }
     case BreedingStage::Breeding:
         draw_descendants(sheet_of(gui, strip), *shown_, &moment.index);
-        quiet("black: the elite, dark: survivors, light: children");
+        widgets::say("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
-            quiet("blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
-                  "bound");
-            const float used = draw_family(sheet_of(gui, 1), *descendant, gene_names_);
+            widgets::say(
+                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
+                "bound");
+            const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.control().told().gene_names());
             ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
         break;
     case BreedingStage::Done:
         draw_descendants(sheet_of(gui, strip), *shown_, nullptr);
-        quiet("black: the elite, dark: survivors, light: children");
+        widgets::say("black: the elite, dark: survivors, light: children");
         if (comparison_) {
-            draw_ranking(sheet_of(gui, height - 50), *shown_, *comparison_, comparison_->copies, nullptr);
+            draw_ranking(sheet_of(gui, height - 50 * gui.scale()), *shown_, *comparison_, comparison_->copies, nullptr);
         }
         break;
     }
@@ -397,18 +357,18 @@ void BreedingPanel::build_theory(const Gui& gui) {
     ImGui::TextUnformatted("What theory says");
     if (!comparison_) {
         const evod::v1::Breeding& breeding = shown_->breeding();
-        quiet(breeding.contender_count() > BreedingRecord::rows_kept_max
-                  ? "Of so many organisms the first " + with_separators(BreedingRecord::rows_kept_max) +
-                        " are asked for, and theory needs all of them."
-                  : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
-                        with_separators(breeding.contender_count()) + " organisms have come …");
+        widgets::say(breeding.contender_count() > BreedingRecord::rows_kept_max
+                         ? "Of so many organisms the first " + with_separators(BreedingRecord::rows_kept_max) +
+                               " are asked for, and theory needs all of them."
+                         : with_separators(static_cast<std::uint64_t>(breeding.contenders_size())) + " of " +
+                               with_separators(breeding.contender_count()) + " organisms have come …");
         return;
     }
     const Moment moment = stepper_.moment();
     const std::uint32_t picks = shown_->breeding().pick_count();
     const bool picking = moment.stage == BreedingStage::Picking && picks > 0;
     const std::uint32_t happened = picking ? moment.index + 1 : moment.stage == BreedingStage::Scaling ? 0 : picks;
-    draw_copies(sheet_of(gui, std::min(300.f, ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
+    draw_copies(sheet_of(gui, std::min(300.f * gui.scale(), ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
                 picking || happened == 0 ? copies_after(*shown_, happened) : comparison_->copies,
                 picking ? double(happened) / picks : 1);
     ImGui::TextWrapped("%zu of %zu ranks are more than two standard errors off", comparison_->beyond_two,
@@ -421,7 +381,7 @@ void BreedingPanel::build_theory(const Gui& gui) {
         if (const auto off = finding.deviation()) {
             ImGui::TextWrapped("%+.2f standard errors", *off);
         }
-        quiet(std::string{finding.sentence} + " (" + std::string{finding.source} + ")");
+        widgets::say(std::string{finding.sentence} + " (" + std::string{finding.source} + ")");
     }
 }
 

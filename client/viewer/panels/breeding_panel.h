@@ -13,13 +13,13 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace evod::viewer {
 
 class BreedingPanel : public Panel {
   public:
     std::string_view title() const override { return "Glass box"; }
+    Size first_size() const override { return {900, 620}; }
     void build(Context& context) override;
 
   private:
@@ -27,15 +27,14 @@ class BreedingPanel : public Panel {
 
     void choose(const Context& context);
     void ask(Watch& watch);
-    void ask_gene_names(Watch& watch, const BreedingRecord::Key& key);
     void take(unsigned question, const link::Result<evod::v1::Response>& response);
     void show_coming();
     void hold_world(Watch& watch);
 
     void build_generation(const Context& context);
-    void build_transport();
+    void build_transport(const Gui& gui);
     void take_keys();
-    void build_stage(const Gui& gui);
+    void build_stage(const Context& context);
     void build_theory(const Gui& gui);
 
     std::optional<BreedingRecord> shown_, coming_; // what comes is shown when its first page is here
@@ -52,10 +51,6 @@ class BreedingPanel : public Panel {
     Time next_look_{}; // for a newer generation
 
     GenerationHold hold_;
-    bool past_ = false;     // the world shows the past, and is not to be held
-    std::string named_run_; // whose genes' names these are
-    std::vector<std::string> gene_names_;
-    bool sized_ = false;
 };
 
 } // namespace evod::viewer
