@@ -122,7 +122,10 @@ bool WatchingClient::hear(std::size_t count) {
         all_heard_ = clock().now();
         return false;
     }
-    may_have_stalled_ = may_have_stalled_ || clock().now() - all_heard_ >= network::stalled_timeout;
+    // Once its session ends, for what it said or did not say in time, the last bytes do not wait for it as long.
+    const bool may_be_ending = refused_ || !greeted_ || said_.buffered_bytes() > 0;
+    const auto patience = may_be_ending ? network::farewell_timeout : network::stalled_timeout;
+    may_have_stalled_ = may_have_stalled_ || clock().now() - all_heard_ >= patience;
     if (heard_bytes <= 0) {
         closed_ = true;
         return false;
