@@ -27,7 +27,7 @@ std::string with_separators(std::uint64_t number) {
     return digits;
 }
 
-std::string shown_number(double number) {
+std::string shown_tenths(double number) {
     return print("%.1f", number);
 }
 

@@ -154,14 +154,14 @@ void WorldsPanel::build_islands(Watch& watch) {
             if (i < statistics_.live_size()) {
                 const evod::v1::LiveStatistics& live = statistics_.live(i);
                 cell(with_separators(live.alive_count()) + " of " + with_separators(live.organism_count()));
-                cell(shown_number(live.health_mean()));
+                cell(shown_tenths(live.health_mean()));
             } else {
                 ImGui::TableNextColumn();
                 ImGui::TableNextColumn();
             }
             ImGui::TableNextColumn();
             if (i < statistics_.last_size()) {
-                ImGui::TextUnformatted(shown_number(statistics_.last(i).fitness_best()).c_str());
+                ImGui::TextUnformatted(shown_tenths(statistics_.last(i).fitness_best()).c_str());
             }
         }
     }

@@ -77,7 +77,6 @@ class Person {
     PlotsPanel panel_;
     Sight sight_;
     Watch watch_;
-    Sight sight_;
 };
 
 struct PlotsTest : testing::Test {
