@@ -1,8 +1,8 @@
 // What one drawn frame costs the drawing thread: `xvfb-run viewer_frame_bench`.
 //
 // Where OpenGL is done in software, most of it is that.
-#include "client/viewer/stage.h"
-#include "client/viewer/window.h"
+#include "client/viewer/shell/window.h"
+#include "client/viewer/stage/stage.h"
 
 #include <SFML/Window/Context.hpp>
 #include <benchmark/benchmark.h>

@@ -1,8 +1,8 @@
 // What one drawn frame costs the processor outside the graphics driver: making the shapes of everything that moves, by
 // what is switched on. No screen is needed. In each frame everybody is seen.
-#include "client/viewer/marks.h"
+#include "client/viewer/scene/marks.h"
 
-#include "tests/unit/viewer/population_pages.h"
+#include "tests/unit/viewer/watch/population_pages.h"
 
 #include <benchmark/benchmark.h>
 

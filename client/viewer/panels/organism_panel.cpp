@@ -1,6 +1,6 @@
 #include "client/viewer/panels/organism_panel.h"
 
-#include "client/viewer/readout.h"
+#include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 

@@ -4,9 +4,9 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/viewer/gui.h"
-#include "client/viewer/sight.h"
-#include "client/viewer/watch.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/scene/sight.h"
+#include "client/viewer/watch/watch.h"
 
 #include <string_view>
 

@@ -1,15 +1,15 @@
 #include "client/viewer/panels/panels.h"
 
-#include "client/viewer/overlay.h"
-#include "client/viewer/panels/breeding_panel.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
-#include "client/viewer/panels/physics_panel.h"
-#include "client/viewer/panels/plots_panel.h"
+#include "client/viewer/panels/physics/physics_panel.h"
+#include "client/viewer/panels/plots/plots_panel.h"
 #include "client/viewer/panels/run_panel.h"
 #include "client/viewer/panels/view_panel.h"
 #include "client/viewer/panels/worlds_panel.h"
-#include "client/viewer/widgets.h"
+#include "client/viewer/stage/overlay.h"
 
 #include <imgui.h>
 

@@ -1,7 +1,7 @@
 #include "client/viewer/panels/parameters_panel.h"
 
-#include "client/viewer/readout.h"
-#include "client/viewer/widgets.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/watch/readout.h"
 
 #include <SFML/Window/Keyboard.hpp>
 #include <imgui.h>

@@ -7,7 +7,7 @@
 #pragma once
 
 #include "client/viewer/panels/panel.h"
-#include "client/viewer/parameter_edits.h"
+#include "client/viewer/watch/parameter_edits.h"
 
 #include <array>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "client/viewer/panels/view_panel.h"
 
-#include "client/viewer/legend.h"
+#include "client/viewer/scene/legend.h"
 
 #include <imgui.h>
 

@@ -1,7 +1,7 @@
 #include "client/viewer/panels/worlds_panel.h"
 
-#include "client/viewer/readout.h"
-#include "client/viewer/widgets.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 

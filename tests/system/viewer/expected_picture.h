@@ -4,9 +4,9 @@
 // number may stand are left open; every other pixel of the viewport must have exactly the colour painted here.
 #pragma once
 
-#include "client/viewer/camera.h"
-#include "client/viewer/overlay.h"
-#include "client/viewer/palette.h"
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/palette.h"
+#include "client/viewer/stage/overlay.h"
 #include "proto/wire/snapshot_codec.h"
 
 #include <SFML/Graphics/Image.hpp>

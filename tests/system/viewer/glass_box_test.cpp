@@ -1,12 +1,12 @@
 // The glass box against evod: what is worked out here of a breeding is what the server did.
 //
 // Runs under Xvfb.
-#include "client/viewer/breeding/comparison.h"
-#include "client/viewer/breeding/family.h"
-#include "client/viewer/breeding/tournament.h"
-#include "client/viewer/breeding/wheel_layout.h"
-#include "client/viewer/panels/breeding_panel.h"
-#include "client/viewer/window.h"
+#include "client/viewer/panels/breeding/breeding_panel.h"
+#include "client/viewer/panels/breeding/comparison.h"
+#include "client/viewer/panels/breeding/family.h"
+#include "client/viewer/panels/breeding/tournament.h"
+#include "client/viewer/panels/breeding/wheel_layout.h"
+#include "client/viewer/shell/window.h"
 #include "tests/system/viewer/processes.h"
 
 #include <GL/gl.h>

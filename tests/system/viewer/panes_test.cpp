@@ -2,9 +2,9 @@
 // is drawn in each place is what the server says.
 //
 // Runs under Xvfb.
-#include "client/viewer/island_layout.h"
-#include "client/viewer/past.h"
-#include "client/viewer/timeline.h"
+#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/stage/timeline.h"
+#include "client/viewer/watch/past.h"
 #include "tests/system/viewer/expected_picture.h"
 #include "tests/system/viewer/past_of_world.h"
 

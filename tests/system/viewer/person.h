@@ -1,7 +1,7 @@
 // Person: somebody at the window of evoview, who looks, presses keys and moves the mouse.
 #pragma once
 
-#include "client/viewer/palette.h"
+#include "client/viewer/drawing/palette.h"
 #include "tests/system/viewer/processes.h"
 
 #include <SFML/Graphics/Image.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/unit/link/fake_server.h"
-#include "tests/unit/viewer/population_pages.h"
+#include "tests/unit/viewer/watch/population_pages.h"
 
 #include <atomic>
 #include <string>

@@ -1,10 +1,10 @@
 // The panel of plots against evod: what it saves is what the server says.
 //
 // Runs under Xvfb.
-#include "client/viewer/display.h"
-#include "client/viewer/offscreen.h"
-#include "client/viewer/panels/plots_panel.h"
-#include "client/viewer/window.h"
+#include "client/viewer/drawing/offscreen.h"
+#include "client/viewer/panels/plots/plots_panel.h"
+#include "client/viewer/shell/display.h"
+#include "client/viewer/shell/window.h"
 #include "tests/system/viewer/processes.h"
 
 #include <SFML/Window/Context.hpp>

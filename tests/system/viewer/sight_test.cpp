@@ -1,8 +1,8 @@
 // What the View panel switches on is in the picture, where it belongs, and nothing else is.
 //
 // Draws off the screen, under Xvfb, what a server of the test's own shows.
-#include "client/viewer/stage.h"
-#include "client/viewer/window.h"
+#include "client/viewer/shell/window.h"
+#include "client/viewer/stage/stage.h"
 #include "tests/system/viewer/expected_picture.h"
 #include "tests/system/viewer/known_picture.h"
 #include "tests/system/viewer/playing_server.h"

@@ -1,0 +1,209 @@
+#include "client/viewer/drawing/gui.h"
+
+#include <SFML/Window/Clipboard.hpp>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr const char* font_folder = "/usr/share/fonts/truetype/dejavu/";
+
+ImFont* load_font(const char* name, float pixels) {
+    // Latin, and the signs of ours beyond it: ω, …, → and −.
+    static constexpr ImWchar ranges[] = {0x0020, 0x00ff, 0x03c9, 0x03c9, 0x2010, 0x2026,
+                                         0x2190, 0x2193, 0x2212, 0x2212, 0};
+    const std::string path = std::string{font_folder} + name;
+    if (!std::filesystem::exists(path)) {
+        throw std::runtime_error{"no font " + path + ": install the package fonts-dejavu-core"};
+    }
+    ImFont* font = ImGui::GetIO().Fonts->AddFontFromFileTTF(path.c_str(), pixels, nullptr, ranges);
+    if (font == nullptr) {
+        throw std::runtime_error{"the font " + path + " cannot be read"};
+    }
+    return font;
+}
+
+/// The index of a mouse button in Dear ImGui; others have none.
+int button_index(sf::Mouse::Button button) {
+    return button == sf::Mouse::Left ? 0 : button == sf::Mouse::Right ? 1 : button == sf::Mouse::Middle ? 2 : -1;
+}
+
+using Key = sf::Keyboard;
+
+/// The keys that Dear ImGui asks for by name; letters are for their use with Ctrl.
+struct NamedKey {
+    ImGuiKey name;
+    Key::Key key;
+    bool with_control = false;
+};
+constexpr NamedKey named_keys[] = {
+    {ImGuiKey_Tab, Key::Tab},           {ImGuiKey_LeftArrow, Key::Left}, {ImGuiKey_RightArrow, Key::Right},
+    {ImGuiKey_UpArrow, Key::Up},        {ImGuiKey_DownArrow, Key::Down}, {ImGuiKey_PageUp, Key::PageUp},
+    {ImGuiKey_PageDown, Key::PageDown}, {ImGuiKey_Home, Key::Home},      {ImGuiKey_End, Key::End},
+    {ImGuiKey_Insert, Key::Insert},     {ImGuiKey_Delete, Key::Delete},  {ImGuiKey_Backspace, Key::Backspace},
+    {ImGuiKey_Enter, Key::Enter},       {ImGuiKey_Escape, Key::Escape},  {ImGuiKey_A, Key::A, true},
+    {ImGuiKey_C, Key::C, true},         {ImGuiKey_V, Key::V, true},      {ImGuiKey_X, Key::X, true},
+    {ImGuiKey_Y, Key::Y, true},         {ImGuiKey_Z, Key::Z, true},      {ImGuiKey_Space, Key::Space},
+};
+
+const NamedKey* find_named(Key::Key key) {
+    const auto* found = std::ranges::find(named_keys, key, &NamedKey::key);
+    return found == std::end(named_keys) ? nullptr : found;
+}
+
+bool is_one_of(Key::Key key, Key::Key left, Key::Key right) {
+    return key == left || key == right;
+}
+
+} // namespace
+
+Gui::Gui(double scale) : scale_{static_cast<float>(scale)} {
+    ImGui::CreateContext();
+    ImGui::StyleColorsLight();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.FrameBorderSize = 1; // white fields on light panels
+    style.Colors[ImGuiCol_Border].w = 0.5f;
+    style.ScaleAllSizes(scale_);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr; // nothing is remembered in files
+    io.UserData = spots_.get();
+    for (const NamedKey& named : named_keys) {
+        io.KeyMap[named.name] = named.key;
+    }
+    io.ClipboardUserData = &clipboard_;
+    io.GetClipboardTextFn = [](void* kept) {
+        const auto utf8 = sf::Clipboard::getString().toUtf8();
+        return static_cast<std::string*>(kept)->assign(utf8.begin(), utf8.end()).c_str();
+    };
+    io.SetClipboardTextFn = [](void*, const char* text) {
+        sf::Clipboard::setString(sf::String::fromUtf8(text, text + std::char_traits<char>::length(text)));
+    };
+    try {
+        text_ = load_font("DejaVuSans.ttf", std::round(15 * scale_));
+        title_ = load_font("DejaVuSans-Bold.ttf", std::round(22 * scale_));
+        label_ = load_font("DejaVuSans.ttf", std::round(14 * scale_));
+    } catch (...) {
+        ImGui::DestroyContext();
+        throw;
+    }
+    if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
+        ImGui::DestroyContext();
+        throw std::runtime_error{"Dear ImGui cannot draw here: OpenGL 3.3 is needed"};
+    }
+}
+
+Gui::~Gui() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Gui::handle(const sf::Event& event) {
+    waiting_.push_back(event);
+}
+
+bool Gui::give_key(const sf::Event& event, Given& given) {
+    ImGuiIO& io = ImGui::GetIO();
+    const sf::Event::KeyEvent& key = event.key;
+    const bool pressed = event.type == sf::Event::KeyPressed;
+    if (const NamedKey* named = find_named(key.code)) {
+        const bool down = pressed && (!named->with_control || key.control);
+        if (bool& known = io.KeysDown[key.code]; known != down) {
+            if (given.key || given.text) {
+                return false;
+            }
+            given.key = true;
+            known = down;
+        }
+    }
+    // A modifier's own event may tell of the time before it.
+    const auto held = [&](bool said, Key::Key left, Key::Key right) {
+        return is_one_of(key.code, left, right) ? pressed : said;
+    };
+    io.KeyCtrl = held(key.control, Key::LControl, Key::RControl);
+    io.KeyShift = held(key.shift, Key::LShift, Key::RShift);
+    io.KeyAlt = held(key.alt, Key::LAlt, Key::RAlt);
+    io.KeySuper = held(key.system, Key::LSystem, Key::RSystem);
+    return true;
+}
+
+bool Gui::give(const sf::Event& event, Given& given) {
+    ImGuiIO& io = ImGui::GetIO();
+    switch (event.type) {
+    case sf::Event::MouseMoved:
+        if (given.button) { // it was pressed or released where the mouse was
+            return false;
+        }
+        io.MousePos = {static_cast<float>(event.mouseMove.x), static_cast<float>(event.mouseMove.y)};
+        break;
+    case sf::Event::MouseLeft:
+        io.MousePos = {-1e9f, -1e9f};
+        break;
+    case sf::Event::MouseButtonPressed:
+    case sf::Event::MouseButtonReleased:
+        if (const int index = button_index(event.mouseButton.button); index >= 0) {
+            if (given.button) {
+                return false;
+            }
+            given.button = true;
+            io.MouseDown[index] = event.type == sf::Event::MouseButtonPressed;
+        }
+        break;
+    case sf::Event::MouseWheelScrolled:
+        (event.mouseWheelScroll.wheel == sf::Mouse::VerticalWheel ? io.MouseWheel : io.MouseWheelH) +=
+            event.mouseWheelScroll.delta;
+        break;
+    case sf::Event::KeyPressed:
+    case sf::Event::KeyReleased:
+        return given.button ? false : give_key(event, given);
+    case sf::Event::TextEntered:
+        if (given.key || given.button) {
+            return false;
+        }
+        if (event.text.unicode >= ' ' && event.text.unicode != 127) { // no control characters: those are keys
+            given.text = true;
+            io.AddInputCharacter(event.text.unicode);
+        }
+        break;
+    case sf::Event::LostFocus:
+        std::ranges::fill(io.MouseDown, false);
+        std::ranges::fill(io.KeysDown, false);
+        io.KeyCtrl = io.KeyShift = io.KeyAlt = io.KeySuper = false;
+        break;
+    default:
+        break;
+    }
+    return true;
+}
+
+Captured Gui::captured() const {
+    const ImGuiIO& io = ImGui::GetIO();
+    return {.keyboard = io.WantCaptureKeyboard, .mouse = io.WantCaptureMouse};
+}
+
+void Gui::begin(unsigned width_pixels, unsigned height_pixels, double seconds) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {static_cast<float>(width_pixels), static_cast<float>(height_pixels)};
+    io.DeltaTime = static_cast<float>(std::max(seconds, 1e-4));
+    Given given;
+    while (!waiting_.empty() && give(waiting_.front(), given)) {
+        waiting_.pop_front();
+    }
+    spots_->begin_frame();
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Gui::draw() {
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,51 @@
+#include "client/viewer/drawing/island_layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+/// The size of one of `count` in a row or column `whole` long.
+double share(double whole, std::size_t count) {
+    return std::max(std::floor((whole - gap_pixels * static_cast<double>(count - 1)) / static_cast<double>(count)),
+                    1.0);
+}
+
+} // namespace
+
+std::vector<Rectangle> side_by_side(Rectangle place, std::size_t count) {
+    std::vector<Rectangle> columns;
+    const double width = share(place.width, std::max<std::size_t>(count, 1));
+    for (std::size_t i = 0; i < count; ++i) {
+        columns.push_back({place.left + static_cast<double>(i) * (width + gap_pixels), place.top, width, place.height});
+    }
+    if (!columns.empty()) {
+        columns.back().width = std::max(place.left + place.width - columns.back().left, 1.0);
+    }
+    return columns;
+}
+
+std::vector<Rectangle> in_tiles(Rectangle place, std::size_t count, double aspect) {
+    std::size_t columns = 1;
+    double largest = 0;
+    for (std::size_t tried = 1; tried <= count; ++tried) {
+        const std::size_t rows = (count + tried - 1) / tried;
+        const double height = std::min(share(place.width, tried) / aspect, share(place.height, rows));
+        if (height > largest) {
+            largest = height;
+            columns = tried;
+        }
+    }
+    const std::size_t rows = std::max<std::size_t>((count + columns - 1) / columns, 1);
+    const double width = share(place.width, columns), height = share(place.height, rows);
+    std::vector<Rectangle> result;
+    for (std::size_t i = 0; i < count; ++i) {
+        result.push_back({place.left + static_cast<double>(i % columns) * (width + gap_pixels),
+                          place.top + static_cast<double>(i / columns) * (height + gap_pixels), width, height});
+    }
+    return result;
+}
+
+} // namespace evod::viewer

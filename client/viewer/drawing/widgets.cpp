@@ -1,0 +1,86 @@
+#include "client/viewer/drawing/widgets.h"
+
+#include <imgui.h>
+
+#include <utility>
+
+namespace evod::viewer {
+
+void Spots::begin_frame() {
+    shown_ = std::exchange(building_, {});
+    panel_.clear();
+}
+
+void Spots::add(std::string_view name, Point centre) {
+    if (!panel_.empty()) {
+        building_.insert_or_assign(panel_ + "/" + std::string{name}, centre);
+    }
+    building_.insert_or_assign(std::string{name}, centre);
+}
+
+std::optional<Point> Spots::find(const std::string& name) const {
+    const auto found = shown_.find(name);
+    return found == shown_.end() ? std::nullopt : std::optional{found->second};
+}
+
+bool Spots::lingers(Point corner, double now_s) {
+    constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws four times a second
+    if (corner != hovered_ || now_s - hovered_last_s_ > gap_s) {
+        hovered_ = corner;
+        hovered_since_s_ = now_s;
+    }
+    hovered_last_s_ = now_s;
+    return now_s - hovered_since_s_ >= rest_s;
+}
+
+namespace widgets {
+
+void mark(std::string_view name) {
+    auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
+    if (spots != nullptr && ImGui::IsItemVisible()) {
+        const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
+        spots->add(name, {(least.x + most.x) / 2.0, (least.y + most.y) / 2.0});
+    }
+}
+
+bool button(const char* label) {
+    const bool pressed = ImGui::Button(label);
+    mark(label);
+    return pressed;
+}
+
+void say(std::string_view text, Colour colour) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+bool wants_note() {
+    auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
+    const ImVec2 corner = ImGui::GetItemRectMin();
+    return spots != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
+           spots->lingers({corner.x, corner.y}, ImGui::GetTime());
+}
+
+void note(std::string_view text) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void explain(std::string_view text) {
+    if (wants_note()) {
+        note(text);
+    }
+}
+
+ImVec4 ink(Colour colour) {
+    return {float(colour.red) / 255, float(colour.green) / 255, float(colour.blue) / 255, float(colour.alpha) / 255};
+}
+
+} // namespace widgets
+} // namespace evod::viewer

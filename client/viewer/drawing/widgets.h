@@ -1,0 +1,64 @@
+// Widgets: what panels share, and how a script finds what is on the screen.
+//
+// A widget that mark() was called for can be found by its name in the next frame, for as long as it is drawn. Names are
+// those that a person reads; where two panels have the same, "Panel/name" tells them apart.
+//
+// Needs        the Gui, whose frame it is.
+// Threads      none.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/palette.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+struct ImVec4;
+
+namespace evod::viewer {
+
+/// Where the widgets of the last whole frame are, and on which the mouse rests.
+class Spots {
+  public:
+    void begin_frame();
+    /// What is marked from here on stands in the panel of this title; empty: in none.
+    void begin_panel(std::string_view title) { panel_ = title; }
+    void add(std::string_view name, Point centre);
+
+    /// name  "Apply", or "Parameters/Apply"
+    std::optional<Point> find(const std::string& name) const;
+
+    /// Whether the mouse has been on the widget with this corner for a while, as it is again now.
+    bool lingers(Point corner, double now_s);
+
+  private:
+    std::string panel_;
+    std::map<std::string, Point> shown_, building_;
+    Point hovered_;
+    double hovered_since_s_ = 0, hovered_last_s_ = -1;
+};
+
+namespace widgets {
+
+/// The widget made last has this name; nothing if it is clipped away.
+void mark(std::string_view name);
+
+/// ImGui::Button(), marked.
+bool button(const char* label);
+
+/// Small text in a quiet colour, or in the given one; wrapped at the edge of the panel.
+void say(std::string_view text, Colour colour = palette::text_quiet);
+
+/// Whether the mouse rests on the widget made last, so that a note is wanted.
+bool wants_note();
+/// A note at the mouse, in lines of a readable length.
+void note(std::string_view text);
+/// The note, if it is wanted.
+void explain(std::string_view text);
+
+ImVec4 ink(Colour colour);
+
+} // namespace widgets
+} // namespace evod::viewer

@@ -1,0 +1,170 @@
+#include "client/viewer/panels/breeding/caption.h"
+
+#include "client/viewer/watch/readout.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+namespace evod::viewer {
+
+namespace {
+
+template <class... Arguments>
+std::string print(const char* format, Arguments... arguments) {
+    char text[192];
+    std::snprintf(text, sizeof text, format, arguments...);
+    return text;
+}
+
+std::string counted(std::uint64_t count, const char* one, const char* many) {
+    return with_separators(count) + " " + (count == 1 ? one : many);
+}
+
+std::string upper_first(std::string text) {
+    if (!text.empty()) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    }
+    return text;
+}
+
+/// "organism 17 (rank 3, fitness 182.4)"; the fittest has rank 1 for a person.
+std::string who(const BreedingRecord& record, std::uint32_t organism) {
+    const evod::v1::Contender* contender = record.contender(organism);
+    if (contender == nullptr) {
+        return print("organism %u", organism);
+    }
+    std::string text =
+        print("organism %u (rank %u, fitness %.4g", organism, contender->rank() + 1, contender->fitness());
+    if (contender->has_migrant()) {
+        text += print(", came from island %u", contender->migrant().island());
+    }
+    return text + ")";
+}
+
+std::string scaling_caption(const BreedingRecord& record) {
+    const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
+    if (method == "tournament") {
+        return print(
+            "Fitness by rank. Each tournament draws %g contestants, whoever they are; the fittest of them win.",
+            record.number("tournament_size").value_or(0));
+    }
+    if (method == "random") {
+        return "Fitness by rank. Random selection does not look at it.";
+    }
+    if (method == "truncation") {
+        return "Fitness by rank. Truncation takes the best, in order, over and over.";
+    }
+    if (scaling == "none") {
+        return "Fitness by rank. Nothing is done to it: a slot of the wheel is as wide as the fitness.";
+    }
+    return "Fitness by rank, and the weight that " + shown_choice(scaling) +
+           " makes of it: a slot of the wheel is as wide as the weight.";
+}
+
+std::string picking_caption(const BreedingRecord& record, std::uint32_t index) {
+    std::string text =
+        "Pick " + with_separators(index + 1) + " of " + with_separators(record.breeding().pick_count()) + ". ";
+    const evod::v1::Pick* pick = record.pick(index);
+    if (pick == nullptr) {
+        return text + "Asked for …";
+    }
+    const std::string winner = who(record, pick->organism());
+    if (pick->has_turns()) {
+        text += print("The pointer stopped at %.4f turns, in the slot of ", pick->turns()) + winner;
+        const evod::v1::Contender* contender = record.contender(pick->organism());
+        return text + (contender == nullptr
+                           ? "."
+                           : print(", %.2f %% of the wheel.", 100 * (contender->slot_end() - contender->slot_begin())));
+    }
+    if (pick->has_tournament()) {
+        text += "Tournament " + with_separators(std::uint64_t{pick->tournament()} + 1);
+        if (pick->contestants().empty()) { // too many, or its outcome was drawn directly
+            return text + " was too large to be shown. " + upper_first(winner) + " won.";
+        }
+        return text + " of " +
+               counted(static_cast<std::uint64_t>(pick->contestants_size()), "contestant", "contestants") + ": " +
+               winner + " won.";
+    }
+    return text + upper_first(winner) + ".";
+}
+
+std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
+    std::string text = "Organism " + with_separators(id) + " of the next generation: ";
+    const evod::v1::Descendant* descendant = record.descendant(id);
+    if (descendant == nullptr) {
+        return text + "asked for …";
+    }
+    switch (descendant->kind()) {
+    case evod::v1::DESCENDANT_KIND_ELITE:
+        text += "of the elite, " + who(record, descendant->first_parent()) + ", kept unchanged.";
+        break;
+    case evod::v1::DESCENDANT_KIND_SURVIVOR:
+        text += "a survivor, " + who(record, descendant->first_parent()) +
+                (descendant->mutations().empty() && !descendant->has_rearrangement() ? "." : ", mutated.");
+        break;
+    default: {
+        text += "a child of organisms " + std::to_string(descendant->first_parent()) + " and " +
+                std::to_string(descendant->second_parent()) +
+                (descendant->first_parent() == descendant->second_parent() ? ", the same twice" : "") +
+                (descendant->crossed() ? "" : ", not crossed");
+        const auto mutated = std::ranges::count_if(descendant->mutations(), [](const evod::v1::Mutation& mutation) {
+            return mutation.kind() != evod::v1::MUTATION_KIND_CLAMP;
+        });
+        if (descendant->has_rearrangement()) {
+            text += ", " + shown_choice(descendant->rearrangement().method()) + " moved genes";
+        }
+        text += mutated == 0 ? ", no mutation."
+                             : ", " + counted(static_cast<std::uint64_t>(mutated), "mutation.", "mutations.");
+    }
+    }
+    return text;
+}
+
+} // namespace
+
+std::string shown_choice(std::string choice) {
+    std::ranges::replace(choice, '_', ' ');
+    return choice;
+}
+
+std::string breeding_summary(const BreedingRecord& record) {
+    if (!record.known()) {
+        return "";
+    }
+    const evod::v1::Breeding& breeding = record.breeding();
+    const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
+    std::string text = upper_first(shown_choice(method));
+    if (method == "tournament") {
+        text += print(" of %g", record.number("tournament_size").value_or(0));
+    } else if ((method == "roulette" || method == "stochastic_universal") && scaling != "none") {
+        text += " with " + shown_choice(scaling);
+    }
+    text += " · " + shown_choice(record.choice("population_model")) + " · " +
+            counted(breeding.contender_count(), "organism", "organisms") + ", " +
+            counted(breeding.pick_count(), "pick", "picks") + ": " +
+            counted(breeding.survivor_count(), "survivor", "survivors");
+    if (breeding.elite_count() > 0) {
+        text += " (" + with_separators(breeding.elite_count()) + " of the elite)";
+    }
+    return text + " and " + counted(breeding.descendant_count() - breeding.survivor_count(), "child", "children");
+}
+
+std::string caption(const BreedingRecord& record, Moment moment) {
+    if (!record.known()) {
+        return "";
+    }
+    switch (moment.stage) {
+    case BreedingStage::Scaling:
+        return scaling_caption(record);
+    case BreedingStage::Picking:
+        return picking_caption(record, moment.index);
+    case BreedingStage::Breeding:
+        return breeding_caption(record, moment.index);
+    case BreedingStage::Done:
+        break;
+    }
+    return "The next generation. Bars: how often each rank was picked; lines: how often its law expects it.";
+}
+
+} // namespace evod::viewer

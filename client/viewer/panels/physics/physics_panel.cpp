@@ -1,0 +1,236 @@
+#include "client/viewer/panels/physics/physics_panel.h"
+
+#include "client/viewer/drawing/palette.h"
+#include "client/viewer/watch/readout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <span>
+
+namespace evod::viewer {
+namespace {
+
+constexpr std::chrono::milliseconds ask_every{250}, patience{5000};
+constexpr double demo_s = 10; // of the motion that is shown
+constexpr std::size_t table_rows = 8;
+
+ImVec4 ink(Colour colour) {
+    return {colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, colour.alpha / 255.f};
+}
+
+struct Curve {
+    Colour colour;
+    std::vector<float> values; // evenly spaced
+};
+
+/// Lines over the width of the panel; what is beyond low or high is cut off.
+void draw_curves(const char* name, std::span<const Curve> curves, float low, float high, float height_pixels) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 50.f), height_pixels};
+    const ImVec2 other{corner.x + size.x, corner.y + size.y};
+    ImGui::Dummy(size);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, other, ImGui::GetColorU32(ink(palette::strip)));
+    list.PushClipRect(corner, other, true);
+    std::vector<ImVec2> points;
+    for (const Curve& curve : curves) {
+        points.clear();
+        for (std::size_t i = 0; i < curve.values.size(); ++i) {
+            const float along =
+                curve.values.size() == 1 ? 1 : static_cast<float>(i) / static_cast<float>(curve.values.size() - 1);
+            // A little beyond the edges at most: far-away corners cost a line its place.
+            const float share = std::clamp((curve.values[i] - low) / std::max(high - low, 1e-9f), -1.f, 2.f);
+            points.push_back({corner.x + along * size.x, other.y - share * size.y});
+        }
+        list.AddPolyline(points.data(), static_cast<int>(points.size()), ImGui::GetColorU32(ink(curve.colour)), 0,
+                         1.5f);
+    }
+    list.AddText({corner.x + 4, corner.y + 2}, ImGui::GetColorU32(ink(palette::text_quiet)), name);
+    list.PopClipRect();
+    list.AddRect(corner, other, ImGui::GetColorU32(ink(palette::strip_edge)));
+}
+
+/// A measure over time, from 0 up, with its newest value.
+template <class Of>
+void draw_measure(const char* name, const MotionHistory& history, Of&& of) {
+    const Curve curves[] = {{palette::organism, history.curve(of)}};
+    const float most = std::max(*std::ranges::max_element(curves[0].values), 1e-6f);
+    char text[128];
+    std::snprintf(text, sizeof text, name, of(history.last()));
+    draw_curves(text, curves, 0, most * 1.6f, 52);
+}
+
+void coloured(Colour colour, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
+} // namespace
+
+void PhysicsPanel::build(Context& context) {
+    ask(context);
+    if (ImGui::CollapsingHeader("The bodies of this island", ImGuiTreeNodeFlags_DefaultOpen)) {
+        build_motion();
+    }
+    if (ImGui::CollapsingHeader("What the length of a tick does", ImGuiTreeNodeFlags_DefaultOpen)) {
+        build_demo();
+    }
+}
+
+void PhysicsPanel::ask(Context& context) {
+    Watch& watch = context.watch;
+    if (watch.world() != world_ || watch.island() != island_) {
+        world_ = watch.world();
+        island_ = watch.island();
+        history_.clear();
+        refusal_.clear();
+        asked_at_.reset();
+    }
+    // An answer that never came, for the watch looked elsewhere meanwhile, is not waited for.
+    if (asked_at_ && context.now - *asked_at_ < (is_waiting_ ? patience : ask_every)) {
+        return;
+    }
+    asked_at_ = context.now;
+    is_waiting_ = true;
+    evod::v1::Request request;
+    request.mutable_get_motion()->set_world(world_);
+    request.mutable_get_motion()->set_island(island_);
+    watch.ask(std::move(request), [this, island = island_](const link::Result<evod::v1::Response>& response) {
+        if (island != island_) {
+            return;
+        }
+        is_waiting_ = false;
+        if (response && link::accepted(*response)) {
+            refusal_.clear();
+            history_.add(response->motion());
+        } else {
+            refusal_ = response ? shown_refusal(response->status()) : response.error().what;
+        }
+    });
+}
+
+void PhysicsPanel::build_motion() {
+    if (!refusal_.empty()) {
+        coloured(palette::warning, refusal_);
+    }
+    if (history_.empty()) {
+        ImGui::TextUnformatted("…");
+        return;
+    }
+    const evod::v1::Motion& now = history_.last();
+    const TickVerdict verdict = judge_tick(now);
+    coloured(verdict.level == TickVerdict::Level::Good    ? palette::running
+             : verdict.level == TickVerdict::Level::Close ? palette::stopped
+                                                          : palette::warning,
+             verdict.sentence);
+    ImGui::Text("%s bodies, %s pairs touch; tick of %.4g s", with_separators(now.body_count()).c_str(),
+                with_separators(now.touching_count()).c_str(), now.tick_s());
+    using Motion = evod::v1::Motion;
+    draw_measure("kinetic energy %.4g kg px²/s²", history_, [](const Motion& m) { return m.kinetic_energy(); });
+    draw_measure("momentum %.4g kg px/s", history_,
+                 [](const Motion& m) { return std::hypot(m.momentum_x(), m.momentum_y()); });
+    draw_measure("deepest overlap %.3g px", history_, [](const Motion& m) { return m.deepest_overlap_px(); });
+    draw_measure("fastest body %.4g px/s", history_, [](const Motion& m) { return m.fastest_px_s(); });
+    draw_measure("its way in a tick, of its radius: %.2g", history_,
+                 [](const Motion& m) { return m.fastest_step_share(); });
+    const double step_px = now.fastest_px_s() * now.tick_s();
+    ImGui::TextWrapped("The fastest moves %.3g px in a tick; contacts are looked for in strips of %.4g px. The deepest "
+                       "overlap is %.2g of the smaller body's radius. In this generation %s moves were longer than the "
+                       "body's radius, and max_speed_px_s held bodies back %s times.",
+                       step_px, now.cell_px(), now.deepest_overlap_share(),
+                       with_separators(now.too_fast_count()).c_str(), with_separators(now.speed_limit_count()).c_str());
+}
+
+void PhysicsPanel::build_demo() {
+    bool changed = rows_.empty();
+    if (ImGui::RadioButton("a spring", spring_)) {
+        changed = spring_ = true;
+    }
+    ImGui::SameLine();
+    if (ImGui::RadioButton("a body that slows down", !spring_)) {
+        spring_ = false;
+        changed = true;
+    }
+    changed |= ImGui::SliderFloat(spring_ ? "ω, 1/s" : "damping, 1/s", &rate_per_s_, 0.5f, 10, "%.1f");
+    changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, 1, 1000, "%.0f", ImGuiSliderFlags_Logarithmic);
+    if (!history_.empty() && ImGui::Button("a tick of this world")) {
+        tick_ms_ = static_cast<float>(history_.last().tick_s() * 1000);
+        changed = true;
+    }
+    const double dt = static_cast<double>(tick_ms_) / 1000, rate = static_cast<double>(rate_per_s_);
+    const TimeStepDemo demo{spring_ ? TimeStepDemo::System{rate, 0, {100, 0}}
+                                    : TimeStepDemo::System{0, rate, {0, 100}}};
+    if (changed) {
+        rows_ = demo.rows(dt, static_cast<std::size_t>(demo_s / dt));
+    }
+
+    constexpr Colour exact_colour = palette::text, symplectic_colour = palette::running,
+                     explicit_colour = palette::poison;
+    const auto curve = [&](Colour colour, TimeStepDemo::State TimeStepDemo::Row::*state, auto of) {
+        Curve made{colour, {}};
+        for (const TimeStepDemo::Row& row : rows_) {
+            made.values.push_back(static_cast<float>(of(row.*state)));
+        }
+        return made;
+    };
+    const auto draw = [&](const char* name, float low, float high, auto of) {
+        const Curve curves[] = {curve(explicit_colour, &TimeStepDemo::Row::explicit_euler, of),
+                                curve(symplectic_colour, &TimeStepDemo::Row::symplectic_euler, of),
+                                curve(exact_colour, &TimeStepDemo::Row::exact, of)};
+        draw_curves(name, curves, low, high, 90);
+    };
+    using State = TimeStepDemo::State;
+    const float reach = spring_ ? 200 : 150 / rate_per_s_;
+    draw("x in 10 s, px", spring_ ? -reach : 0, reach, [](const State& state) { return state.x_px; });
+    const double energy = demo.energy(rows_.front().exact);
+    draw("energy, of that at the start", 0, 3, [&](const State& state) { return demo.energy(state) / energy; });
+    coloured(exact_colour, "the truth");
+    ImGui::SameLine();
+    coloured(symplectic_colour, "symplectic Euler");
+    ImGui::SameLine();
+    coloured(explicit_colour, "explicit Euler");
+
+    if (ImGui::BeginTable("steps", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
+        for (const char* name : {"t, s", "x, px"}) {
+            ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 1);
+        }
+        for (const char* name : {"symplectic (error)", "explicit (error)"}) {
+            ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, 2);
+        }
+        ImGui::TableHeadersRow();
+        const std::size_t stride = std::max<std::size_t>(rows_.size() / table_rows, 1);
+        for (std::size_t i = 0; i < rows_.size(); i += stride) {
+            const TimeStepDemo::Row& row = rows_[i];
+            ImGui::TableNextRow();
+            for (const double value : {row.t_s, row.exact.x_px}) {
+                ImGui::TableNextColumn();
+                ImGui::Text("%.4g", value);
+            }
+            for (const double value : {row.symplectic_euler.x_px, row.explicit_euler.x_px}) {
+                ImGui::TableNextColumn();
+                ImGui::Text("%.4g (%+.3g)", value, value - row.exact.x_px);
+            }
+        }
+        ImGui::EndTable();
+    }
+    if (spring_) {
+        ImGui::TextWrapped(
+            "ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
+            "short; symplectic Euler, the default of a world, %s.",
+            rate * dt, demo.explicit_growth(dt),
+            demo.symplectic_is_stable(dt) ? "keeps it near what it was, while ω·dt is below 2"
+                                          : "keeps it only while ω·dt is below 2, so not here");
+    } else {
+        ImGui::TextWrapped(
+            "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the truth is e^(−c·dt): "
+            "from 1 on the body turns round, from 2 on it gets faster. With symplectic and explicit Euler a "
+            "world's damping keeps e^(−c·dt) itself, whatever the tick.",
+            rate * dt);
+    }
+}
+
+} // namespace evod::viewer

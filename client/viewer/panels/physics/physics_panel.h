@@ -1,0 +1,43 @@
+// Physics panel: energy, momentum, overlaps and speeds of the bodies on the island over time, whether the tick is short
+// enough for them, and a motion whose truth is known, stepped with a tick of any length.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/panels/panel.h"
+#include "client/viewer/panels/physics/motion_history.h"
+#include "client/viewer/panels/physics/time_step_demo.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+class PhysicsPanel : public Panel {
+  public:
+    std::string_view title() const override { return "Physics"; }
+    void build(Context& context) override;
+
+  private:
+    /// Asks how the bodies move, a few times a second.
+    void ask(Context& context);
+    void build_motion();
+    void build_demo();
+
+    // Of which island the history is, and what has been asked.
+    std::string world_;
+    std::uint32_t island_ = 0;
+    std::optional<link::WorldView::Clock::time_point> asked_at_;
+    bool is_waiting_ = false; // for an answer
+    MotionHistory history_;
+    std::string refusal_; // of the last question
+
+    // The demonstration, as it was last worked out.
+    bool spring_ = true;
+    float rate_per_s_ = 2; // ω of the spring, c of what slows down
+    float tick_ms_ = 100;
+    std::vector<TimeStepDemo::Row> rows_;
+};
+
+} // namespace evod::viewer

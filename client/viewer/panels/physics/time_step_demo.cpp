@@ -1,0 +1,55 @@
+#include "client/viewer/panels/physics/time_step_demo.h"
+
+#include <cmath>
+
+namespace evod::viewer {
+
+TimeStepDemo::State TimeStepDemo::exact(double t) const {
+    // x = e^(−h·t)·(x0·C + (v0 + h·x0)·S) with h = c/2 and C, S: cos and sin/w, cosh and sinh/w, or 1 and t.
+    const double h = system_.damping_per_s / 2, square = system_.omega_per_s * system_.omega_per_s - h * h;
+    const auto [x0, v0] = system_.start;
+    const double w = std::sqrt(std::abs(square));
+    double c = 1, s = t;
+    if (w * t > 1e-6) {
+        c = square > 0 ? std::cos(w * t) : std::cosh(w * t);
+        s = (square > 0 ? std::sin(w * t) : std::sinh(w * t)) / w;
+    }
+    const double fading = std::exp(-h * t), b = v0 + h * x0;
+    // v = x': C' = −square·S, S' = C.
+    return {fading * (x0 * c + b * s), fading * (b * c - square * x0 * s) - h * fading * (x0 * c + b * s)};
+}
+
+TimeStepDemo::State TimeStepDemo::step(State from, double dt, Method method) const {
+    const double omega = system_.omega_per_s;
+    const double v = from.v_px_s + (-omega * omega * from.x_px - system_.damping_per_s * from.v_px_s) * dt;
+    return {from.x_px + (method == Method::SymplecticEuler ? v : from.v_px_s) * dt, v};
+}
+
+double TimeStepDemo::energy(const State& state) const {
+    const double omega = system_.omega_per_s;
+    return (state.v_px_s * state.v_px_s + omega * omega * state.x_px * state.x_px) / 2;
+}
+
+std::vector<TimeStepDemo::Row> TimeStepDemo::rows(double dt, std::size_t step_count) const {
+    std::vector<Row> rows{{0, system_.start, system_.start, system_.start}};
+    for (std::size_t n = 1; n <= step_count; ++n) {
+        const Row& last = rows.back();
+        const double t = static_cast<double>(n) * dt;
+        rows.push_back({t, exact(t), step(last.symplectic_euler, dt, Method::SymplecticEuler),
+                        step(last.explicit_euler, dt, Method::ExplicitEuler)});
+    }
+    return rows;
+}
+
+double TimeStepDemo::explicit_growth(double dt) const {
+    const double omega = system_.omega_per_s;
+    return 1 + omega * omega * dt * dt;
+}
+
+bool TimeStepDemo::symplectic_is_stable(double dt) const {
+    // Roots of z² − (2 − ω²dt² − c·dt)·z + 1 − c·dt within the unit circle (Jury 1962).
+    const double omega = system_.omega_per_s, c = system_.damping_per_s * dt, k = omega * omega * dt * dt;
+    return k + 2 * c < 4 && c < 2;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,173 @@
+#include "client/viewer/panels/plots/figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr Colour gene_colours[] = {palette::series_blue,   palette::series_orange,    palette::series_green,
+                                   palette::series_purple, palette::series_vermilion, palette::series_sky};
+constexpr std::uint8_t band_alpha = 60;
+constexpr std::size_t bins_min = 8, bins_max = 60;
+
+Colour pale(Colour colour) {
+    colour.alpha = band_alpha;
+    return colour;
+}
+
+class Maker {
+  public:
+    Maker(const Subject& subject, const Subject* other) : subject_{subject}, other_{other} {}
+
+    Figure take() { return std::move(figure_); }
+    Plot& plot() { return figure_.plot; }
+
+    /// A column of the subject, and if it is compared the same one of the other.
+    void line(const std::string& column, const std::string& name, Colour colour, bool compared) {
+        add(subject_, Series::Kind::Line, column, named(name, subject_), colour);
+        if (other_ != nullptr && compared) {
+            add(*other_, Series::Kind::Dashes, column, named(name, *other_), colour);
+        }
+    }
+
+    /// Mean ± one deviation.
+    void band(const std::string& of, Colour colour) {
+        const auto mean = column(subject_, of + "_mean"), deviation = column(subject_, of + "_deviation");
+        if (mean.empty() || mean.size() != deviation.size()) {
+            return;
+        }
+        auto& low = figure_.numbers.emplace_back(mean.begin(), mean.end());
+        auto& high = figure_.numbers.emplace_back(mean.begin(), mean.end());
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            low[i] -= deviation[i];
+            high[i] += deviation[i];
+        }
+        figure_.plot.series.push_back({.kind = Series::Kind::Band,
+                                       .name = "± one deviation",
+                                       .colour = pale(colour),
+                                       .x = column(subject_, "generation"),
+                                       .y = high,
+                                       .low = low});
+    }
+
+    void stack(const std::string& column, const std::string& name, Colour colour) {
+        add(subject_, Series::Kind::Stack, column, named(name, subject_), colour);
+    }
+    void compare(const std::string& column, const std::string& name, Colour colour) {
+        if (other_ != nullptr) {
+            add(*other_, Series::Kind::Dashes, column, named(name, *other_), colour);
+        }
+    }
+
+    static std::span<const double> column(const Subject& subject, const std::string& name) {
+        const bool has_island = subject.island && *subject.island < subject.table.island_count();
+        return subject.table.column(has_island ? subject.island : std::nullopt, name);
+    }
+
+  private:
+    std::string named(const std::string& name, const Subject& subject) const {
+        return other_ == nullptr ? name : name + ", " + subject.name;
+    }
+    void add(const Subject& subject, Series::Kind kind, const std::string& name, std::string legend, Colour colour) {
+        const auto x = column(subject, "generation"), y = column(subject, name);
+        const bool known = std::ranges::any_of(y, [](double number) { return std::isfinite(number); });
+        if (x.size() == y.size() && known) {
+            figure_.plot.series.push_back(
+                {.kind = kind, .name = std::move(legend), .colour = colour, .x = x, .y = y, .low = {}});
+        }
+    }
+
+    const Subject& subject_;
+    const Subject* other_;
+    Figure figure_;
+};
+
+} // namespace
+
+Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene) {
+    Maker make{subject, other};
+    make.plot().x_label = "generation";
+    switch (quantity) {
+    case Quantity::Fitness:
+        make.plot().title = "Fitness";
+        make.plot().y_label = "fitness";
+        make.band("fitness", palette::series_blue);
+        make.line("fitness_worst", "worst", palette::series_grey, false);
+        make.line("fitness_median", "median", palette::series_sky, false);
+        make.line("fitness_mean", "mean", palette::series_blue, true);
+        make.line("fitness_best", "best", palette::series_vermilion, true);
+        break;
+    case Quantity::Genes:
+        make.plot().y_label = "gene units";
+        if (gene.empty()) {
+            make.plot().title = "Means of the genes";
+            const auto& names = subject.table.gene_names();
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                make.line(names[i] + "_mean", names[i], gene_colours[i % std::size(gene_colours)], true);
+            }
+        } else {
+            make.plot().title = "Gene " + gene;
+            make.band(gene, palette::series_green);
+            make.line(gene + "_min", "least", palette::series_grey, false);
+            make.line(gene + "_max", "greatest", palette::series_grey, false);
+            make.line(gene + "_mean", "mean", palette::series_green, true);
+        }
+        break;
+    case Quantity::Diversity:
+        make.plot().title = "Diversity";
+        make.plot().y_label = "mean deviation of the genes, as a share of their bounds";
+        make.plot().from_zero = true;
+        make.line("diversity", "diversity", palette::series_purple, true);
+        break;
+    case Quantity::Survivors:
+        make.plot().title = "Alive at the end";
+        make.plot().y_label = "organisms";
+        make.plot().from_zero = true;
+        make.line("organism_count", "born", palette::series_grey, false);
+        make.line("alive_count", "alive at the end", palette::series_green, true);
+        break;
+    case Quantity::Deaths:
+        make.plot().title = "Causes of death";
+        make.plot().y_label = "organisms";
+        make.plot().from_zero = true;
+        make.stack("starved_count", "starved", palette::series_orange);
+        make.stack("poisoned_count", "poisoned", palette::series_vermilion);
+        make.compare("starved_count", "starved", palette::series_sky);
+        make.compare("poisoned_count", "poisoned", palette::series_blue);
+        break;
+    }
+    return make.take();
+}
+
+Figure histogram_of(const std::string& gene, std::vector<float> numbers) {
+    Figure figure;
+    figure.plot.title = gene;
+    figure.plot.x_label = gene;
+    figure.plot.y_label = "organisms";
+    figure.plot.from_zero = true;
+    if (numbers.empty()) {
+        return figure;
+    }
+    const auto [least, greatest] = std::ranges::minmax(numbers);
+    const Range range = with_room({least, greatest}, 0);
+    const auto count = std::clamp(static_cast<std::size_t>(2 * std::cbrt(static_cast<double>(numbers.size()))),
+                                  bins_min, bins_max); // Rice's rule
+    const double width = range.width() / static_cast<double>(count);
+    auto& middles = figure.numbers.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) {
+        middles.push_back(range.min + (static_cast<double>(i) + 0.5) * width);
+    }
+    auto& bins = figure.numbers.emplace_back(histogram(numbers, range, count));
+    figure.plot.series.push_back({.kind = Series::Kind::Bars,
+                                  .name = gene,
+                                  .colour = palette::series_green,
+                                  .x = middles,
+                                  .y = bins,
+                                  .low = {},
+                                  .bar_width = width});
+    return figure;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,112 @@
+#include "client/viewer/panels/plots/history.h"
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+void History::see_run(const std::string& world, const std::string& run_id) {
+    if (world == world_ && run_id == run_id_) {
+        return;
+    }
+    world_ = world;
+    run_id_ = run_id;
+    table_.clear();
+    whole_until_ = ended_ = 0;
+    missing_ = true;
+    give_up(); // what is still to be answered is of another run
+    ++revision_;
+}
+
+void History::see_run(const evod::v1::WorldInfo& world) {
+    see_run(world.name(), world.run_id());
+    set_gene_names(world);
+}
+
+void History::set_gene_names(const evod::v1::WorldInfo& world) {
+    if (world.gene_names_size() > 0) {
+        table_.set_gene_names({world.gene_names().begin(), world.gene_names().end()});
+    }
+}
+
+void History::see_event(const evod::v1::Event& event) {
+    using Kind = evod::v1::Event::EventCase;
+    if (event.event_case() == Kind::kEventsDropped) {
+        look_again();
+    }
+    if (event.world() != world_ || world_.empty()) {
+        return;
+    }
+    if (event.event_case() == Kind::kWorldReset) {
+        see_run(event.world_reset().world());
+    } else if (event.event_case() == Kind::kWorldCreated) {
+        see_run(event.world_created().world());
+    } else if (event.event_case() == Kind::kGenerationFinished && event.run_id() == run_id_) {
+        add(event.generation_finished().statistics());
+        if (!missing_) {
+            whole_until_ = table_.last_without_gap(whole_until_);
+            see_ended(table_.last_generation());
+        }
+    }
+}
+
+void History::see_ended(std::uint64_t generation) {
+    ended_ = std::max(ended_, generation);
+    missing_ = missing_ || ended_ > whole_until_;
+}
+
+std::optional<History::Question> History::question() {
+    if (run_id_.empty() || !missing_ || asked_ != answered_) {
+        return std::nullopt;
+    }
+    if (!next_page_) {
+        next_page_ = whole_until_ + 1;
+        ended_when_asked_ = std::max(ended_, table_.last_generation());
+    }
+    again_ = false;
+    Question question{++asked_, {}};
+    evod::v1::GetHistory& query = *question.request.mutable_get_history();
+    query.set_world(world_);
+    query.set_first_generation(*next_page_);
+    return question;
+}
+
+void History::give_up() {
+    answered_ = asked_;
+    next_page_.reset();
+}
+
+void History::take(std::uint64_t number, const evod::v1::History* answer) {
+    if (number != asked_ || answered_ == asked_) {
+        return; // of another run
+    }
+    if (answer == nullptr) {
+        return give_up();
+    }
+    answered_ = asked_;
+    add(answer->generations());
+    if (answer->has_next_generation() && answer->next_generation() > *next_page_) {
+        next_page_ = answer->next_generation();
+        return;
+    }
+    next_page_.reset();
+    // What the server did not tell of those that had ended by then, it does not know any more.
+    if (!answer->generations().empty()) {
+        ended_when_asked_ = std::max(ended_when_asked_, answer->generations().rbegin()->generation());
+    }
+    whole_until_ = table_.last_without_gap(std::max(whole_until_, ended_when_asked_));
+    missing_ = again_ || std::max(ended_, table_.last_generation()) > whole_until_;
+}
+
+template <class Generations>
+void History::add(const Generations& generations) {
+    std::vector<std::vector<double>> rows;
+    for (const evod::v1::GenerationStatistics& statistics : generations) {
+        rows.push_back(link::history_numbers(statistics));
+    }
+    if (!rows.empty()) {
+        table_.add(rows);
+        ++revision_;
+    }
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,224 @@
+#include "client/viewer/panels/plots/layout.h"
+
+#include "client/viewer/watch/readout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace evod::viewer {
+
+namespace {
+
+/// "-1234.5" → "−1,234.5".
+std::string with_signs(std::string text) {
+    const bool negative = text.starts_with('-');
+    const std::size_t begin = negative ? 1 : 0;
+    const std::size_t end = std::min(text.find_first_not_of("0123456789", begin), text.size());
+    for (std::size_t at = end; at > begin + 3; at -= 3) {
+        text.insert(at - 3, ",");
+    }
+    return negative ? "−" + text.substr(1) : text;
+}
+
+std::string printed(const char* format, int precision, double number) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, precision, number);
+    return text;
+}
+
+} // namespace
+
+std::optional<Range> range_of(std::span<const double> numbers) {
+    std::optional<Range> range;
+    for (const double number : numbers) {
+        if (std::isfinite(number)) {
+            range = range ? Range{std::min(range->min, number), std::max(range->max, number)} : Range{number, number};
+        }
+    }
+    return range;
+}
+
+std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b) {
+    return !a ? b : !b ? a : std::optional{Range{std::min(a->min, b->min), std::max(a->max, b->max)}};
+}
+
+Range with_room(Range range, double room_share) {
+    // Halves, as the width of a range of doubles may be more than a double holds.
+    const double middle = range.min / 2 + range.max / 2;
+    const double least = std::max(std::abs(middle) * 1e-9, 1e-12);
+    const double half = std::min(std::max((range.max / 2 - range.min / 2) * (1 + 2 * room_share), least), 4e307);
+    return {std::max(middle, -4e307) - half, std::min(middle, 4e307) + half};
+}
+
+Ticks ticks_in(Range range, int count_max) {
+    Ticks ticks;
+    const double rough = range.width() / std::max(count_max, 1);
+    if (!(rough > 0) || !std::isfinite(rough)) {
+        return ticks;
+    }
+    const double power = std::pow(10, std::floor(std::log10(rough)));
+    for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0}) {
+        ticks.step = factor * power;
+        const double first = std::ceil(range.min / ticks.step - 1e-9), last = std::floor(range.max / ticks.step + 1e-9);
+        if (last - first + 1 > count_max) {
+            continue;
+        }
+        for (double number = first; number <= last; ++number) {
+            ticks.at.push_back(number == 0 ? 0 : number * ticks.step);
+        }
+        break;
+    }
+    return ticks;
+}
+
+std::string tick_label(double tick, double step) {
+    const double size = std::max(std::abs(tick), step);
+    if (size >= 1e9 || size < 1e-5) {
+        return with_signs(printed("%.*g", 6, tick));
+    }
+    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+    return with_signs(printed("%.*f", std::min(decimals, 12), tick));
+}
+
+std::string shown_number(double number) {
+    if (!std::isfinite(number)) {
+        return "–";
+    }
+    const double size = std::abs(number);
+    if (size != 0 && (size >= 1e12 || size < 1e-4)) {
+        return with_signs(printed("%.*g", 6, number));
+    }
+    const int digits = size >= 1 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
+    std::string text = printed("%.*f", std::max(0, 6 - digits), number);
+    if (text.find('.') != std::string::npos) {
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') {
+            text.pop_back();
+        }
+    }
+    return with_signs(text == "-0" ? "0" : text);
+}
+
+Range moved(Range shown, double by, Range whole) {
+    by = std::clamp(by, whole.min - shown.min, std::max(whole.max - shown.max, whole.min - shown.min));
+    return {shown.min + by, shown.max + by};
+}
+
+Range zoomed(Range shown, double share, double factor, Range whole, double width_min) {
+    const double at = shown.min + share * shown.width();
+    const double least = std::min(width_min, whole.width());
+    const double width = std::clamp(shown.width() / factor, least, whole.width());
+    const double begin = at - share * width;
+    return moved({begin, begin + width}, 0, whole);
+}
+
+// ---- long series -----------------------------------------------------------------------------------------------
+
+std::vector<Group> groups_of(std::span<const double> x, Range shown, std::size_t columns) {
+    auto begin = static_cast<std::size_t>(std::lower_bound(x.begin(), x.end(), shown.min) - x.begin());
+    auto end = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), shown.max) - x.begin());
+    begin -= begin > 0 ? 1 : 0;
+    end += end < x.size() ? 1 : 0;
+    std::vector<Group> groups;
+    if (end - begin <= 2 * columns || !(shown.width() > 0)) {
+        for (std::size_t i = begin; i < end; ++i) {
+            groups.push_back({i, i + 1});
+        }
+        return groups;
+    }
+    const double per_column = static_cast<double>(columns) / shown.width();
+    double column = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const double here = std::floor((x[i] - shown.min) * per_column);
+        if (groups.empty() || here != column) {
+            groups.push_back({i, i});
+            column = here;
+        }
+        groups.back().end = i + 1;
+    }
+    return groups;
+}
+
+std::vector<LinePoint> line_of(std::span<const double> x, std::span<const double> y, std::span<const Group> groups) {
+    std::vector<LinePoint> line;
+    const auto add = [&](std::size_t i) {
+        if (line.empty() || line.back().x != x[i] || line.back().y != y[i]) {
+            line.push_back({x[i], y[i]});
+        }
+    };
+    for (const Group group : groups) {
+        std::optional<std::size_t> first, last, least, greatest;
+        bool parted = false;
+        for (std::size_t i = group.begin; i < group.end; ++i) {
+            if (!std::isfinite(y[i])) {
+                parted = parted || !first;
+                continue;
+            }
+            first = first ? first : i;
+            last = i;
+            least = !least || y[i] < y[*least] ? i : *least;
+            greatest = !greatest || y[i] > y[*greatest] ? i : *greatest;
+        }
+        if (parted && !line.empty() && std::isfinite(line.back().y)) {
+            line.push_back({x[group.begin], std::numeric_limits<double>::quiet_NaN()});
+        }
+        if (first) {
+            add(*first);
+            add(std::min(*least, *greatest));
+            add(std::max(*least, *greatest));
+            add(*last);
+        }
+    }
+    return line;
+}
+
+std::vector<BandPoint> band_of(std::span<const double> x, std::span<const double> low, std::span<const double> high,
+                               std::span<const Group> groups) {
+    std::vector<BandPoint> band;
+    for (const Group group : groups) {
+        const auto of_group = [&](std::span<const double> numbers) {
+            return range_of(numbers.subspan(group.begin, group.end - group.begin));
+        };
+        if (const auto lows = of_group(low), highs = of_group(high); lows && highs) {
+            band.push_back({x[group.begin], lows->min, highs->max});
+        }
+    }
+    return band;
+}
+
+double mean_of(std::span<const double> y, Group group) {
+    double sum = 0, count = 0;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+        if (std::isfinite(y[i])) {
+            sum += y[i];
+            ++count;
+        }
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+std::optional<std::size_t> nearest(std::span<const double> x, double at) {
+    if (x.empty()) {
+        return std::nullopt;
+    }
+    const auto after = static_cast<std::size_t>(std::lower_bound(x.begin(), x.end(), at) - x.begin());
+    if (after == 0 || (after < x.size() && x[after] - at < at - x[after - 1])) {
+        return after;
+    }
+    return after - 1;
+}
+
+std::vector<double> histogram(std::span<const float> numbers, Range range, std::size_t count) {
+    std::vector<double> bins(count);
+    for (const float number : numbers) {
+        if (range.contains(number)) {
+            const double place = range.width() > 0 ? (number - range.min) / range.width() : 0;
+            ++bins[std::min(static_cast<std::size_t>(place * static_cast<double>(count)), count - 1)];
+        }
+    }
+    return bins;
+}
+
+} // namespace evod::viewer

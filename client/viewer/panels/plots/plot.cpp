@@ -1,0 +1,415 @@
+#include "client/viewer/panels/plots/plot.h"
+
+#include "client/viewer/drawing/offscreen.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+#include <imgui_internal.h> // SetItemUsingMouseWheel
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr float gap = 6; // between letters and what they stand beside
+constexpr float tick_pixels = 4;
+constexpr float line_pixels = 1.6f;
+constexpr float dash_pixels = 6, dash_gap_pixels = 4;
+constexpr unsigned dense_alpha = 110;
+constexpr double y_room = 0.04; // of the height, above and below
+constexpr double zoom_of_one_notch = 1.25;
+constexpr double shown_min = 4; // generations, or as much of another x
+
+ImU32 ink(Colour colour, unsigned alpha = 255) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha * alpha / 255);
+}
+
+struct Box {
+    float left, top, right, bottom;
+};
+
+/// Draws one plot on a list, in a box.
+class Drawing {
+  public:
+    Drawing(ImDrawList& list, ImFont& font, const Plot& plot, std::string title, Range x, Box box)
+        : list_{list}, font_{font}, plot_{plot}, title_{std::move(title)}, x_{x}, area_{box} {
+        lay_out(box);
+    }
+
+    /// Where the data are.
+    const Box& area() const { return area_; }
+    double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
+
+    void draw() {
+        list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
+        draw_axes();
+        list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
+        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            draw(i);
+        }
+        list_.PopClipRect();
+        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
+        draw_legend();
+    }
+
+    /// A line through the numbers that are nearest to the x, and which they are. Empty if there are none.
+    std::vector<std::string> draw_readout(double at) {
+        std::optional<double> found;
+        for (const Series& series : plot_.series) {
+            if (const auto index = nearest(series.x, at);
+                index && (!found || std::abs(series.x[*index] - at) < std::abs(*found - at))) {
+                found = series.x[*index];
+            }
+        }
+        std::vector<std::string> lines;
+        if (!found || !x_.contains(*found)) {
+            return lines;
+        }
+        const float pixels = column(*found);
+        list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(palette::text_quiet, 150));
+        lines.push_back(plot_.x_label + " " + shown_number(*found));
+        for (const Series& series : plot_.series) {
+            const auto index = nearest(series.x, *found);
+            if (!index || series.x[*index] != *found || !std::isfinite(series.y[*index])) {
+                continue;
+            }
+            std::string line = series.name + ": ";
+            if (series.kind == Series::Kind::Band) {
+                line += shown_number(series.low[*index]) + " to ";
+            } else if (series.kind != Series::Kind::Stack) {
+                list_.AddCircleFilled({pixels, row(series.y[*index])}, 3, ink(series.colour));
+            }
+            lines.push_back(line + shown_number(series.y[*index]));
+        }
+        return lines;
+    }
+
+  private:
+    float width_of(const std::string& text) const {
+        return font_.CalcTextSizeA(font_.FontSize, 1e9f, 0, text.c_str()).x;
+    }
+    void write(float x, float y, Colour colour, const std::string& text) {
+        list_.AddText(&font_, font_.FontSize, {std::round(x), std::round(y)}, ink(colour), text.c_str());
+    }
+
+    double columns() const { return std::max(area_.right - area_.left, 1.0f); }
+    float column(double x) const {
+        return area_.left + static_cast<float>(std::clamp((x - x_.min) / x_.width(), -1.0, 2.0) * columns());
+    }
+    float row(double y) const {
+        const double share = std::clamp((y - y_.min) / y_.width(), -1.0, 2.0);
+        return area_.bottom - static_cast<float>(share * (area_.bottom - area_.top));
+    }
+
+    /// Groups of every series, the tops of stacks, the range of y, and the area that letters leave.
+    void lay_out(Box box) {
+        const float letter = font_.FontSize;
+        float legend_rows = 1, at = 0;
+        for (const Series& series : plot_.series) {
+            const float width = letter + gap + width_of(series.name) + 2 * gap;
+            if (at > 0 && at + width > box.right - box.left) {
+                ++legend_rows;
+                at = 0;
+            }
+            at += width;
+        }
+        if (!title_.empty()) {
+            title_top_ = box.top;
+            box.top += letter + 2 * gap;
+        }
+        legend_top_ = box.top;
+        legend_left_ = box.left;
+        legend_right_ = box.right;
+        label_top_ = box.top + legend_rows * (letter + 2);
+        area_.top = label_top_ + letter + gap;
+        area_.bottom = box.bottom - 2 * letter - gap - tick_pixels;
+        area_.bottom = std::max(area_.bottom, area_.top + 1);
+        label_left_ = box.left;
+
+        std::optional<Range> y;
+        const auto columns_now = static_cast<std::size_t>(std::max(box.right - box.left, 1.0f));
+        for (const Series& series : plot_.series) {
+            groups_.push_back(groups_of(series.x, x_, columns_now));
+            if (groups_.back().empty()) {
+                continue;
+            }
+            const std::size_t begin = groups_.back().front().begin, end = groups_.back().back().end;
+            if (series.kind == Series::Kind::Stack) {
+                take_stack(series, groups_.back());
+                y = joined(y, range_of(tops_));
+                continue;
+            }
+            y = joined(y, range_of(series.y.subspan(begin, end - begin)));
+            if (series.kind == Series::Kind::Band) {
+                y = joined(y, range_of(series.low.subspan(begin, end - begin)));
+            }
+        }
+        const bool stands_on_zero = plot_.from_zero && (!y || y->min >= 0);
+        y = y ? y : std::optional{Range{0, 1}};
+        y_ = with_room(stands_on_zero ? Range{0, y->max} : *y, y_room);
+        if (stands_on_zero) {
+            y_ = {0, std::max(y_.max, 1e-9)};
+        }
+        y_ticks_ = ticks_in(y_, std::max(2, static_cast<int>((area_.bottom - area_.top) / (1.7f * letter))));
+        float widest = 0;
+        for (const double tick : y_ticks_.at) {
+            widest = std::max(widest, width_of(tick_label(tick, y_ticks_.step)));
+        }
+        area_.left = box.left + widest + gap + tick_pixels;
+        area_.right = std::max(box.right - gap, area_.left + 1);
+    }
+
+    /// Adds the means of a series to the tops of the stacks before it. All stacks of a plot have the same x.
+    void take_stack(const Series& series, std::span<const Group> groups) {
+        tops_.resize(groups.size());
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            tops_[i] += mean_of(series.y, groups[i]);
+        }
+    }
+
+    void draw_axes() {
+        const float letter = font_.FontSize;
+        write(label_left_, label_top_, palette::text_quiet, plot_.y_label);
+        for (const double tick : y_ticks_.at) {
+            const float y = std::round(row(tick));
+            const std::string label = tick_label(tick, y_ticks_.step);
+            list_.AddLine({area_.left, y}, {area_.right, y}, ink(palette::plot_grid));
+            write(area_.left - tick_pixels - gap / 2 - width_of(label), y - letter / 2, palette::text, label);
+        }
+        const Ticks ticks = ticks_in(x_, std::max(2, static_cast<int>(columns() / (6 * letter))));
+        for (const double tick : ticks.at) {
+            const float x = std::round(column(tick));
+            const std::string label = tick_label(tick, ticks.step);
+            const float width = width_of(label);
+            list_.AddLine({x, area_.bottom}, {x, area_.bottom + tick_pixels}, ink(palette::strip_edge));
+            list_.AddLine({x, area_.top}, {x, area_.bottom}, ink(palette::plot_grid));
+            write(std::min(x - width / 2, legend_right_ - width), area_.bottom + tick_pixels, palette::text, label);
+        }
+        write((area_.left + area_.right - width_of(plot_.x_label)) / 2, area_.bottom + tick_pixels + letter,
+              palette::text_quiet, plot_.x_label);
+    }
+
+    void draw_legend() {
+        const float letter = font_.FontSize;
+        if (!title_.empty()) {
+            write(legend_left_, title_top_, palette::text, title_);
+        }
+        float x = legend_left_, y = legend_top_;
+        for (const Series& series : plot_.series) {
+            const float width = letter + gap + width_of(series.name) + 2 * gap;
+            if (x > legend_left_ && x + width > legend_right_) {
+                x = legend_left_;
+                y += letter + 2;
+            }
+            const float middle = std::round(y + letter / 2);
+            if (series.kind == Series::Kind::Line) {
+                list_.AddLine({x, middle}, {x + letter, middle}, ink(series.colour), 2.5f);
+            } else if (series.kind == Series::Kind::Dashes) {
+                list_.AddLine({x, middle}, {x + letter * 0.4f, middle}, ink(series.colour), 2.5f);
+                list_.AddLine({x + letter * 0.6f, middle}, {x + letter, middle}, ink(series.colour), 2.5f);
+            } else {
+                list_.AddRectFilled({x, y + 2}, {x + letter, y + letter - 2}, ink(series.colour));
+            }
+            write(x + letter + gap, y, palette::text, series.name);
+            x += width;
+        }
+    }
+
+    void draw(std::size_t index) {
+        const Series& series = plot_.series[index];
+        switch (series.kind) {
+        case Series::Kind::Line:
+        case Series::Kind::Dashes:
+            return draw_line(series, groups_[index]);
+        case Series::Kind::Band:
+            return draw_band(series, groups_[index]);
+        case Series::Kind::Stack:
+            return draw_stack(index);
+        case Series::Kind::Bars:
+            for (const Group group : groups_[index]) {
+                draw_bar(series, group, 0, series.y[group.begin]);
+            }
+        }
+    }
+
+    void draw_line(const Series& series, std::span<const Group> groups) {
+        std::vector<ImVec2> points;
+        // Where a line goes up and down in every column, nobody sees dashes.
+        const bool dense = std::ranges::any_of(groups, [](Group group) { return group.end - group.begin > 1; });
+        const auto finish = [&] {
+            if (points.size() == 1) {
+                list_.AddCircleFilled(points[0], 2, ink(series.colour));
+            } else if (series.kind == Series::Kind::Dashes && !dense) {
+                draw_dashes(points, ink(series.colour));
+            } else if (series.kind == Series::Kind::Dashes) {
+                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour, dense_alpha), 0,
+                                  1);
+            } else {
+                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour), 0, line_pixels);
+            }
+            points.clear();
+        };
+        for (const LinePoint& point : line_of(series.x, series.y, groups)) {
+            if (!std::isfinite(point.y)) {
+                finish();
+            } else {
+                points.push_back({column(point.x), row(point.y)});
+            }
+        }
+        finish();
+    }
+
+    void draw_dashes(std::span<const ImVec2> points, ImU32 colour) {
+        float left = dash_pixels; // of the dash or gap that is being drawn
+        bool dash = true;
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            ImVec2 at = points[i - 1];
+            const ImVec2 end = points[i];
+            float length = std::hypot(end.x - at.x, end.y - at.y);
+            while (length > 0) {
+                const float step = std::min(left, length);
+                const ImVec2 next{at.x + (end.x - at.x) * step / length, at.y + (end.y - at.y) * step / length};
+                if (dash) {
+                    list_.AddLine(at, next, colour, line_pixels);
+                }
+                at = next;
+                length -= step;
+                left -= step;
+                if (left <= 0) {
+                    dash = !dash;
+                    left = dash ? dash_pixels : dash_gap_pixels;
+                }
+            }
+        }
+    }
+
+    void draw_band(const Series& series, std::span<const Group> groups) {
+        const std::vector<BandPoint> band = band_of(series.x, series.low, series.y, groups);
+        for (std::size_t i = 1; i < band.size(); ++i) {
+            list_.AddQuadFilled({column(band[i - 1].x), row(band[i - 1].high)}, {column(band[i].x), row(band[i].high)},
+                                {column(band[i].x), row(band[i].low)}, {column(band[i - 1].x), row(band[i - 1].low)},
+                                ink(series.colour));
+        }
+    }
+
+    void draw_bar(const Series& series, Group group, double from, double to) {
+        const float left = column(series.x[group.begin] - series.bar_width / 2);
+        const float right = column(series.x[group.end - 1] + series.bar_width / 2);
+        const float space = right - left > 6 ? 1.0f : 0.0f; // between bars that are wide enough
+        list_.AddRectFilled({left + space, row(to)}, {std::max(right - space, left + 1), row(from)},
+                            ink(series.colour));
+    }
+
+    void draw_stack(std::size_t index) {
+        if (stack_bottoms_.size() != groups_[index].size()) {
+            stack_bottoms_.assign(groups_[index].size(), 0.0);
+        }
+        for (std::size_t i = 0; i < groups_[index].size(); ++i) {
+            const double from = stack_bottoms_[i];
+            stack_bottoms_[i] += mean_of(plot_.series[index].y, groups_[index][i]);
+            draw_bar(plot_.series[index], groups_[index][i], from, stack_bottoms_[i]);
+        }
+    }
+
+    ImDrawList& list_;
+    ImFont& font_;
+    const Plot& plot_;
+    std::string title_; // empty: none
+    Range x_, y_;
+    Box area_;
+    Ticks y_ticks_;
+    std::vector<std::vector<Group>> groups_; // by series
+    std::vector<double> tops_;               // of all stacks, by group
+    std::vector<double> stack_bottoms_;
+    float title_top_ = 0, legend_top_ = 0, legend_left_ = 0, legend_right_ = 0, label_top_ = 0, label_left_ = 0;
+};
+
+Range shown_x(const Plot& plot, const PlotView& view) {
+    return view.x.value_or(whole_x(plot));
+}
+
+} // namespace
+
+Range whole_x(const Plot& plot) {
+    std::optional<Range> whole;
+    for (const Series& series : plot.series) {
+        if (series.x.empty()) {
+            continue;
+        }
+        const bool bars = series.kind == Series::Kind::Stack || series.kind == Series::Kind::Bars;
+        const double half = bars ? series.bar_width / 2 : 0;
+        whole = joined(whole, Range{series.x.front() - half, series.x.back() + half});
+    }
+    if (whole && whole->width() > 0) {
+        return *whole;
+    }
+    return whole ? Range{whole->min - 0.5, whole->max + 0.5} : Range{0, 1};
+}
+
+void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_pixels) {
+    const ImVec2 place = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::GetContentRegionAvail().x, 40.0f);
+    ImGui::InvisibleButton(id, {width, std::max(height_pixels, 40.0f)});
+    ImGui::SetItemUsingMouseWheel(); // and not to scroll the window as well
+    const Range whole = whole_x(plot);
+    if (view.x) { // what is compared may have gone, and the whole with it
+        view.x = zoomed(*view.x, 0, 1, whole, shown_min);
+    }
+    ImFont& font = *ImGui::GetFont();
+    const Box box{place.x, place.y, place.x + width, place.y + std::max(height_pixels, 40.0f)};
+    Drawing drawing{*ImGui::GetWindowDrawList(), font, plot, "", shown_x(plot, view), box};
+    drawing.draw();
+
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemHovered()) {
+        const Range shown = shown_x(plot, view);
+        const Box& area = drawing.area();
+        const double share = std::clamp((io.MousePos.x - area.left) / (area.right - area.left), 0.0f, 1.0f);
+        if (ImGui::IsMouseDoubleClicked(0)) {
+            view.x.reset();
+        } else if (io.MouseWheel != 0) {
+            const Range next = zoomed(shown, share, std::pow(zoom_of_one_notch, io.MouseWheel), whole, shown_min);
+            view.x = next == whole ? std::nullopt : std::optional{next};
+        }
+        if (const auto lines = drawing.draw_readout(drawing.x_at(io.MousePos.x)); !lines.empty()) {
+            ImGui::BeginTooltip();
+            for (const std::string& line : lines) {
+                ImGui::TextUnformatted(line.c_str());
+            }
+            ImGui::EndTooltip();
+        }
+    }
+    if (ImGui::IsItemActive() && view.x && io.MouseDelta.x != 0) {
+        const Box& area = drawing.area();
+        view.x = moved(*view.x, -io.MouseDelta.x / (area.right - area.left) * view.x->width(), whole);
+    }
+}
+
+sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {
+    const auto width = static_cast<float>(width_pixels), height = static_cast<float>(height_pixels);
+    ImFont& font = *ImGui::GetFont();
+    ImDrawList list{ImGui::GetDrawListSharedData()};
+    list._ResetForNewFrame();
+    list.PushTextureID(font.ContainerAtlas->TexID);
+    list.PushClipRect({0, 0}, {width, height});
+    list.AddRectFilled({0, 0}, {width, height}, ink(palette::plot_background));
+    constexpr float margin = 14;
+    Drawing drawing{
+        list, font, plot, plot.title, shown_x(plot, view), {margin, margin, width - margin, height - margin}};
+    drawing.draw();
+    ImDrawList* const lists[] = {&list};
+    ImDrawData data;
+    data.Valid = true;
+    data.CmdLists = const_cast<ImDrawList**>(lists);
+    data.CmdListsCount = 1;
+    data.TotalIdxCount = list.IdxBuffer.Size;
+    data.TotalVtxCount = list.VtxBuffer.Size;
+    data.DisplayPos = {0, 0};
+    data.DisplaySize = {width, height};
+    data.FramebufferScale = {1, 1};
+    return draw_off_screen(width_pixels, height_pixels, [&] { ImGui_ImplOpenGL3_RenderDrawData(&data); });
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,476 @@
+#include "client/viewer/panels/plots/plots_panel.h"
+
+#include "client/viewer/drawing/palette.h"
+#include "client/viewer/watch/readout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+namespace evod::viewer {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto ask_again = 100ms;          // after an answer: a world may breed faster than anybody looks
+constexpr auto ask_after_refusal = 2s;     // and after a refusal
+constexpr auto give_up_after = 15s;        // longer than the link waits for an answer
+constexpr auto look_at_population = 1s;    // who lives
+constexpr float plot_height_min = 120;     // pixels
+constexpr int picture_pixels_max = 10'000; // of either side of a file
+
+struct Tab {
+    const char* name;
+    Quantity quantity;
+};
+constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},
+                        {"Genes", Quantity::Genes},
+                        {"Diversity", Quantity::Diversity},
+                        {"Survivors", Quantity::Survivors},
+                        {"Deaths", Quantity::Deaths}};
+
+void say(const std::string& text, Colour colour = palette::text_quiet) {
+    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(colour.red, colour.green, colour.blue, colour.alpha));
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+/// CSV files of the working folder, by name.
+std::vector<std::string> csv_files() {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator{".", error}) {
+        if (entry.path().extension() == ".csv") {
+            names.push_back(entry.path().filename().string());
+        }
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+bool lives(const Population& population, std::size_t id) {
+    return population.choice(static_cast<std::uint32_t>(id)) != evod::v1::CHOICE_NONE;
+}
+
+/// False where organisms have no bodies, and when their generation is over.
+bool anybody_lives(const Population& population) {
+    for (std::size_t id = 0; id < population.size(); ++id) {
+        if (lives(population, id)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+std::vector<float> gene_of(const Population& population, std::size_t gene, bool only_the_living) {
+    std::vector<float> numbers;
+    for (std::size_t id = 0; gene < population.gene_count() && id < population.size(); ++id) {
+        if (!only_the_living || lives(population, id)) {
+            numbers.push_back(population.gene(gene)[id]);
+        }
+    }
+    return numbers;
+}
+
+} // namespace
+
+// ---- what is known ---------------------------------------------------------------------------------------------
+
+template <class Tracked, class Take>
+void PlotsPanel::ask(Context& context, const std::shared_ptr<Tracked>& tracked, evod::v1::Request request, Take take) {
+    tracked->under_way = true;
+    tracked->asked = context.now;
+    context.watch.ask(std::move(request), [weak = std::weak_ptr{tracked}, asked = context.now,
+                                           take](const link::Result<evod::v1::Response>& response) {
+        const auto shared = weak.lock();
+        if (!shared || shared->asked != asked) {
+            return; // given up
+        }
+        const bool good = response && link::accepted(*response);
+        shared->under_way = false;
+        shared->not_before = Clock::now() + (good ? Clock::duration{ask_again} : Clock::duration{ask_after_refusal});
+        shared->trouble = good ? "" : response ? shown_refusal(response->status()) : response.error().what;
+        take(*shared, good ? &*response : nullptr);
+    });
+}
+
+void PlotsPanel::ask_history(Context& context, const std::shared_ptr<TrackedHistory>& tracked) {
+    if (tracked->under_way && context.now - tracked->asked > give_up_after) {
+        tracked->under_way = false;
+        tracked->history.give_up();
+    }
+    if (tracked->under_way || context.now < tracked->not_before) {
+        return;
+    }
+    if (auto question = tracked->history.question()) {
+        ask(context, tracked, std::move(question->request),
+            [number = question->number](TrackedHistory& asked, const evod::v1::Response* response) {
+                asked.history.take(number, response != nullptr ? &response->history() : nullptr);
+            });
+    }
+}
+
+void PlotsPanel::ask_worlds(Context& context) {
+    if (worlds_->under_way && context.now - worlds_->asked <= give_up_after) {
+        return;
+    }
+    evod::v1::Request request;
+    request.mutable_list_worlds();
+    ask(context, worlds_, std::move(request), [](Worlds& worlds, const evod::v1::Response* response) {
+        if (response != nullptr) {
+            worlds.list.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+        }
+    });
+}
+
+void PlotsPanel::ask_population(Context& context, std::uint32_t island) {
+    const History& history = own_->history;
+    const std::string of = history.world() + " " + history.run_id() + " " + std::to_string(island);
+    if (of != population_of_) {
+        population_ = std::make_shared<TrackedPopulation>();
+        population_of_ = of;
+    }
+    TrackedPopulation& population = *population_;
+    const Population nobody{history.table().gene_names().size()};
+    if (population.under_way && context.now - population.asked > give_up_after) {
+        population.under_way = false;
+        population.coming = nobody;
+    }
+    if (population.under_way || context.now < population.not_before || history.run_id().empty()) {
+        return;
+    }
+    if (population.coming.next() == 0) {
+        population.coming = nobody;
+    }
+    evod::v1::Request request;
+    request.mutable_get_population()->set_world(history.world());
+    request.mutable_get_population()->set_island(island);
+    request.mutable_get_population()->set_first_organism(population.coming.next());
+    ask(context, population_, std::move(request),
+        [nobody](TrackedPopulation& asked, const evod::v1::Response* response) {
+            const auto trouble = response != nullptr ? asked.coming.add(response->population()) : std::nullopt;
+            if (response == nullptr || trouble) { // from the beginning: another generation may have begun meanwhile
+                asked.coming = nobody;
+            } else if (asked.coming.whole()) {
+                asked.whole = std::exchange(asked.coming, nobody);
+                asked.taken = asked.asked;
+                asked.not_before = Clock::now() + look_at_population;
+            } else {
+                asked.not_before = {};
+            }
+        });
+}
+
+void PlotsPanel::listen(Context& context) {
+    Watch& watch = context.watch;
+    const int frame = ImGui::GetFrameCount();
+    const std::uint64_t connected_count = watch.connection_status().connected_count;
+    const bool may_have_missed = heard_ != &watch || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
+    heard_ = &watch;
+    heard_in_frame_ = frame;
+    connected_count_ = connected_count;
+    if (may_have_missed) {
+        ask_worlds(context);
+    }
+    for (const auto& tracked : {own_, other_world_}) {
+        if (!tracked) {
+            continue;
+        }
+        History& history = tracked->history;
+        if (may_have_missed) {
+            history.look_again();
+        }
+        for (const evod::v1::Event& event : watch.events()) {
+            history.see_event(event);
+        }
+    }
+    if (watch.control().known()) {
+        own_->history.see_run(watch.control().world(), watch.control().run_id());
+    }
+    const wire::Picture* picture = watch.picture();
+    if (picture != nullptr && picture->about.run_id() == own_->history.run_id() && picture->about.generation() > 0) {
+        own_->history.see_ended(picture->about.generation() - 1);
+    }
+    for (const evod::v1::WorldInfo& world : worlds_->list) {
+        if (world.name() == own_->history.world() && own_->history.table().gene_names().empty()) {
+            own_->history.set_gene_names(world);
+        }
+    }
+    for (const evod::v1::Event& event : watch.events()) {
+        if (event.has_world_created() || event.has_world_deleted() || event.has_world_reset() ||
+            event.has_events_dropped()) {
+            ask_worlds(context);
+            break;
+        }
+    }
+    ask_history(context, own_);
+    if (other_world_) {
+        ask_history(context, other_world_);
+    }
+}
+
+Subject PlotsPanel::subject() const {
+    const History& history = own_->history;
+    return {history.table(), island_, history.world().empty() ? "this world" : history.world()};
+}
+
+// ---- what is built ---------------------------------------------------------------------------------------------
+
+void PlotsPanel::build(Context& context) {
+    listen(context);
+    build_choices();
+    build_comparison(context);
+    if (!own_->trouble.empty()) {
+        say(own_->trouble, palette::warning);
+    }
+    if (other_world_ && !other_world_->trouble.empty()) {
+        say(other_name_ + ": " + other_world_->trouble, palette::warning);
+    }
+    if (ImGui::BeginTabBar("quantities")) {
+        for (const Tab& tab : tabs) {
+            if (ImGui::BeginTabItem(tab.name)) {
+                build_quantity(context, tab.quantity);
+                ImGui::EndTabItem();
+            }
+        }
+        ImGui::EndTabBar();
+    }
+    build_export();
+}
+
+void PlotsPanel::build_choices() {
+    const std::uint32_t count = own_->history.table().island_count();
+    if (island_ && *island_ >= std::max(count, 1u)) {
+        island_.reset();
+    }
+    const auto named = [](HistoryTable::Island island) {
+        return island ? "island " + std::to_string(*island) : std::string{"all islands"};
+    };
+    if (count > 1) {
+        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
+        if (ImGui::BeginCombo("##island", named(island_).c_str())) {
+            for (std::uint32_t i = 0; i <= count; ++i) {
+                const HistoryTable::Island island = i == 0 ? HistoryTable::Island{} : i - 1;
+                if (ImGui::Selectable(named(island).c_str(), island == island_)) {
+                    island_ = island;
+                }
+            }
+            ImGui::EndCombo();
+        }
+        ImGui::SameLine();
+    }
+    if (ImGui::Button("Fit")) {
+        view_ = histogram_view_ = {};
+    }
+    ImGui::SameLine();
+    const HistoryTable& table = own_->history.table();
+    say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
+                      : with_separators(table.column(std::nullopt, "generation").size()) + " generations, up to " +
+                            with_separators(table.last_generation()));
+}
+
+void PlotsPanel::compare_with_file(const std::string& path) {
+    auto loaded = load_history(path);
+    told_trouble_ = !loaded;
+    if (!loaded) {
+        told_ = loaded.error().what;
+        return;
+    }
+    if (loaded->empty()) {
+        told_trouble_ = true;
+        told_ = path + " has a heading and no generation";
+        return;
+    }
+    told_.clear();
+    file_ = std::move(*loaded);
+    other_world_.reset();
+    other_name_ = std::filesystem::path{path}.stem().string();
+}
+
+void PlotsPanel::build_comparison(Context& context) {
+    ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
+    const bool compares = other_world_ || file_;
+    if (ImGui::BeginCombo("compare", compares ? other_name_.c_str() : "with nothing")) {
+        if (ImGui::IsWindowAppearing()) {
+            files_ = csv_files();
+            ask_worlds(context);
+        }
+        if (ImGui::Selectable("with nothing", !compares)) {
+            other_world_.reset();
+            file_.reset();
+        }
+        for (const evod::v1::WorldInfo& world : worlds_->list) {
+            if (world.name() == own_->history.world()) {
+                continue;
+            }
+            if (ImGui::Selectable(("world " + world.name()).c_str(),
+                                  other_world_ && world.name() == other_world_->history.world())) {
+                other_world_ = std::make_shared<TrackedHistory>();
+                other_world_->history.see_run(world);
+                file_.reset();
+                other_name_ = world.name();
+            }
+        }
+        for (const std::string& name : files_) {
+            if (ImGui::Selectable(("file " + name).c_str())) {
+                compare_with_file(name);
+            }
+        }
+        ImGui::Separator();
+        ImGui::SetNextItemWidth(-1);
+        if (ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(), path_.size(),
+                                     ImGuiInputTextFlags_EnterReturnsTrue)) {
+            compare_with_file(path_.data());
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::EndCombo();
+    }
+}
+
+void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
+    quantity_ = quantity;
+    // Below it the row of the export and what became of it.
+    const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
+    if (quantity == Quantity::Genes) {
+        build_genes(context);
+    }
+    const auto* other_table = other_world_ ? &other_world_->history.table() : file_ ? &*file_ : nullptr;
+    std::optional<Subject> other;
+    if (other_table != nullptr) {
+        other.emplace(Subject{*other_table, island_, other_name_});
+    }
+    figure_ = figure_of(quantity, subject(), other ? &*other : nullptr, gene_);
+    const bool with_histogram = quantity == Quantity::Genes && !gene_.empty();
+    const float height = ImGui::GetContentRegionAvail().y - below;
+    if (!with_histogram) {
+        plot_widget("history", figure_.plot, view_, std::max(height, plot_height_min));
+        return;
+    }
+    const float line = ImGui::GetFrameHeightWithSpacing();
+    plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
+    ImGui::Checkbox("only the living", &only_the_living_);
+    ImGui::SameLine();
+    const Population& population = population_->whole;
+    if (!population_->trouble.empty()) {
+        say(population_->trouble, palette::warning);
+    } else if (!population.whole()) {
+        say("…");
+    } else {
+        say("generation " + with_separators(population.generation()) + ", island " +
+            std::to_string(island_.value_or(context.watch.island())) +
+            (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
+    }
+    plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
+}
+
+void PlotsPanel::build_genes(Context& context) {
+    const auto& names = own_->history.table().gene_names();
+    if (std::ranges::find(names, gene_) == names.end()) {
+        gene_.clear();
+    }
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
+    if (ImGui::BeginCombo("gene", gene_.empty() ? "all: their means" : gene_.c_str())) {
+        if (ImGui::Selectable("all: their means", gene_.empty())) {
+            gene_.clear();
+        }
+        for (const std::string& name : names) {
+            if (ImGui::Selectable(name.c_str(), name == gene_)) {
+                gene_ = name;
+                histogram_view_ = {};
+            }
+        }
+        ImGui::EndCombo();
+    }
+    if (gene_.empty()) {
+        return;
+    }
+    ask_population(context, island_.value_or(context.watch.island()));
+    const Population& population = population_->whole;
+    const HistogramOf of{gene_, population_->taken, only_the_living_};
+    if (of == histogram_of_) { // populations may be large
+        return;
+    }
+    histogram_of_ = of;
+    const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
+    histogram_ = histogram_of(gene_, gene_of(population, index, only_the_living_ && anybody_lives(population)));
+}
+
+// ---- files -----------------------------------------------------------------------------------------------------
+
+/// "evoview-default-3f2a9c01-fitness-generation-120": what is there, and of which run.
+std::string PlotsPanel::file_name(const std::string& what) const {
+    const History& history = own_->history;
+    return "evoview-" + history.world() + "-" + history.run_id().substr(0, 8) + "-" + what + "-generation-" +
+           std::to_string(history.table().last_generation());
+}
+
+void PlotsPanel::save_csv() {
+    const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
+    std::ofstream file{path, std::ios::binary};
+    const std::string text = own_->history.table().to_csv();
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    told_trouble_ = !file.flush();
+    told_ = told_trouble_ ? "Could not write " + path + ": " + std::strerror(errno) : "Saved " + path;
+}
+
+void PlotsPanel::save_png() {
+    const auto save = [this](const Figure& figure, const PlotView& view, const std::string& what) {
+        Plot plot = figure.plot;
+        plot.title += " – " + own_->history.world() + (island_ ? ", island " + std::to_string(*island_) : "") +
+                      ", run " + own_->history.run_id().substr(0, 8);
+        const std::string path = std::filesystem::absolute(file_name(what) + ".png").string();
+        const auto pixels = [this](std::size_t i) {
+            return static_cast<unsigned>(std::clamp(picture_pixels_[i], 200, picture_pixels_max));
+        };
+        errno = 0;
+        if (!picture_of(plot, view, pixels(0), pixels(1)).saveToFile(path)) {
+            throw std::runtime_error{"Could not write " + path + (errno != 0 ? ": " : "") +
+                                     (errno != 0 ? std::strerror(errno) : "")};
+        }
+        return path;
+    };
+    try {
+        std::string what;
+        for (const Tab& tab : tabs) {
+            if (tab.quantity == quantity_) {
+                what = tab.name;
+                what[0] = static_cast<char>(what[0] + ('a' - 'A'));
+            }
+        }
+        what = quantity_ == Quantity::Genes && !gene_.empty() ? gene_ : what;
+        told_ = "Saved " + save(figure_, view_, what);
+        if (quantity_ == Quantity::Genes && !gene_.empty() && !histogram_.plot.series.empty()) {
+            told_ += " and " + save(histogram_, histogram_view_, gene_ + "-histogram");
+        }
+        told_trouble_ = false;
+    } catch (const std::runtime_error& error) {
+        told_ = error.what();
+        told_trouble_ = true;
+    }
+}
+
+void PlotsPanel::build_export() {
+    if (ImGui::Button("Save CSV")) {
+        save_csv();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Save PNG")) {
+        save_png();
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
+    ImGui::DragInt2("pixels", picture_pixels_.data(), 10, 200, picture_pixels_max);
+    if (!told_.empty()) {
+        say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
+    }
+}
+
+} // namespace evod::viewer

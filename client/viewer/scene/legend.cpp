@@ -1,0 +1,145 @@
+#include "client/viewer/scene/legend.h"
+
+#include "client/viewer/watch/readout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace evod::viewer {
+
+namespace {
+
+ImU32 ink(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
+void add_families(const Sight& sight, const Population& population, Legend& legend) {
+    if (population.families().empty()) {
+        legend.entries.push_back({palette::unknown, "nobody knows of whom these come"});
+        return;
+    }
+    std::size_t others = population.size();
+    for (std::uint8_t family = 0; family < population.families().size(); ++family) {
+        const auto& [founder, size] = population.families()[family];
+        legend.entries.push_back({sight.family_colours().of(family),
+                                  "of organism " + std::to_string(founder) + ": " + with_separators(size)});
+        others -= size;
+    }
+    if (others > 0) {
+        legend.entries.push_back(
+            {palette::unknown, with_separators(population.family_count() - population.families().size()) +
+                                   " smaller families: " + with_separators(others)});
+    }
+}
+
+} // namespace
+
+std::string gene_title(const std::string& name) {
+    return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
+}
+
+Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<Scale>& density,
+                 double density_cell_px) {
+    Legend legend;
+    const Population* population = sight.population();
+    if (density) {
+        const std::string side = number(density_cell_px);
+        legend.ramp = {"organisms in " + side + " × " + side + " px", *density};
+        return legend;
+    }
+    switch (sight.shown.colour_by) {
+    case ColourBy::Nothing:
+        break;
+    case ColourBy::Health:
+        legend.ramp = {"health, points", health_scale(picture.organisms, sight.shown.ramp)};
+        break;
+    case ColourBy::Gene:
+        if (population != nullptr && sight.shown.gene < population->gene_count()) {
+            legend.ramp = {gene_title(sight.gene_names()[sight.shown.gene]),
+                           gene_scale(*population, sight.shown.gene, sight.shown.ramp)};
+        }
+        break;
+    case ColourBy::Lineage:
+        if (population != nullptr) {
+            add_families(sight, *population, legend);
+        }
+        break;
+    }
+    const bool asked = sight.shown.colour_by == ColourBy::Gene || sight.shown.colour_by == ColourBy::Lineage ||
+                       sight.shown.radii || sight.shown.forces;
+    if (asked && population == nullptr && !sight.trouble().empty()) {
+        legend.entries.push_back({palette::unknown, sight.trouble()});
+    }
+    if (sight.shown.radii && population != nullptr) {
+        legend.entries.push_back({palette::food_radius, "sees food so far"});
+        legend.entries.push_back({palette::poison_radius, "sees poison so far"});
+    }
+    if (sight.shown.forces && population != nullptr) {
+        legend.entries.push_back({palette::seeks, "seeks food"});
+        legend.entries.push_back({palette::flees, "flees from poison"});
+        legend.entries.push_back({palette::wanders, "wanders; an arrow of 30 px is 100 kg px/s²"});
+    }
+    return legend;
+}
+
+void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
+    if (legend.empty()) {
+        return;
+    }
+    const float pixel = gui.scale();
+    const float inside = 8 * pixel, line = 18 * pixel, bar_width = 200 * pixel, bar_height = 12 * pixel,
+                swatch = 12 * pixel, gap = 6 * pixel;
+    const ImFont& font = gui.label();
+    const auto width_of = [&](const std::string& text) {
+        return font.CalcTextSizeA(font.FontSize, 1e9f, 0, text.data(), text.data() + text.size()).x;
+    };
+    float width = legend.ramp ? std::max(bar_width, width_of(legend.ramp->title)) : 0;
+    for (const Legend::Entry& entry : legend.entries) {
+        width = std::max(width, width_of(entry.text) + swatch + gap);
+    }
+    const float height =
+        (legend.ramp ? 2 * line + bar_height + 4 : 0) + static_cast<float>(legend.entries.size()) * line + 2 * inside;
+    const Rectangle& seen = camera.viewport();
+    const ImVec2 corner{std::floor(static_cast<float>(seen.left)) + 12,
+                        std::floor(static_cast<float>(seen.top + seen.height) - height) - 12};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip), 4);
+    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4);
+    const float left = corner.x + inside;
+    float top = corner.y + inside;
+    const auto write = [&](float x, float y, const std::string& text) {
+        list.AddText(&font, font.FontSize, {std::floor(x), std::floor(y)}, ink(palette::text), text.data(),
+                     text.data() + text.size());
+    };
+    if (legend.ramp) {
+        const Scale& scale = legend.ramp->scale;
+        write(left, top, legend.ramp->title);
+        top += line;
+        for (int i = 0; i < static_cast<int>(bar_width); ++i) {
+            const float x = left + static_cast<float>(i);
+            list.AddRectFilled({x, top}, {x + 1, top + bar_height},
+                               ink(palette::at(scale.ramp, (i + 0.5) / bar_width)));
+        }
+        top += bar_height + 4;
+        const std::string high = number(scale.high);
+        write(left, top, number(scale.low));
+        write(left + bar_width - width_of(high), top, high);
+        top += line;
+    }
+    for (const Legend::Entry& entry : legend.entries) {
+        list.AddRectFilled({left, top + 2}, {left + swatch, top + 2 + swatch}, ink(entry.colour), 2);
+        write(left + swatch + gap, top, entry.text);
+        top += line;
+    }
+}
+
+} // namespace evod::viewer

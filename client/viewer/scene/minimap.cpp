@@ -1,0 +1,100 @@
+#include "client/viewer/scene/minimap.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr std::size_t cells_max = 60; // along the longer side
+
+ImU32 ink(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+ImVec2 vector(Point point) {
+    return {static_cast<float>(point.x), static_cast<float>(point.y)};
+}
+
+} // namespace
+
+Rectangle MinimapPlace::frame_of(const Rectangle& seen) const {
+    const Point corner = to_screen({seen.left, seen.top});
+    const Point other = to_screen({seen.left + seen.width, seen.top + seen.height});
+    const auto across = [this](double x) { return std::clamp(x, screen.left, screen.left + screen.width); };
+    const auto down = [this](double y) { return std::clamp(y, screen.top, screen.top + screen.height); };
+    return {across(corner.x), down(corner.y), across(other.x) - across(corner.x), down(other.y) - down(corner.y)};
+}
+
+MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height) {
+    MinimapPlace place;
+    place.zoom = MinimapPlace::side_pixels_max / std::max(island_width, island_height);
+    const double width = island_width * place.zoom, height = island_height * place.zoom;
+    place.screen = {viewport.left + viewport.width - width - MinimapPlace::margin_pixels,
+                    viewport.top + viewport.height - height - MinimapPlace::margin_pixels, width, height};
+    return place;
+}
+
+bool sees_all(const Camera& camera, double island_width, double island_height) {
+    const Rectangle seen = camera.visible();
+    return seen.contains({0, 0}) && seen.contains({island_width, island_height});
+}
+
+void Minimap::build(const Watch& watch, Camera& camera) {
+    const wire::Picture* picture = watch.overview() != nullptr ? watch.overview() : watch.picture();
+    const double width = picture->about.width_px(), height = picture->about.height_px();
+    if (sees_all(camera, width, height)) {
+        return;
+    }
+    if (picture != counted_ || picture->about.tick() != counted_tick_) {
+        grid_ = overview_of(*picture, cells_max);
+        counted_ = picture;
+        counted_tick_ = picture->about.tick();
+    }
+    const MinimapPlace place = minimap_place(camera.viewport(), width, height);
+    const ImVec2 size{static_cast<float>(place.screen.width), static_cast<float>(place.screen.height)};
+    const ImVec2 corner = vector({place.screen.left, place.screen.top});
+    ImGui::SetNextWindowPos(corner);
+    ImGui::SetNextWindowSize(size);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
+    ImGui::Begin("Minimap", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 other{corner.x + size.x, corner.y + size.y};
+    list.AddRectFilled(corner, other, ink(palette::strip));
+    const Scale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
+    const auto cell = static_cast<float>(grid_.cell_px * place.zoom);
+    for (std::size_t i = 0; i < grid_.counts.size(); ++i) {
+        if (grid_.counts[i] > 0) {
+            Colour colour = palette::organism;
+            colour.alpha = static_cast<std::uint8_t>(60 + 195 * std::min(scale.share(grid_.counts[i]), 1.0));
+            const ImVec2 from{corner.x + static_cast<float>(i % grid_.columns) * cell,
+                              corner.y + static_cast<float>(i / grid_.columns) * cell};
+            list.AddRectFilled(from, {std::min(from.x + cell, other.x), std::min(from.y + cell, other.y)}, ink(colour));
+        }
+    }
+    list.PushClipRectFullScreen(); // the lines stand half outside
+    list.AddRect(corner, other, ink(palette::wall));
+    const Rectangle frame = place.frame_of(camera.visible());
+    // Never so small that it cannot be found.
+    const ImVec2 middle = vector(frame.centre());
+    const ImVec2 half{std::max(static_cast<float>(frame.width) / 2, 3.f),
+                      std::max(static_cast<float>(frame.height) / 2, 3.f)};
+    list.AddRect({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, ink(palette::poison),
+                 0, 0, 2);
+    list.PopClipRect();
+    ImGui::InvisibleButton("there", size);
+    if (ImGui::IsItemActive()) {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        camera.look_at(place.to_world({mouse.x, mouse.y}));
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,39 @@
+#include "client/viewer/shell/display.h"
+
+#include <X11/Xlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace evod::viewer {
+
+void check_display() {
+    const char* name = std::getenv("DISPLAY");
+    if (Display* display = XOpenDisplay(nullptr)) {
+        XCloseDisplay(display);
+        return;
+    }
+    const std::string why =
+        name == nullptr || *name == '\0' ? "DISPLAY is not set" : "\"" + std::string{name} + "\" cannot be opened";
+    throw std::runtime_error{"no display: " + why + "; without a screen, use xvfb-run evoview …"};
+}
+
+double display_scale() {
+    Display* display = XOpenDisplay(nullptr);
+    if (display == nullptr) {
+        return 1;
+    }
+    double dots_per_inch = 0;
+    if (const char* set = XGetDefault(display, "Xft", "dpi")) { // what desktops tell programs
+        dots_per_inch = std::atof(set);
+    } else if (const int screen = DefaultScreen(display); DisplayWidthMM(display, screen) > 0) {
+        dots_per_inch = DisplayWidth(display, screen) * 25.4 / DisplayWidthMM(display, screen);
+    }
+    XCloseDisplay(display);
+    return dots_per_inch > 0 ? std::clamp(std::round(dots_per_inch / 96 * 4) / 4, 0.5, 4.0) : 1;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,64 @@
+// evoview: options → a window with the start screen and worlds in turn, or a screenshot, or a recording → exit status.
+#include "client/viewer/shell/display.h"
+#include "client/viewer/shell/options.h"
+#include "client/viewer/shell/recorder.h"
+#include "client/viewer/shell/screenshot.h"
+#include "client/viewer/shell/start_screen.h"
+#include "client/viewer/shell/window.h"
+
+#include <exception>
+#include <iostream>
+
+namespace evod::viewer {
+namespace {
+
+void run(Options options) {
+    Screen screen{options};
+    StartScreen start{screen, options.connection};
+    bool ask = options.start, must_connect = !options.server_given;
+    while (screen.window().isOpen()) {
+        if (ask) {
+            const auto chosen = start.run();
+            if (!chosen) {
+                return;
+            }
+            options = Options{};
+            options.connection = *chosen;
+            must_connect = true;
+        }
+        Window::Ending ending;
+        {
+            Window window{screen, options};
+            ending = window.run(must_connect, [&] { start.remember(options.connection.server); });
+        }
+        screen.stage().panels().begin_session(); // what they ask of the other server is never answered
+        ask = ending.elsewhere;
+        start.tell(ending.reason);
+    }
+}
+
+} // namespace
+} // namespace evod::viewer
+
+int main(int argc, char** argv) {
+    using namespace evod::viewer;
+    try {
+        const auto parsed = parse_options(argc, argv);
+        if (const int* status = std::get_if<int>(&parsed)) {
+            return *status;
+        }
+        const auto& options = std::get<Options>(parsed);
+        check_display();
+        if (options.screenshot) {
+            take_screenshot(options, *options.screenshot);
+        } else if (options.record) {
+            record(options, *options.record);
+        } else {
+            run(options);
+        }
+    } catch (const std::exception& error) {
+        std::cerr << "evoview: " << error.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

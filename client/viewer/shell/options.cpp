@@ -1,0 +1,164 @@
+#include "client/viewer/shell/options.h"
+
+#include "client/link/credentials.h"
+#include "client/viewer/drawing/gui.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace evod::viewer {
+
+namespace {
+
+constexpr int exit_usage = 2;
+
+constexpr const char* footer = R"(Keys: H in the window lists them. The window closes with Q; the worlds run on.
+
+A screenshot only watches: it sends no command, so the world must be running, or have
+reached the tick already. A recording steps the world from picture to picture if the role
+allows that, so that no tick is missed; the world goes on afterwards if it ran before. Without
+a screen both work under xvfb-run.
+
+  evoview lab.example:7744 --world default
+  evoview --start
+  evoview --screenshot out.png --at-tick 600
+  evoview --world default --beside fork --all-islands
+  evoview --record film.mp4 --past 12 --record-generations 1
+
+Without a server evoview goes to this machine's, or else to the start screen.
+
+Exit status: 0; 1 no picture could be had or written, no window opened, or a line of the script could
+not be done; 2 the command line or the script is wrong.)";
+
+constexpr unsigned pixels_min = 64, pixels_max = 8192;
+
+/// "1280x720" → width and height; the text of an error, or empty.
+std::string parse_size(const std::string& text, Options::Size& size) {
+    const char* end = text.data() + text.size();
+    const auto [cross, bad_width] = std::from_chars(text.data(), end, size.width);
+    if (bad_width == std::errc{} && cross != end && *cross == 'x') {
+        const auto [rest, bad_height] = std::from_chars(cross + 1, end, size.height);
+        const auto in_range = [](unsigned pixels) { return pixels >= pixels_min && pixels <= pixels_max; };
+        if (bad_height == std::errc{} && rest == end && in_range(size.width) && in_range(size.height)) {
+            return {};
+        }
+    }
+    return "\"" + text + "\" is no size like 1280x720, each from " + std::to_string(pixels_min) + " to " +
+           std::to_string(pixels_max);
+}
+
+Script read_script(const std::string& path) {
+    std::ifstream file{path};
+    if (!file) {
+        throw CLI::ValidationError{"--script", path + ": " + std::strerror(errno)};
+    }
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
+    auto script = Script::parse(text);
+    if (!script) {
+        throw CLI::ValidationError{"--script", path + ":" + script.error().what};
+    }
+    return *std::move(script);
+}
+
+} // namespace
+
+Options::Size size_of(const Options& options, double scale) {
+    const auto scaled = [&](double pixels) { return static_cast<unsigned>(pixels * scale); };
+    return options.size.value_or(Options::Size{scaled(1280), scaled(720)});
+}
+
+std::variant<Options, int> parse_options(int argc, const char* const* argv) {
+    Options options;
+    Options::Screenshot screenshot;
+    Options::Record record;
+    std::string server = "localhost", size;
+    CLI::App app{"evoview: a window into an evolution laboratory.", "evoview"};
+    app.footer(footer + std::string{"\n\nA script has these actions, one a line:\n"} + Script::reference());
+    app.set_version_flag("--version", "evoview " EVOD_VERSION);
+    auto* where = app.add_option("server,--server", server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
+                      ->envname("EVOD_SERVER")
+                      ->capture_default_str();
+    link::Credentials credentials;
+    add_options(app, credentials);
+    app.add_option("--world", options.world, "the world to look at; else the only one, or \"default\"")
+        ->envname("EVOD_WORLD");
+    app.add_option("--island", options.island, "its island, from 0")->capture_default_str();
+    app.add_flag("--all-islands", options.all_islands, "all islands at once, as tiles");
+    app.add_option("--beside", options.beside, "a second world, in the right half");
+    app.add_option("--past", options.past_generation, "look at the past of the world, from this generation on")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--size", size, "of the window or the pictures, in pixels; else 1280x720 times the scale");
+    app.add_option("--scale", options.scale, "of text and widgets; else as the screen needs it, 1 for pictures")
+        ->check(CLI::Range(Gui::scale_min, Gui::scale_max));
+    auto* start = app.add_flag("--start", options.start, "begin with the start screen");
+    auto* script = app.add_option("--script", options.script_path, "file with actions to be carried out in the window");
+    auto* shot = app.add_option("--screenshot", screenshot.path, "save one picture as this PNG file, open no window")
+                     ->excludes(start)
+                     ->excludes(script);
+    app.add_option("--at-tick", screenshot.tick, "of the first tick from this one on that the server shows")
+        ->needs(shot);
+    auto* film = app.add_option("--record", record.path,
+                                "save picture after picture, open no window: PNG files in this folder, or a film by\n"
+                                "ffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
+                     ->excludes(shot)
+                     ->excludes(start)
+                     ->excludes(script);
+    app.add_option("--record-ticks", record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
+        ->needs(film);
+    app.add_option("--record-generations", record.generations, "end when so many more generations have ended")
+        ->needs(film)
+        ->check(CLI::PositiveNumber);
+    app.add_option("--every", record.every_ticks, "ticks from one picture to the next")
+        ->needs(film)
+        ->capture_default_str()
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+    app.add_option("--fps", record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
+        ->needs(film)
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1000.0));
+    app.add_option("--timeout", screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1e6));
+    app.final_callback([&] {
+        if (const auto endpoint = link::parse_endpoint(server)) {
+            options.connection.server = *endpoint;
+        } else {
+            throw CLI::ValidationError{"--server", endpoint.error().what};
+        }
+        if (const auto known = link::apply(credentials, options.connection); !known) {
+            throw CLI::ValidationError{known.error().what};
+        }
+        if (app.count("--timeout") > 0 && screenshot.path.empty() && record.path.empty()) {
+            throw CLI::ValidationError{"--timeout", "is of --screenshot and --record"};
+        }
+        options.server_given = where->count() > 0;
+        if (!size.empty()) {
+            if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {
+                throw CLI::ValidationError{"--size", error};
+            }
+        }
+        if (!options.script_path.empty()) {
+            options.script = read_script(options.script_path);
+        }
+    });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : exit_usage;
+    }
+    if (!screenshot.path.empty()) {
+        options.screenshot = screenshot;
+    }
+    if (!record.path.empty()) {
+        record.timeout_s = screenshot.timeout_s;
+        options.record = record;
+    }
+    return options;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,167 @@
+#include "client/viewer/shell/start_screen.h"
+
+#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/widgets.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace evod::viewer {
+
+namespace {
+
+template <std::size_t size>
+void put(std::array<char, size>& field, const std::string& text) {
+    field.fill('\0');
+    std::memcpy(field.data(), text.data(), std::min(text.size(), size - 1));
+}
+
+} // namespace
+
+StartScreen::StartScreen(Screen& screen, const link::Options& begin_with)
+    : screen_{screen}
+    , options_{begin_with}
+    , recent_{RecentServers::default_file().value_or(std::filesystem::path{})}
+    , tls_{begin_with.tls.has_value()} {
+    put(address_, link::to_text(begin_with.server));
+    put(token_, begin_with.token);
+    put(ca_, begin_with.tls ? begin_with.tls->ca : "");
+}
+
+void StartScreen::remember(const link::Endpoint& server) {
+    recent_.add(server);
+}
+
+std::optional<link::Options> StartScreen::run() {
+    chosen_.reset();
+    closing_ = false;
+    sf::Window& window = screen_.window();
+    while (window.isOpen() && !chosen_) {
+        for (sf::Event event; screen_.poll(event);) {
+            closing_ = closing_ || event.type == sf::Event::Closed;
+        }
+        if (closing_) {
+            window.close();
+            break;
+        }
+        const Stage::Frame frame = screen_.frame(Screen::Clock::now());
+        screen_.show(nullptr, frame, [&] { screen_.stage().draw([&](const Gui& gui) { build(gui); }, frame); });
+    }
+    return chosen_;
+}
+
+void StartScreen::build(const Gui& gui) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const float scale = gui.scale();
+    ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({std::min(540 * scale, window.x), 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x, window.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {24 * scale, 20 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * scale);
+    ImGui::Begin("##start", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    ImGui::PushFont(&gui.title());
+    ImGui::TextUnformatted("evoview");
+    ImGui::PopFont();
+    widgets::say("A window into an evolution laboratory. Where is the server?");
+    ImGui::Dummy({0, 6 * scale});
+    if (!reason_.empty()) {
+        widgets::say(reason_, palette::warning);
+        widgets::mark("error");
+        ImGui::Dummy({0, 6 * scale});
+    }
+    const bool entered = build_fields(gui);
+    ImGui::Dummy({0, 6 * scale});
+    if (widgets::button("Connect") || entered) {
+        choose();
+    }
+    ImGui::SameLine();
+    if (widgets::button("Quit")) {
+        closing_ = true;
+    }
+    build_recent();
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+}
+
+bool StartScreen::build_fields(const Gui& gui) {
+    bool entered = false;
+    const float label_width = 90 * gui.scale();
+    const auto label = [&](const char* text) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        ImGui::SameLine(label_width);
+        ImGui::SetNextItemWidth(-1);
+    };
+    constexpr ImGuiInputTextFlags on_enter = ImGuiInputTextFlags_EnterReturnsTrue;
+    label("Server");
+    if (ImGui::IsWindowAppearing()) {
+        ImGui::SetKeyboardFocusHere();
+    }
+    entered |= ImGui::InputTextWithHint("##server", "host, host:port or [IPv6]:port", address_.data(), address_.size(),
+                                        on_enter | ImGuiInputTextFlags_AutoSelectAll);
+    widgets::mark("Server");
+    label("Token");
+    entered |= ImGui::InputTextWithHint("##token", "none", token_.data(), token_.size(),
+                                        on_enter | ImGuiInputTextFlags_Password);
+    widgets::mark("Token");
+    widgets::explain("Who you come as: the server's admin hands it out. It is sent to the server and kept nowhere.");
+    label("");
+    ImGui::Checkbox("TLS", &tls_);
+    widgets::mark("TLS");
+    widgets::explain("Encrypts the line, and checks that it is that server.");
+    if (tls_) {
+        label("CA file");
+        entered |= ImGui::InputTextWithHint("##ca", "those that this system trusts", ca_.data(), ca_.size(), on_enter);
+        widgets::mark("CA file");
+        widgets::explain("PEM file of who vouches for the server: its own evod.crt, perhaps.");
+    }
+    return entered;
+}
+
+void StartScreen::build_recent() {
+    if (!recent_.problem().empty()) {
+        ImGui::Separator();
+        widgets::say(recent_.problem(), palette::stopped);
+    }
+    if (recent_.addresses().empty()) {
+        return;
+    }
+    ImGui::Separator();
+    widgets::say("Recent servers");
+    for (const std::string& address : recent_.addresses()) {
+        if (ImGui::Selectable(address.c_str(), address == address_.data(), ImGuiSelectableFlags_AllowDoubleClick)) {
+            if (address != address_.data()) {
+                put(token_, ""); // it is for the other server
+            }
+            put(address_, address);
+            if (ImGui::IsMouseDoubleClicked(0)) {
+                choose();
+            }
+        }
+        widgets::mark(address);
+    }
+}
+
+void StartScreen::choose() {
+    const auto server = link::parse_endpoint(address_.data());
+    if (!server) {
+        reason_ = server.error().what;
+        return;
+    }
+    options_.server = *server;
+    options_.token = token_.data();
+    if (tls_) {
+        link::Options::Tls files = options_.tls.value_or(link::Options::Tls{});
+        files.ca = ca_.data();
+        options_.tls = files;
+    } else {
+        options_.tls.reset();
+    }
+    chosen_ = options_;
+}
+
+} // namespace evod::viewer

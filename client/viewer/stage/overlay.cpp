@@ -1,0 +1,248 @@
+#include "client/viewer/stage/overlay.h"
+
+#include "client/viewer/drawing/palette.h"
+#include "client/viewer/scene/scene.h"
+#include "client/viewer/watch/readout.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace evod::viewer {
+
+namespace {
+
+// In pixels at scale 1.
+constexpr float panel_strip = 26, top_strip = 38, bottom_strip = 30; // heights
+constexpr float edge = 14;                                           // between text and the window's edge
+constexpr std::chrono::seconds notice_shown{6};
+constexpr std::size_t notices_max = 4;
+
+ImU32 ink(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+ImVec2 size_of(const std::string& text, const ImFont& font, float wrap_width = 0) {
+    return font.CalcTextSizeA(font.FontSize, 1e9f, wrap_width, text.data(), text.data() + text.size());
+}
+
+/// Writes with the upper left corner at a whole pixel; returns where the text ends.
+float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, const std::string& text,
+            float wrap_width = 0) {
+    place = {std::floor(place.x), std::floor(place.y)};
+    list.AddText(&font, font.FontSize, place, ink(colour), text.data(), text.data() + text.size(), wrap_width);
+    return place.x + size_of(text, font, wrap_width).x;
+}
+
+/// A rounded sheet with text, its upper edge at `top`, in the middle of `place`; returns its lower edge.
+float sheet(ImDrawList& list, const Gui& gui, Rectangle place, float top, Colour paper, const std::string& text) {
+    const ImFont& font = gui.text();
+    const float inside = 12 * gui.scale();
+    const auto centre_x = static_cast<float>(place.centre().x);
+    const float wrap_width = std::max(static_cast<float>(place.width) - 6 * inside, 100.f);
+    const ImVec2 size = size_of(text, font, wrap_width);
+    const ImVec2 corner{std::floor(centre_x - size.x / 2 - inside), std::floor(top)};
+    const ImVec2 other{corner.x + size.x + 2 * inside, corner.y + size.y + 2 * inside};
+    list.AddRectFilled(corner, other, ink(paper), 6 * gui.scale());
+    write(list, font, {corner.x + inside, corner.y + inside}, palette::note_text, text, wrap_width);
+    return other.y;
+}
+
+Colour state_colour(const Watch& watch) {
+    const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING && !link::worlds_wait(watch.storage());
+    return runs ? palette::running : palette::stopped;
+}
+
+} // namespace
+
+Rectangle panel_strip_of(unsigned width_pixels, double scale) {
+    return {0, 0, double(width_pixels), std::round(panel_strip * scale)};
+}
+
+Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale) {
+    const double top = panel_strip_of(width_pixels, scale).height;
+    return {0, top, double(width_pixels), std::max(height_pixels - top, 1.0)};
+}
+
+Rectangle viewport_of(Rectangle place, double scale) {
+    const double top = std::round(top_strip * scale), bottom = std::round(bottom_strip * scale);
+    return {place.left, place.top + top, place.width, std::max(place.height - top - bottom, 1.0)};
+}
+
+void Overlay::notice(std::string text, Clock::time_point now) {
+    std::erase_if(notices_, [&](const Notice& shown) { return shown.text == text; });
+    notices_.push_back({std::move(text), now + notice_shown});
+    if (notices_.size() > notices_max) {
+        notices_.pop_front();
+    }
+}
+
+void Overlay::build_world(const Watch& watch, const Gui& gui, Rectangle place, bool focused) {
+    build_strips(watch, gui, place, focused);
+    build_connection(watch, gui, place);
+}
+
+void Overlay::build(const Gui& gui, std::span<const std::string_view> panels, Clock::time_point now) {
+    build_notices(gui, now);
+    if (help_) {
+        build_help(gui, panels);
+    }
+}
+
+void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, bool focused) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const float scale = gui.scale(), margin = edge * scale, title_height = std::round(top_strip * scale);
+    const auto left = static_cast<float>(place.left), right = left + static_cast<float>(place.width);
+    const auto top = static_cast<float>(place.top), end = top + static_cast<float>(place.height);
+    const float bottom = end - std::round(bottom_strip * scale);
+    list.AddRectFilled({left, top}, {right, top + title_height}, ink(palette::strip));
+    list.AddRectFilled({left, top + title_height - 1}, {right, top + title_height}, ink(palette::strip_edge));
+    list.AddRectFilled({left, bottom}, {right, end}, ink(palette::strip));
+    list.AddRectFilled({left, bottom}, {right, bottom + 1}, ink(palette::strip_edge));
+    if (focused) {
+        list.AddRectFilled({left, top}, {right, top + 3 * scale}, ink(palette::focus));
+    }
+    const wire::Picture* picture = watch.picture();
+    if (picture == nullptr) {
+        return;
+    }
+    const ImFont& text = gui.text();
+    float title_begin = left + margin;
+    const float top_line = top + (title_height - text.FontSize) / 2 - 1;
+    if (watch.recording() != nullptr) {
+        const std::string mark = past_mark(*watch.recording());
+        const float mark_end = title_begin + size_of(mark, text).x + 16 * scale;
+        list.AddRectFilled({title_begin, top + 7 * scale}, {mark_end, top + title_height - 8 * scale},
+                           ink(palette::past), 4 * scale);
+        write(list, text, {title_begin + 8 * scale, top_line}, palette::text, mark);
+        title_begin = mark_end + margin;
+    }
+    const float title_end = write(list, gui.title(), {title_begin, top + (title_height - gui.title().FontSize) / 2 - 1},
+                                  palette::text, title(picture->about));
+
+    const std::string state = shown_state(watch.control().state(), watch.storage());
+    const std::string help = "H help";
+    const float help_begin = right - margin - size_of(help, text).x;
+    const float state_begin = help_begin - 2 * margin - size_of(state, text).x;
+    write(list, text, {help_begin, top_line}, palette::text_quiet, help);
+    if (state_begin > title_end + margin) {
+        write(list, text, {state_begin, top_line}, state_colour(watch), state);
+    }
+    for (const std::string& about : {place_and_speed(picture->about, watch.control()), picture->about.world()}) {
+        const float about_begin = state_begin - 2 * margin - size_of(about, text).x;
+        if (about_begin > title_end + margin) {
+            write(list, text, {about_begin, top_line}, palette::text, about);
+            break;
+        }
+    }
+
+    float x = left + margin;
+    for (const std::string& piece : statistics(picture->about, watch.last_generation())) {
+        if (x + size_of(piece, text).x > right - margin) {
+            break;
+        }
+        x = write(list, text, {x, bottom + (end - bottom - text.FontSize) / 2 - 1}, palette::text, piece) + 26 * scale;
+    }
+}
+
+void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle place) {
+    const link::ConnectionStatus status = watch.connection_status();
+    const std::string server = link::to_text(watch.server());
+    const std::string trouble = shown_storage(watch.storage());
+    std::string text;
+    if (status.state == link::State::Failed) {
+        text = "No connection to " + server + ": " + status.reason + "\nBackspace goes to the start screen";
+    } else if (status.state != link::State::Connected) {
+        text = "Connecting to " + server + " …" + (status.reason.empty() ? "" : "\n" + status.reason + "; retrying");
+    } else if (const auto refusal = watch.refusal()) {
+        text = *refusal + "\nW shows another world, Tab another island";
+    } else if (watch.picture() == nullptr) {
+        text = "Waiting for the first picture …" + (trouble.empty() ? "" : "\n" + trouble);
+    } else if (!trouble.empty()) {
+        text = trouble;
+    } else {
+        return;
+    }
+    const bool bad = status.state == link::State::Failed || watch.refusal() ||
+                     (status.state == link::State::Connected && !trouble.empty());
+    const double below = watch.picture() == nullptr ? place.height * 0.42 : (top_strip + 16) * gui.scale();
+    sheet(*ImGui::GetForegroundDrawList(), gui, place, static_cast<float>(place.top + below),
+          bad ? palette::warning : palette::note, text);
+}
+
+void Overlay::build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const float scale = gui.scale();
+    const std::string text = "island " + std::to_string(island);
+    const ImVec2 size = size_of(text, gui.label());
+    const ImVec2 corner{static_cast<float>(place.left), static_cast<float>(place.top)};
+    list.AddRectFilled(corner, {corner.x + size.x + 12 * scale, corner.y + size.y + 4 * scale},
+                       ink(chosen ? palette::focus : palette::note), 3 * scale);
+    write(list, gui.label(), {corner.x + 6 * scale, corner.y + 2 * scale}, palette::note_text, text);
+}
+
+void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
+    while (!notices_.empty() && notices_.front().until < now) {
+        notices_.pop_front();
+    }
+    std::string text;
+    for (const Notice& notice : notices_) {
+        text += (text.empty() ? "" : "\n") + notice.text;
+    }
+    if (!text.empty()) {
+        const ImVec2 window = ImGui::GetIO().DisplaySize;
+        const float height = size_of(text, gui.text()).y;
+        sheet(*ImGui::GetForegroundDrawList(), gui, {0, 0, window.x, window.y},
+              window.y - (bottom_strip + 40) * gui.scale() - height, palette::note, text);
+    }
+}
+
+void Overlay::build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui) {
+    char text[96];
+    std::snprintf(text, sizeof text, "organism %u\nhealth %.1f\nradius %.1f px", picture.organisms.id[organism],
+                  double{picture.organisms.health[organism]}, double{picture.organisms.radius_px[organism]});
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const ImVec2 size = size_of(text, gui.label());
+    const float scale = gui.scale();
+    const ImVec2 corner{
+        std::min(static_cast<float>(screen.x) + 16 * scale, window.x - size.x - 20 * scale),
+        std::min(static_cast<float>(screen.y) + 16 * scale, window.y - (bottom_strip + 20) * scale - size.y)};
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled(corner, {corner.x + size.x + 16 * scale, corner.y + size.y + 12 * scale}, ink(palette::note),
+                       5 * scale);
+    write(list, gui.label(), {corner.x + 8 * scale, corner.y + 6 * scale}, palette::note_text, text);
+}
+
+void Overlay::build_help(const Gui& gui, std::span<const std::string_view> panels) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const float scale = gui.scale();
+    const auto line = [](std::string_view keys, std::string_view text) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(keys.data(), keys.data() + keys.size());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    };
+    ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {18 * scale, 14 * scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * scale);
+    ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {10 * scale, 2 * scale});
+    ImGui::Begin("Keys", &help_,
+                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const HelpLine& help : help_lines()) {
+            line(help.keys, help.text);
+        }
+        for (std::size_t i = 0; i < panels.size(); ++i) {
+            line(panel_key(i), "show or hide the panel " + std::string{panels[i]});
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(3);
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,67 @@
+// Overlay: what is written over and around the island: strips of text, help, notices, and how the connection stands.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/watch/watch.h"
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace evod::viewer {
+
+/// The strip at the top of a window that hands act upon, with the names of the panels.
+Rectangle panel_strip_of(unsigned width_pixels, double scale = 1);
+/// What that strip leaves to the worlds.
+Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale = 1);
+
+/// The part of a window, or of a place in it, that the strips of a world leave to the island.
+Rectangle viewport_of(Rectangle place, double scale = 1);
+inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
+    return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
+}
+
+class Overlay {
+  public:
+    using Clock = link::WorldView::Clock;
+
+    /// Shows a sentence for some seconds.
+    void notice(std::string text, Clock::time_point now);
+    void toggle_help() { help_ = !help_; }
+    bool help() const { return help_; }
+    void close_help() { help_ = false; }
+
+    // Between Gui::begin() and Gui::draw():
+    /// Notices and help, over the whole window.
+    ///
+    /// panels  their titles, for the help
+    void build(const Gui& gui, std::span<const std::string_view> panels, Clock::time_point now);
+    /// The strips of a world that is shown at a place of the window, and how its connection stands.
+    void build_world(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
+    /// Which island a tile shows.
+    void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
+    /// What is known of one organism, beside it.
+    void build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui);
+
+  private:
+    struct Notice {
+        std::string text;
+        Clock::time_point until;
+    };
+
+    void build_strips(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
+    void build_connection(const Watch& watch, const Gui& gui, Rectangle place);
+    void build_notices(const Gui& gui, Clock::time_point now);
+    void build_help(const Gui& gui, std::span<const std::string_view> panels);
+
+    bool help_ = false;
+    std::deque<Notice> notices_;
+};
+
+} // namespace evod::viewer

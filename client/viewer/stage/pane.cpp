@@ -1,0 +1,140 @@
+#include "client/viewer/stage/pane.h"
+
+#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/stage/overlay.h"
+
+#include <algorithm>
+
+namespace evod::viewer {
+
+// ---- one pane --------------------------------------------------------------------------------------------------
+
+std::vector<Tile> Pane::tiles() {
+    std::vector<Tile> tiles;
+    const std::uint32_t count = watch.all_islands() ? watch.island_count() : 1;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t island = watch.all_islands() ? i : watch.island();
+        tiles.push_back({island, watch.view_of(island), camera_of(island)});
+    }
+    return tiles;
+}
+
+const Sight& Pane::sight_of(const Tile& tile) {
+    if (tile.island == watch.island()) {
+        return sight;
+    }
+    others_.shown = sight.shown;
+    return others_;
+}
+
+void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
+    const double height = with_timeline && watch.recording() ? Timeline::height_pixels * scale : 0;
+    place_ = {place.left, place.top, place.width, std::max(place.height - height, 1.0)};
+    timeline_place_ = {place.left, place.top + place_.height, place.width, height};
+    const std::vector<Tile> all = tiles();
+    double aspect = 1;
+    for (const Tile& tile : all) {
+        if (const auto& picture = tile.view.latest()) {
+            tile.camera.set_island(picture->about.width_px(), picture->about.height_px());
+            aspect = picture->about.width_px() / std::max(picture->about.height_px(), 1.0);
+        }
+    }
+    const std::vector<Rectangle> places = in_tiles(viewport_of(place_, scale), all.size(), aspect);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        all[i].camera.set_viewport(places[i]);
+    }
+}
+
+// ---- all of them -----------------------------------------------------------------------------------------------
+
+Panes::Panes(const Options& options, double rate_hz)
+    : wanted_{.connection = options.connection,
+              .world = options.world,
+              .island = options.island,
+              .rate_hz = rate_hz,
+              .all_islands = options.all_islands,
+              .past_generation = options.past_generation} {
+    panes_.push_back(std::make_unique<Pane>(wanted_));
+    wanted_.past_generation.reset();
+    if (options.beside) {
+        wanted_.world = *options.beside;
+        panes_.push_back(std::make_unique<Pane>(wanted_));
+    }
+}
+
+void Panes::update(link::WorldView::Clock::time_point now) {
+    for (const auto& pane : panes_) {
+        pane->watch.update(now);
+    }
+}
+
+void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale) {
+    const Rectangle whole = interactive ? below_panel_strip(width_pixels, height_pixels, scale)
+                                        : Rectangle{0, 0, double(width_pixels), double(height_pixels)};
+    const auto columns = side_by_side(whole, panes_.size());
+    for (std::size_t i = 0; i < panes_.size(); ++i) {
+        panes_[i]->lay_out(columns[i], interactive, scale);
+    }
+}
+
+bool Panes::focus_at(Point screen) {
+    for (std::size_t i = 0; i < panes_.size(); ++i) {
+        if (!panes_[i]->place().contains(screen) && !panes_[i]->timeline_place().contains(screen)) {
+            continue;
+        }
+        focus_ = i;
+        for (const Tile& tile : panes_[i]->tiles()) {
+            if (tile.camera.viewport().contains(screen)) {
+                panes_[i]->watch.choose_island(tile.island);
+                break;
+            }
+        }
+        return true;
+    }
+    return false;
+}
+
+Camera& Panes::camera_at(Point screen) {
+    for (const auto& pane : panes_) {
+        for (const Tile& tile : pane->tiles()) {
+            if (tile.camera.viewport().contains(screen)) {
+                return tile.camera;
+            }
+        }
+    }
+    return focused().camera();
+}
+
+void Panes::toggle_beside() {
+    if (panes_.size() > 1) {
+        panes_.erase(panes_.begin() + static_cast<std::ptrdiff_t>(1 - focus_));
+        focus_ = 0;
+        return;
+    }
+    const Watch& shown = focused().watch;
+    const bool present = shown.opened_past();
+    wanted_.world = !shown.forked().empty() ? shown.forked() : present ? shown.recording()->past_of() : shown.world();
+    wanted_.island = shown.island();
+    wanted_.all_islands = shown.all_islands();
+    const bool same = wanted_.world == shown.world();
+    panes_.push_back(std::make_unique<Pane>(wanted_));
+    focus_ = 1;
+    if (same) {
+        focused().watch.next_world();
+    }
+}
+
+void Panes::link_cameras(const Camera& leader) {
+    if (!linked_) {
+        return;
+    }
+    for (const auto& pane : panes_) {
+        for (const Tile& tile : pane->tiles()) {
+            if (&tile.camera != &leader) {
+                tile.camera.look_as(leader);
+            }
+        }
+    }
+}
+
+} // namespace evod::viewer

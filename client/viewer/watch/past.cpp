@@ -1,0 +1,58 @@
+#include "client/viewer/watch/past.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace evod::viewer {
+
+std::optional<evod::v1::RunMoment> Seeks::ask(evod::v1::RunMoment to) {
+    if (under_way_) {
+        next_ = std::move(to);
+        return std::nullopt;
+    }
+    under_way_ = std::move(to);
+    return under_way_;
+}
+
+std::optional<evod::v1::RunMoment> Seeks::answered() {
+    under_way_ = std::exchange(next_, std::nullopt);
+    return under_way_;
+}
+
+const evod::v1::RunMoment* Seeks::target() const {
+    return next_ ? &*next_ : under_way_ ? &*under_way_ : nullptr;
+}
+
+double TimeScale::x_of(std::uint64_t tick) const {
+    if (last_tick <= first_tick) {
+        return left;
+    }
+    const auto ticks = static_cast<double>(std::clamp(tick, first_tick, last_tick) - first_tick);
+    return left + width * ticks / static_cast<double>(last_tick - first_tick);
+}
+
+std::uint64_t TimeScale::tick_at(double x) const {
+    const double part = std::clamp((x - left) / std::max(width, 1.0), 0.0, 1.0);
+    return first_tick + static_cast<std::uint64_t>(std::round(part * static_cast<double>(last_tick - first_tick)));
+}
+
+std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t last, std::size_t count_max) {
+    std::vector<std::uint64_t> marked;
+    if (count_max == 0 || last < first) {
+        return marked;
+    }
+    const auto count = [&](std::uint64_t step) {
+        return last / step - (first - std::min<std::uint64_t>(first, 1)) / step;
+    };
+    std::uint64_t step = 1;
+    for (int next = 0; count(step) > count_max; ++next) {
+        step = next % 3 == 1 ? step / 2 * 5 : step * 2; // 1, 2, 5, 10, 20, 50, …
+    }
+    for (std::uint64_t generation = (first + step - 1) / step * step; generation <= last; generation += step) {
+        marked.push_back(generation);
+    }
+    return marked;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,128 @@
+#include "client/viewer/watch/readout.h"
+
+#include "client/link/connection.h"
+
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+
+namespace evod::viewer {
+
+namespace {
+
+template <class... Arguments>
+std::string print(const char* format, Arguments... arguments) {
+    char text[128];
+    std::snprintf(text, sizeof text, format, arguments...);
+    return text;
+}
+
+} // namespace
+
+std::string with_separators(std::uint64_t number) {
+    std::string digits = std::to_string(number);
+    for (std::size_t end = digits.size(); end > 3; end -= 3) {
+        digits.insert(end - 3, ",");
+    }
+    return digits;
+}
+
+std::string shown_tenths(double number) {
+    return print("%.1f", number);
+}
+
+std::string shown_duration(double seconds) {
+    const double tenths = std::floor(seconds * 10 + 1e-6); // a time that has passed is never shown before it has
+    const auto minutes = static_cast<std::uint64_t>(tenths / 600);
+    const double rest = (tenths - 600 * static_cast<double>(minutes)) / 10;
+    return minutes == 0 ? print("%.1f s", rest) : with_separators(minutes) + print(":%04.1f", rest);
+}
+
+std::string shown_speed(const evod::v1::Speed& speed) {
+    if (speed.max()) {
+        return "max";
+    }
+    const double factor = speed.real_time_factor();
+    // Halvings are told as fractions: 1/8× says more than 0.125×.
+    const double inverse = factor > 0 ? 1 / factor : 0;
+    return factor > 0 && factor < 1 && inverse == std::round(inverse) ? print("1/%g×", inverse) : print("%g×", factor);
+}
+
+std::string shown_storage(const evod::v1::Storage& storage) {
+    switch (storage.state()) {
+    case evod::v1::STORAGE_STATE_FAILING:
+        return "Commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_STALLED:
+        return "Worlds wait for the disk, commands are refused: " + storage.reason();
+    case evod::v1::STORAGE_STATE_BEHIND:
+        return "Worlds wait for the disk: " + storage.reason();
+    default:
+        return "";
+    }
+}
+
+const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage) {
+    switch (state) {
+    case evod::v1::RUN_STATE_WAITING:
+        return "waiting – Space runs";
+    case evod::v1::RUN_STATE_RUNNING:
+        return link::worlds_wait(storage) ? "waits for the disk" : "running";
+    case evod::v1::RUN_STATE_PAUSED:
+        return "paused";
+    case evod::v1::RUN_STATE_TERMINATED:
+        return "ended";
+    default:
+        return "…";
+    }
+}
+
+std::string shown_refusal(const evod::v1::Status& status) {
+    std::string text = status.message();
+    if (!text.empty()) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    }
+    for (const evod::v1::Violation& violation : status.violations()) {
+        text += (violation.got().empty() ? "" : " (" + violation.got() + ")") + "; allowed: " + violation.allowed();
+    }
+    return text;
+}
+
+std::string title(const evod::v1::SnapshotFrame& picture) {
+    return "Generation " + with_separators(picture.generation());
+}
+
+std::string past_mark(const evod::v1::Recording& recording) {
+    return recording.past_of().empty() ? "REPLAY" : "PAST of " + recording.past_of();
+}
+
+std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control) {
+    std::string text = picture.world();
+    if (picture.island_count() > 1) {
+        text += print(" · island %u of 0–%u", picture.island(), picture.island_count() - 1);
+    }
+    text += " · " + shown_speed(control.speed());
+    if (control.state() == evod::v1::RUN_STATE_RUNNING && picture.ticks_per_s() > 0) {
+        text += " (" + with_separators(static_cast<std::uint64_t>(std::llround(picture.ticks_per_s()))) + " ticks/s)";
+    }
+    return text;
+}
+
+std::vector<std::string> statistics(const evod::v1::SnapshotFrame& picture,
+                                    const evod::v1::GenerationStatistics* last_generation) {
+    const evod::v1::LiveStatistics& live = picture.live();
+    std::vector<std::string> pieces{
+        "alive " + with_separators(live.alive_count()) + " of " + with_separators(live.organism_count()),
+        print("mean health %.1f", live.health_mean()),
+        "food eaten " + with_separators(live.food_eaten()),
+        "poison eaten " + with_separators(live.poison_eaten()),
+        "tick " + with_separators(picture.tick()) + " (" + shown_duration(picture.simulated_s()) + ")",
+    };
+    if (last_generation != nullptr) {
+        pieces.push_back(print("fitness of generation %llu: best %.1f, mean %.1f",
+                               static_cast<unsigned long long>(last_generation->generation()),
+                               last_generation->fitness_best(), last_generation->fitness_mean()));
+    }
+    return pieces;
+}
+
+} // namespace evod::viewer

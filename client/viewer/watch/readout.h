@@ -1,0 +1,40 @@
+// Readout: what the strips at the top and at the bottom of the window say, as text.
+//
+// Threads      none.
+#pragma once
+
+#include "client/viewer/watch/run_control.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace evod::viewer {
+
+std::string with_separators(std::uint64_t number);     // 1234567 → "1,234,567"
+std::string shown_tenths(double number);               // 251.34 → "251.3"
+std::string shown_duration(double seconds);            // 75.25 → "1:15.2"
+std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
+/// storage  as it stands: a world that runs may have to wait for it.
+const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage);
+
+/// What a person has to know of it: "Commands are refused: …", "Worlds wait for the disk: …"; empty while it keeps up.
+std::string shown_storage(const evod::v1::Storage& storage);
+
+/// Why the server says no, for a person: "There is no such island (9); allowed: 0 to 7".
+std::string shown_refusal(const evod::v1::Status& status);
+
+/// "Generation 12"; empty before the first picture.
+std::string title(const evod::v1::SnapshotFrame& picture);
+
+/// Before the title of a world that shows what has been: "PAST of default", or "REPLAY" of a run file.
+std::string past_mark(const evod::v1::Recording& recording);
+
+/// "default · island 2 of 0–7 · 4× (240 ticks/s)"; the state is written beside it.
+std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control);
+
+/// The statistics line in pieces, the more important first, so that a narrow window leaves out the others.
+std::vector<std::string> statistics(const evod::v1::SnapshotFrame& picture,
+                                    const evod::v1::GenerationStatistics* last_generation);
+
+} // namespace evod::viewer

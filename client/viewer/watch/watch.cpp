@@ -1,0 +1,473 @@
+#include "client/viewer/watch/watch.h"
+
+#include "client/viewer/watch/readout.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::viewer {
+namespace {
+
+// A moment of the past may have to be simulated again from far before it.
+constexpr std::chrono::minutes journey_max{10};
+constexpr std::chrono::seconds ask_how_far{1}; // the past grows while its world lives on
+
+link::Options as_evoview(link::Options options) {
+    options.client_name = "evoview";
+    options.client_version = EVOD_VERSION;
+    return options;
+}
+
+} // namespace
+
+Watch::Watch(Wanted wanted) : wanted_{std::move(wanted)}, connection_{as_evoview(wanted_.connection)} {
+    events_ = connection_.subscribe(evod::v1::SubscribeEvents{}); // of all worlds: one that is missing may be made
+    subscribe();
+    if (wanted_.past_generation) {
+        evod::v1::RunMoment at;
+        at.set_generation(*wanted_.past_generation);
+        open_past(at);
+    }
+}
+
+void Watch::subscribe() {
+    evod::v1::SubscribeSnapshots subscription;
+    subscription.set_world(wanted_.world);
+    if (!wanted_.all_islands) {
+        subscription.set_island(wanted_.island);
+    }
+    subscription.set_rate_hz(wanted_.rate_hz);
+    if (pictures_view_) {
+        *subscription.mutable_view() = *pictures_view_;
+    }
+    pictures_ = connection_.subscribe(subscription);
+}
+
+/// Once a second of everything, as densities, beside a view; and nothing without one.
+void Watch::subscribe_overview() {
+    if (overview_) {
+        connection_.unsubscribe(*std::exchange(overview_, std::nullopt));
+        overview_picture_ = nullptr;
+    }
+    if (pictures_view_) {
+        evod::v1::SubscribeSnapshots subscription;
+        subscription.set_world(wanted_.world);
+        subscription.set_island(wanted_.island);
+        subscription.set_rate_hz(1);
+        subscription.mutable_view()->set_detail(evod::v1::DETAIL_DENSITY);
+        overview_ = connection_.subscribe(subscription);
+    }
+}
+
+void Watch::look_at(std::string world, std::uint32_t island) {
+    if (world != wanted_.world) {
+        control_.forget();
+        last_generation_.clear();
+        unanswered_.clear(); // what they would tell is of the other world
+        recording_.reset();
+        seeks_.forget();
+        past_refusal_.reset();
+        if (present_) {
+            connection_.unsubscribe(past_events_);
+            close_past(wanted_.world);
+            present_.reset();
+        }
+    }
+    wanted_.world = std::move(world);
+    wanted_.island = island;
+    selected_.reset();
+    pictures_view_.reset();
+    subscribe_overview();
+    views_.clear();
+    connection_.unsubscribe(pictures_);
+    subscribe();
+    ask_state();
+}
+
+void Watch::set_view(std::optional<evod::v1::View> view) {
+    const bool had_one = pictures_view_.has_value();
+    pictures_view_ = std::move(view);
+    if (had_one && pictures_view_) {
+        connection_.set_view(pictures_, *pictures_view_);
+    } else if (had_one || pictures_view_) { // a subscription has views for as long as it lives, or none
+        connection_.unsubscribe(pictures_);
+        subscribe();
+        subscribe_overview();
+    }
+}
+
+void Watch::turn_islands(int by) {
+    if (const wire::Picture* shown = picture()) {
+        const auto count = std::max<std::int64_t>(shown->about.island_count(), 1);
+        const std::int64_t island = (std::int64_t{wanted_.island} + by + count) % count;
+        choose_island(static_cast<std::uint32_t>(island));
+    } else { // one that the world may not have
+        choose_island(0);
+    }
+}
+
+void Watch::choose_island(std::uint32_t island) {
+    if (island == wanted_.island) {
+        return;
+    }
+    if (wanted_.all_islands) {
+        wanted_.island = island;
+        selected_.reset();
+    } else {
+        look_at(wanted_.world, island);
+    }
+}
+
+void Watch::show_all_islands(bool all) {
+    if (all != wanted_.all_islands) {
+        wanted_.all_islands = all;
+        look_at(wanted_.world, wanted_.island);
+    }
+}
+
+// ---- the past --------------------------------------------------------------------------------------------------
+
+void Watch::open_past(evod::v1::RunMoment at) {
+    if (recording_ || opening_.valid()) {
+        return;
+    }
+    past_refusal_.reset();
+    evod::v1::Request request;
+    request.mutable_open_past()->set_world(wanted_.world);
+    *request.mutable_open_past()->mutable_at() = std::move(at);
+    opening_of_ = wanted_.world;
+    opening_ = connection_.send(std::move(request), journey_max);
+}
+
+void Watch::take_opened() {
+    if (!opening_.valid() || opening_.wait_for(std::chrono::seconds{0}) != std::future_status::ready) {
+        return;
+    }
+    const auto response = opening_.get();
+    if (!response || !link::accepted(*response)) {
+        notices_.push_back(response ? shown_refusal(response->status()) : response.error().what);
+        if (wanted_.past_generation) {
+            past_refusal_ = notices_.back();
+        }
+    } else if (wanted_.world != opening_of_) { // somebody looks elsewhere by now
+        close_past(response->world().name());
+    } else {
+        const evod::v1::WorldInfo& past = response->world();
+        look_at(past.name(), wanted_.island);
+        present_ = past.recording().past_of();
+        see(past);
+        evod::v1::SubscribeEvents subscription;
+        subscription.set_world(past.name());
+        past_events_ = connection_.subscribe(subscription);
+    }
+    wanted_.past_generation.reset();
+}
+
+void Watch::close_past(const std::string& world) {
+    evod::v1::Request request;
+    request.mutable_close_past()->set_world(world);
+    connection_.send(std::move(request)); // gone with the session at the latest, whatever the answer
+}
+
+void Watch::return_to_present() {
+    if (present_) {
+        look_at(*present_, wanted_.island);
+    }
+}
+
+void Watch::seek(evod::v1::RunMoment to) {
+    if (recording_) {
+        send_seek(seeks_.ask(std::move(to)));
+    }
+}
+
+void Watch::send_seek(std::optional<evod::v1::RunMoment> to) {
+    if (!to) {
+        return;
+    }
+    evod::v1::Request request;
+    request.mutable_seek()->set_world(name());
+    *request.mutable_seek()->mutable_to() = *std::move(to);
+    auto arrived = [this](const link::Result<evod::v1::Response>& response) {
+        if (!response || !link::accepted(*response)) {
+            notices_.push_back(response ? shown_refusal(response->status()) : response.error().what);
+        } else {
+            see(response->world());
+        }
+        if (auto next = seeks_.answered()) {
+            send_seek(std::move(next));
+        } else {
+            ask_state(); // the generation before is another one
+        }
+    };
+    unanswered_.push_back({false, std::move(arrived), connection_.send(std::move(request), journey_max)});
+}
+
+void Watch::turn_generations(int by) {
+    const evod::v1::RunMoment* target = seeks_.target();
+    if (!recording_ || !(picture() || (target && target->has_generation()))) {
+        return;
+    }
+    const auto from = target && target->has_generation() ? target->generation() : picture()->about.generation();
+    const auto to = static_cast<std::int64_t>(from) + by;
+    evod::v1::RunMoment moment;
+    moment.set_generation(std::clamp(static_cast<std::uint64_t>(std::max<std::int64_t>(to, 1)),
+                                     recording_->first_generation(), recording_->last_generation()));
+    seek(std::move(moment));
+}
+
+void Watch::fork(const std::string& name) {
+    evod::v1::Request request;
+    request.mutable_fork_world()->set_world(this->name());
+    request.mutable_fork_world()->set_name(name);
+    ask(std::move(request), [this, name](const link::Result<evod::v1::Response>& response) {
+        if (response && link::accepted(*response)) {
+            forked_ = name;
+            notices_.push_back("The world " + name + " begins here; B shows it beside");
+        } else {
+            notices_.push_back(response ? shown_refusal(response->status()) : response.error().what);
+        }
+    });
+}
+
+// ---- requests --------------------------------------------------------------------------------------------------
+
+void Watch::send(std::optional<evod::v1::Request> request) {
+    if (request) {
+        const bool is_command = !request->has_get_statistics() && !request->has_list_worlds();
+        unanswered_.push_back({is_command, {}, connection_.send(*std::move(request))});
+    }
+}
+
+void Watch::ask(evod::v1::Request request, Answer handler) {
+    unanswered_.push_back({false, std::move(handler), connection_.send(std::move(request))});
+}
+
+void Watch::next_world() {
+    evod::v1::Request request;
+    request.mutable_list_worlds();
+    send(std::move(request));
+}
+
+void Watch::ask_state() {
+    evod::v1::Request request;
+    request.mutable_get_statistics()->set_world(wanted_.world);
+    send(std::move(request));
+}
+
+bool Watch::is_over() {
+    const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED;
+    if (over) {
+        notices_.push_back("The run has ended; a reset of the world begins it again");
+    }
+    return over;
+}
+
+void Watch::pause_or_resume() {
+    if (!is_over()) {
+        send(control_.pause_or_resume());
+    }
+}
+
+void Watch::step(std::uint64_t ticks) {
+    if (!is_over()) {
+        send(control_.step(ticks));
+    }
+}
+
+void Watch::run_generations(std::uint64_t generations) {
+    if (!is_over()) {
+        send(control_.run_generations(generations));
+    }
+}
+
+std::string_view Watch::why_only_watching() const {
+    return role_ == evod::v1::ROLE_VIEWER && !opened_past()
+               ? "You came as a viewer, who sees everything and changes nothing"
+               : "";
+}
+
+// ---- what comes ------------------------------------------------------------------------------------------------
+
+bool Watch::update(link::WorldView::Clock::time_point now) {
+    if (const auto status = connection_.status(); status.connected_count != connected_count_) {
+        connected_count_ = status.connected_count;
+        role_ = status.welcome ? status.welcome->role() : evod::v1::ROLE_UNSPECIFIED;
+        storage_ = status.welcome ? status.welcome->storage() : evod::v1::Storage{};
+        if (present_) {
+            notices_.push_back("The connection was lost, and the look at the past with it");
+            return_to_present();
+        } else {
+            ask_state();
+        }
+    }
+    if (present_ && now - asked_ > ask_how_far) {
+        asked_ = now;
+        ask_state();
+    }
+    // Events tell what became of what was answered, and have to be heard after it.
+    take_answers();
+    take_opened();
+    new_events_ = connection_.take_events();
+    for (const evod::v1::Event& event : new_events_) {
+        take_event(event);
+    }
+    if (auto overview = overview_ ? connection_.take_picture(*overview_, wanted_.island) : nullptr) {
+        overview_picture_ = std::move(overview);
+    }
+    auto pictures = connection_.take_pictures(pictures_);
+    for (auto& picture : pictures) {
+        if (control_.known() && picture->about.run_id() != control_.run_id()) {
+            ask_state(); // another run has another generation before
+        }
+        control_.see(picture->about);
+        views_[picture->about.island()].add(std::move(picture), now);
+    }
+    return !pictures.empty();
+}
+
+void Watch::take_answers() {
+    for (std::size_t i = 0; i < unanswered_.size();) {
+        if (unanswered_[i].response.wait_for(std::chrono::seconds{0}) != std::future_status::ready) {
+            ++i;
+            continue;
+        }
+        Unanswered answered = std::move(unanswered_[i]);
+        unanswered_.erase(unanswered_.begin() + static_cast<std::ptrdiff_t>(i));
+        const auto response = answered.response.get();
+        if (answered.handler) {
+            answered.handler(response);
+        } else if (answered.is_command) {
+            take_command_answer(response);
+        } else if (response && response->has_statistics()) {
+            take_statistics(response->statistics());
+        } else if (response && response->has_worlds()) {
+            take_worlds(response->worlds());
+        } // a refused query: what keeps the pictures away is told by refusal()
+    }
+}
+
+void Watch::take_command_answer(const link::Result<evod::v1::Response>& response) {
+    if (!response) {
+        notices_.push_back(response.error().what);
+    } else if (!link::accepted(*response)) {
+        notices_.push_back(shown_refusal(response->status()));
+    }
+    send(control_.answered(response ? &*response : nullptr));
+}
+
+void Watch::see(const evod::v1::WorldInfo& world) {
+    control_.see(world);
+    recording_.reset();
+    if (world.has_recording()) {
+        recording_ = world.recording();
+    }
+}
+
+void Watch::take_statistics(const evod::v1::Statistics& statistics) {
+    see(statistics.world());
+    storage_ = statistics.world().storage();
+    last_generation_.assign(statistics.last().begin(), statistics.last().end());
+}
+
+void Watch::take_worlds(const evod::v1::WorldList& worlds) {
+    const auto& list = worlds.worlds();
+    if (list.empty()) {
+        notices_.push_back("There is no world on this server yet: make one with evoctl create NAME");
+        return;
+    }
+    const std::string shown = present_.value_or(name());
+    const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
+    const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
+    if (next == here) {
+        notices_.push_back("There is only this world: make another with evoctl create NAME");
+    } else {
+        look_at(next->name(), 0);
+    }
+}
+
+void Watch::take_event(const evod::v1::Event& event) {
+    using Kind = evod::v1::Event::EventCase;
+    if (event.event_case() == Kind::kServerGoingAway) {
+        notices_.push_back("The server is going away");
+    } else if (event.event_case() == Kind::kStorageChanged) {
+        const bool was_trouble = !shown_storage(storage_).empty();
+        storage_ = event.storage_changed().storage();
+        if (was_trouble && shown_storage(storage_).empty()) {
+            notices_.push_back("Run files can be written again");
+        }
+    } else if (event.event_case() == Kind::kEventsDropped) {
+        ask_state();
+    } else if (event.event_case() == Kind::kWorldCreated && refusal()) {
+        look_at(wanted_.world, wanted_.island); // perhaps the one that was missing
+    }
+    if (!control_.known() || event.world() != control_.world()) {
+        return;
+    }
+    switch (event.event_case()) {
+    case Kind::kGenerationFinished:
+        last_generation_.assign(event.generation_finished().statistics().begin(),
+                                event.generation_finished().statistics().end());
+        break;
+    case Kind::kRunControlChanged:
+        see(event.run_control_changed().world());
+        break;
+    case Kind::kWorldReset:
+        see(event.world_reset().world());
+        last_generation_.clear();
+        notices_.push_back("The world was reset by " + event.world_reset().by());
+        break;
+    case Kind::kWorldDeleted:
+        notices_.push_back("The world " + event.world() + " was deleted by " + event.world_deleted().by());
+        control_.forget();
+        look_at(event.world(), 0); // there may be one of this name again
+        break;
+    case Kind::kParametersChanged: {
+        std::string names;
+        for (const auto& parameter : event.parameters_changed().changed()) {
+            names += (names.empty() ? "" : ", ") + parameter.name();
+        }
+        notices_.push_back(event.parameters_changed().by() + " changed " + names);
+        break;
+    }
+    case Kind::kRunTerminated:
+        ask_state(); // for the outcome
+        break;
+    default:
+        break;
+    }
+}
+
+// ---- what is known ---------------------------------------------------------------------------------------------
+
+const evod::v1::GenerationStatistics* Watch::last_generation() const {
+    const auto island = std::ranges::find(last_generation_, wanted_.island, &evod::v1::GenerationStatistics::island);
+    return island == last_generation_.end() ? nullptr : &*island;
+}
+
+const wire::Picture* Watch::picture_of(std::uint32_t island) const {
+    const auto view = views_.find(island);
+    return view == views_.end() ? nullptr : view->second.latest().get();
+}
+
+std::uint32_t Watch::island_count() const {
+    for (const auto& [island, view] : views_) {
+        if (view.latest()) {
+            return std::max(view.latest()->about.island_count(), 1u);
+        }
+    }
+    return 1;
+}
+
+std::optional<std::string> Watch::refusal() const {
+    if (past_refusal_) {
+        return past_refusal_;
+    }
+    const auto answer = connection_.subscription_answer(pictures_);
+    if (!answer || link::accepted(*answer)) {
+        return std::nullopt;
+    }
+    return shown_refusal(answer->status());
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,148 @@
+#include "client/viewer/drawing/camera.h"
+
+#include <gmock/gmock.h>
+#include <rapidcheck/gtest.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::DoubleNear;
+
+constexpr Rectangle viewport{0, 40, 1280, 640};
+
+Camera fitted(double width, double height) {
+    Camera camera;
+    camera.set_viewport(viewport);
+    camera.set_island(width, height);
+    return camera;
+}
+
+void expect_near(Point a, Point b, double tolerance) {
+    EXPECT_THAT(a.x, DoubleNear(b.x, tolerance));
+    EXPECT_THAT(a.y, DoubleNear(b.y, tolerance));
+}
+
+TEST(Camera, FitsTheWholeIslandAndItsWallsIntoTheMiddleOfTheViewport) {
+    const Camera camera = fitted(1280, 720);
+    EXPECT_DOUBLE_EQ(camera.zoom(), (640 - 2 * (6 + 6)) / 720.0); // the height is scarce
+    expect_near(camera.to_screen({640, 360}), {640, 360}, 1e-9);
+    EXPECT_GE(camera.to_screen({0, 0}).y - Camera::wall_pixels, viewport.top);
+    EXPECT_LE(camera.to_screen({1280, 720}).y + Camera::wall_pixels, viewport.top + viewport.height);
+}
+
+TEST(Camera, FitsTheWidthOfAWideIsland) {
+    EXPECT_DOUBLE_EQ(fitted(10'000, 100).zoom(), (1280 - 24) / 10'000.0);
+}
+
+TEST(Camera, StaysFittedThroughResizesUntilItIsMoved) {
+    Camera camera = fitted(1280, 720);
+    camera.set_viewport({0, 40, 640, 320});
+    EXPECT_DOUBLE_EQ(camera.zoom(), (320 - 24) / 720.0);
+    camera.pan({10, 0});
+    const double zoom = camera.zoom();
+    camera.set_viewport(viewport);
+    EXPECT_DOUBLE_EQ(camera.zoom(), zoom);
+    EXPECT_FALSE(camera.fitted());
+    camera.fit();
+    EXPECT_DOUBLE_EQ(camera.zoom(), (640 - 24) / 720.0);
+}
+
+TEST(Camera, AnotherIslandSizeIsFittedAndTheSameSizeChangesNothing) {
+    Camera camera = fitted(1280, 720);
+    camera.zoom_at({100, 100}, 3);
+    const Point centre = camera.centre();
+    camera.set_island(1280, 720);
+    EXPECT_EQ(camera.centre(), centre);
+    camera.set_island(2000, 2000);
+    EXPECT_TRUE(camera.fitted());
+    EXPECT_EQ(camera.centre(), (Point{1000, 1000}));
+}
+
+TEST(Camera, APanMovesThePictureByThatManyPixels) {
+    Camera camera = fitted(1280, 720);
+    camera.zoom_at({640, 360}, 4);
+    const Point before = camera.to_screen({600, 300});
+    camera.pan({25, -10});
+    expect_near(camera.to_screen({600, 300}), {before.x + 25, before.y - 10}, 1e-9);
+}
+
+TEST(Camera, TheMiddleOfTheViewportNeverLeavesTheIsland) {
+    Camera camera = fitted(1280, 720);
+    camera.pan({1e7, -1e7});
+    EXPECT_EQ(camera.centre(), (Point{0, 720}));
+}
+
+RC_GTEST_PROP(Camera, WhatIsUnderTheCursorStaysThereWhenZooming, ()) {
+    Camera camera = fitted(1280, 720);
+    const Point cursor{double(*rc::gen::inRange(300, 980)), double(*rc::gen::inRange(200, 500))};
+    camera.zoom_at({640, 360}, *rc::gen::inRange(1, 8));
+    const Point held = camera.to_world(cursor);
+    camera.zoom_at(cursor, *rc::gen::element(0.7, 1.2, 1.9));
+    const Point middle = camera.centre();
+    // Unless the middle had to be kept on the island.
+    RC_PRE(middle.x > 0 && middle.x < 1280 && middle.y > 0 && middle.y < 720);
+    const Point now = camera.to_world(cursor);
+    RC_ASSERT(std::abs(now.x - held.x) < 1e-6);
+    RC_ASSERT(std::abs(now.y - held.y) < 1e-6);
+}
+
+RC_GTEST_PROP(Camera, ScreenAndWorldAreInverse, ()) {
+    Camera camera = fitted(*rc::gen::inRange(1, 300'000), *rc::gen::inRange(1, 300'000));
+    camera.zoom_at({double(*rc::gen::inRange(0, 1280)), double(*rc::gen::inRange(0, 720))}, *rc::gen::inRange(1, 1000));
+    const Point screen{double(*rc::gen::inRange(-100, 1400)), double(*rc::gen::inRange(-100, 800))};
+    const Point back = camera.to_screen(camera.to_world(screen));
+    RC_ASSERT(std::abs(back.x - screen.x) < 1e-6);
+    RC_ASSERT(std::abs(back.y - screen.y) < 1e-6);
+}
+
+TEST(Camera, ZoomsNoFurtherThanItsLimits) {
+    Camera camera = fitted(1280, 720);
+    const double whole = camera.zoom();
+    camera.zoom_at({640, 360}, 1e9);
+    EXPECT_DOUBLE_EQ(camera.zoom(), Camera::zoom_max);
+    camera.zoom_at({640, 360}, 1e-9);
+    EXPECT_DOUBLE_EQ(camera.zoom(), whole / 2);
+}
+
+TEST(Camera, TellsWhatIsVisible) {
+    Camera camera = fitted(1000, 1000);
+    const Rectangle seen = camera.visible();
+    EXPECT_TRUE(seen.contains({0, 0}));
+    EXPECT_TRUE(seen.contains({1000, 1000}));
+    camera.zoom_at(viewport.centre(), 10);
+    EXPECT_FALSE(camera.visible().contains({0, 0}));
+    EXPECT_TRUE(camera.visible().contains({500, 500}));
+}
+
+TEST(Camera, LooksAtAPlaceOfTheIsland) {
+    Camera camera;
+    camera.set_viewport({0, 0, 1000, 500});
+    camera.set_island(1000, 500);
+    const double zoom = camera.zoom();
+    camera.look_at({100, 200});
+    EXPECT_EQ(camera.centre(), (Point{100, 200}));
+    EXPECT_EQ(camera.zoom(), zoom);
+    EXPECT_FALSE(camera.fitted());
+    camera.look_at({-50, 9'000});
+    EXPECT_EQ(camera.centre(), (Point{0, 500}));
+}
+
+TEST(Camera, LooksAsAnotherDoesInAPlaceOfItsOwn) {
+    Camera leader, other;
+    leader.set_viewport({0, 0, 600, 400});
+    other.set_viewport({602, 0, 600, 400});
+    leader.set_island(1000, 500);
+    other.set_island(1000, 500);
+    leader.zoom_at({150, 100}, 3);
+    other.look_as(leader);
+    EXPECT_EQ(other.zoom(), leader.zoom());
+    EXPECT_EQ(other.centre(), leader.centre());
+    EXPECT_EQ(other.viewport().left, 602);
+    EXPECT_FALSE(other.fitted());
+    leader.fit();
+    other.look_as(leader);
+    EXPECT_TRUE(other.fitted());
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,80 @@
+#include "client/viewer/panels/breeding/caption.h"
+
+#include "tests/unit/viewer/panels/breeding/made_up.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::viewer {
+namespace {
+
+using made_up::record_of;
+
+TEST(Caption, SaysWhereThePointerFell) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 1}),
+              "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30), "
+              "30.00 % of the wheel.");
+    breeding.mutable_contenders(2)->mutable_migrant()->set_island(3);
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 1}),
+              "Pick 2 of 4. The pointer stopped at 0.6250 turns, in the slot of organism 2 (rank 2, fitness 30, came "
+              "from island 3), 30.00 % of the wheel.");
+}
+
+TEST(Caption, SaysWhoWonATournament) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    auto& pick = *breeding.mutable_picks(0);
+    pick.clear_turns();
+    pick.set_tournament(0);
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 0}),
+              "Pick 1 of 4. Tournament 1 was too large to be shown. Organism 0 (rank 1, fitness 40) won.");
+    for (const std::uint32_t contestant : {3u, 0u, 3u}) {
+        pick.add_contestants(contestant);
+    }
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 0}),
+              "Pick 1 of 4. Tournament 1 of 3 contestants: organism 0 (rank 1, fitness 40) won.");
+}
+
+TEST(Caption, SaysWhatBecameOfADescendant) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    *breeding.mutable_descendants(3) = made_up::child(1);
+    breeding.mutable_descendants(3)->set_id(3);
+    const auto of_three = [&] { return caption(record_of(breeding), {BreedingStage::Breeding, 3}); };
+    EXPECT_EQ(of_three(), "Organism 3 of the next generation: a child of organisms 4 and 9, no mutation.");
+    made_up::mutate(*breeding.mutable_descendants(3), evod::v1::MUTATION_KIND_CREEP, 0, 1, 2);
+    made_up::mutate(*breeding.mutable_descendants(3), evod::v1::MUTATION_KIND_CLAMP, 0, 2, 1.5f);
+    breeding.mutable_descendants(3)->mutable_rearrangement()->set_method("swap");
+    breeding.mutable_descendants(3)->set_crossed(false);
+    EXPECT_EQ(of_three(),
+              "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap moved genes, "
+              "1 mutation.");
+    breeding.mutable_descendants(3)->Clear();
+    breeding.mutable_descendants(3)->set_kind(evod::v1::DESCENDANT_KIND_ELITE);
+    EXPECT_EQ(of_three(),
+              "Organism 3 of the next generation: of the elite, organism 0 (rank 1, fitness 40), kept unchanged.");
+}
+
+TEST(Caption, OfWhatHasNotComeSaysSo) {
+    EXPECT_EQ(caption(BreedingRecord{BreedingRecord::Key{}}, {}), "");
+    evod::v1::Breeding breeding = made_up::wheel();
+    breeding.set_pick_count(100);
+    EXPECT_EQ(caption(record_of(breeding), {BreedingStage::Picking, 50}), "Pick 51 of 100. Asked for …");
+}
+
+TEST(BreedingSummary, NamesTheOperatorsAndTheNumbers) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    EXPECT_EQ(breeding_summary(record_of(breeding)),
+              "Roulette · generational · 4 organisms, 4 picks: 0 survivors and 4 children");
+    breeding.set_survivor_count(3);
+    breeding.set_elite_count(1);
+    breeding.mutable_parameters(0)->mutable_value()->set_choice("stochastic_universal");
+    breeding.mutable_parameters(1)->mutable_value()->set_choice("linear_ranking");
+    EXPECT_EQ(breeding_summary(record_of(breeding)),
+              "Stochastic universal with linear ranking · generational · 4 organisms, 4 picks: 3 survivors (1 of the "
+              "elite) and 1 child");
+    breeding.mutable_parameters(0)->mutable_value()->set_choice("tournament");
+    made_up::set_count(breeding, "tournament_size", 5);
+    EXPECT_EQ(breeding_summary(record_of(breeding)).substr(0, 15), "Tournament of 5");
+}
+
+} // namespace
+} // namespace evod::viewer

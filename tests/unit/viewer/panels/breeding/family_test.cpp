@@ -1,0 +1,83 @@
+#include "client/viewer/panels/breeding/family.h"
+
+#include "tests/unit/viewer/panels/breeding/made_up.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(Family, GenesComeOfTheParentThatTheMaskSays) {
+    const Family family = family_of(made_up::child(0b001110));
+    EXPECT_THAT(family.genes, ElementsAre(1, 12, 13, 14, 5, 6));
+    EXPECT_THAT(family.cuts, ElementsAre(1, 4));
+    EXPECT_FALSE(family.crossed[0].from_second);
+    EXPECT_TRUE(family.crossed[3].from_second);
+}
+
+TEST(Family, WhoIsACopyHasNoCuts) {
+    EXPECT_THAT(family_of(made_up::child(0)).cuts, IsEmpty());
+    const Family second = family_of(made_up::child(0xffff'ffff)); // a complement may have bits beyond the genes
+    EXPECT_THAT(second.cuts, IsEmpty());
+    EXPECT_THAT(second.genes, ElementsAre(11, 12, 13, 14, 15, 16));
+}
+
+TEST(Family, RearrangedGenesKeepTheParentTheyCameOf) {
+    evod::v1::Descendant child = made_up::child(0b000001);
+    child.mutable_rearrangement()->set_method("inversion");
+    for (const std::uint32_t from : {2u, 1u, 0u, 3u, 4u, 5u}) {
+        child.mutable_rearrangement()->add_order(from);
+    }
+    const Family family = family_of(child);
+    EXPECT_THAT(family.genes, ElementsAre(3, 2, 11, 4, 5, 6));
+    EXPECT_THAT(family.moves, ElementsAre(GeneMove{2, 0}, GeneMove{0, 2}));
+    EXPECT_TRUE(family.arranged[2].from_second);
+    EXPECT_EQ(family.arranged[2].gene, 0u);
+}
+
+TEST(Family, MutationsFollowOneAnotherAndAClampIsTheLast) {
+    evod::v1::Descendant child = made_up::child(0);
+    made_up::mutate(child, evod::v1::MUTATION_KIND_CREEP, 5, 6, 9);
+    made_up::mutate(child, evod::v1::MUTATION_KIND_CREEP, 2, 3, 2.5f);
+    made_up::mutate(child, evod::v1::MUTATION_KIND_CLAMP, 5, 9, 8);
+    const Family family = family_of(child);
+    EXPECT_THAT(family.genes, ElementsAre(1, 2, 2.5f, 4, 5, 8));
+    ASSERT_EQ(family.changes.size(), 3u);
+    EXPECT_EQ(family.changes[0].delta(), 3);
+    EXPECT_EQ(family.changes[1].delta(), -0.5);
+    EXPECT_EQ(family.changes[2].kind, evod::v1::MUTATION_KIND_CLAMP);
+}
+
+TEST(Family, OfASurvivorIsItself) {
+    evod::v1::Descendant survivor = made_up::child(0);
+    survivor.set_kind(evod::v1::DESCENDANT_KIND_SURVIVOR);
+    survivor.clear_second_genes();
+    EXPECT_THAT(family_of(survivor).genes, ElementsAre(1, 2, 3, 4, 5, 6));
+}
+
+TEST(Family, MalformedListsHaveNone) {
+    evod::v1::Descendant torn = made_up::child(0);
+    torn.mutable_second_genes()->RemoveLast();
+    EXPECT_THAT(family_of(torn).genes, IsEmpty());
+    evod::v1::Descendant far = made_up::child(0);
+    made_up::mutate(far, evod::v1::MUTATION_KIND_RESET, 6, 1, 2);
+    EXPECT_THAT(family_of(far).genes, IsEmpty());
+    evod::v1::Descendant order = made_up::child(0);
+    for (const std::uint32_t from : {0u, 1u, 2u, 3u, 4u, 6u}) {
+        order.mutable_rearrangement()->add_order(from);
+    }
+    EXPECT_THAT(family_of(order).genes, IsEmpty());
+    EXPECT_THAT(family_of(evod::v1::Descendant{}).genes, IsEmpty());
+}
+
+TEST(ShownDelta, HasItsSign) {
+    EXPECT_EQ(shown_delta(7.3125), "+7.312");
+    EXPECT_EQ(shown_delta(-0.5), "−0.5");
+    EXPECT_EQ(shown_delta(0), "+0");
+}
+
+} // namespace
+} // namespace evod::viewer

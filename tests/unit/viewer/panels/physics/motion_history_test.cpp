@@ -1,0 +1,84 @@
+#include "client/viewer/panels/physics/motion_history.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+evod::v1::Motion at(std::uint64_t tick, double energy = 0) {
+    evod::v1::Motion motion;
+    motion.set_tick(tick);
+    motion.set_kinetic_energy(energy);
+    return motion;
+}
+
+std::vector<float> energies(const MotionHistory& history) {
+    return history.curve([](const evod::v1::Motion& motion) { return motion.kinetic_energy(); });
+}
+
+TEST(MotionHistory, KeepsOneOfEachTick) {
+    MotionHistory history;
+    EXPECT_TRUE(history.empty());
+    history.add(at(3, 1));
+    history.add(at(3, 2)); // a paused world is asked again and again
+    history.add(at(9, 4));
+    EXPECT_THAT(energies(history), ElementsAre(2, 4));
+    EXPECT_EQ(history.last().tick(), 9u);
+}
+
+TEST(MotionHistory, BeginsAnewWhenTimeGoesBack) {
+    MotionHistory history;
+    history.add(at(30, 1));
+    history.add(at(40, 2));
+    history.add(at(35, 3));
+    EXPECT_THAT(energies(history), ElementsAre(3));
+}
+
+TEST(MotionHistory, ForgetsTheOldest) {
+    MotionHistory history;
+    for (std::uint64_t tick = 0; tick < MotionHistory::kept + 10; ++tick) {
+        history.add(at(tick, static_cast<double>(tick)));
+    }
+    EXPECT_EQ(history.size(), MotionHistory::kept);
+    EXPECT_EQ(energies(history).front(), 10);
+}
+
+evod::v1::Motion moving(double share, std::uint64_t too_fast) {
+    evod::v1::Motion motion;
+    motion.set_tick_s(0.05);
+    motion.set_fastest_px_s(400);
+    motion.set_fastest_step_share(share);
+    motion.set_too_fast_count(too_fast);
+    return motion;
+}
+
+TEST(JudgeTick, IsContentWithSlowBodies) {
+    const TickVerdict verdict = judge_tick(moving(0.2, 0));
+    EXPECT_EQ(verdict.level, TickVerdict::Level::Good);
+    EXPECT_EQ(verdict.sentence, "The tick is short enough: the fastest body moves 0.2 of its radius in a tick.");
+}
+
+TEST(JudgeTick, SaysWhichParametersWouldHelp) {
+    const TickVerdict close = judge_tick(moving(0.625, 0));
+    EXPECT_EQ(close.level, TickVerdict::Level::Close);
+    EXPECT_THAT(close.sentence, HasSubstr("Set tick_s to 0.04 or less, or max_speed_px_s to 320."));
+    const TickVerdict fast = judge_tick(moving(2, 0));
+    EXPECT_EQ(fast.level, TickVerdict::Level::TooLong);
+    EXPECT_THAT(fast.sentence, HasSubstr("Set tick_s to 0.0125 or less, or max_speed_px_s to 100."));
+    EXPECT_THAT(fast.sentence, Not(HasSubstr("this generation")));
+}
+
+TEST(JudgeTick, RemembersWhatHappenedInTheGeneration) {
+    const TickVerdict verdict = judge_tick(moving(0.1, 1234));
+    EXPECT_EQ(verdict.level, TickVerdict::Level::TooLong);
+    EXPECT_THAT(verdict.sentence, HasSubstr("1,234 moves of this generation went further than the body's own radius"));
+    EXPECT_THAT(verdict.sentence, HasSubstr("Halve tick_s, to 0.025, or lower max_speed_px_s."));
+    EXPECT_THAT(judge_tick(moving(0.1, 1)).sentence, HasSubstr("1 move of"));
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,112 @@
+#include "client/viewer/panels/plots/figures.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
+    HistoryTable table;
+    table.set_gene_names({"impulse", "body_size"});
+    for (std::uint64_t generation = 1; generation <= generations; ++generation) {
+        std::vector<std::vector<double>> rows;
+        for (std::uint32_t island = 0; island < islands; ++island) {
+            v1::GenerationStatistics statistics;
+            statistics.set_generation(generation);
+            statistics.set_island(island);
+            statistics.set_organism_count(10);
+            statistics.set_fitness_mean(5 + island);
+            statistics.set_fitness_deviation(2);
+            statistics.set_starved_count(3);
+            statistics.set_poisoned_count(1);
+            statistics.add_genes()->set_mean(100);
+            statistics.mutable_genes(0)->set_deviation(4);
+            statistics.add_genes()->set_mean(50);
+            rows.push_back(link::history_numbers(statistics));
+        }
+        table.add(rows);
+    }
+    return table;
+}
+
+std::vector<std::string> names_of(const Figure& figure) {
+    std::vector<std::string> names;
+    for (const Series& series : figure.plot.series) {
+        names.push_back(series.name);
+    }
+    return names;
+}
+
+TEST(Figures, FitnessIsABandOfOneDeviationAndFourLines) {
+    const HistoryTable table = table_of(1, 3);
+    const Figure figure = figure_of(Quantity::Fitness, {table, 0u, "lab"}, nullptr, "");
+    EXPECT_THAT(names_of(figure), ElementsAre("± one deviation", "worst", "median", "mean", "best"));
+    EXPECT_THAT(figure.plot.series[0].low, Each(3));
+    EXPECT_THAT(figure.plot.series[0].y, Each(7));
+    EXPECT_THAT(figure.plot.series[3].x, ElementsAre(1, 2, 3));
+    EXPECT_EQ(whole_x(figure.plot), (Range{1, 3}));
+}
+
+TEST(Figures, TheMedianOfSeveralIslandsIsNotShown) {
+    const HistoryTable table = table_of(2, 3);
+    EXPECT_THAT(names_of(figure_of(Quantity::Fitness, {table, std::nullopt, "lab"}, nullptr, "")),
+                ElementsAre("± one deviation", "worst", "mean", "best"));
+}
+
+TEST(Figures, WhatIsComparedHasItsOwnLinesAndNames) {
+    const HistoryTable table = table_of(2, 3), other = table_of(1, 5);
+    const Subject beside{other, 1u, "yesterday"}; // which has no island 1
+    const Figure figure = figure_of(Quantity::Diversity, {table, 1u, "lab"}, &beside, "");
+    EXPECT_THAT(names_of(figure), ElementsAre("diversity, lab", "diversity, yesterday"));
+    EXPECT_EQ(figure.plot.series[1].kind, Series::Kind::Dashes);
+    EXPECT_EQ(figure.plot.series[1].x.size(), 5u);
+    EXPECT_EQ(whole_x(figure.plot), (Range{1, 5}));
+}
+
+TEST(Figures, GenesAreShownOneByOneOrTogether) {
+    const HistoryTable table = table_of(1, 3);
+    EXPECT_THAT(names_of(figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "")),
+                ElementsAre("impulse", "body_size"));
+    const Figure figure = figure_of(Quantity::Genes, {table, 0u, "lab"}, nullptr, "impulse");
+    EXPECT_THAT(names_of(figure), ElementsAre("± one deviation", "least", "greatest", "mean"));
+    EXPECT_THAT(figure.plot.series[0].low, Each(96));
+}
+
+TEST(Figures, DeathsAreStacked) {
+    const HistoryTable table = table_of(2, 3);
+    const Figure figure = figure_of(Quantity::Deaths, {table, std::nullopt, "lab"}, nullptr, "");
+    ASSERT_THAT(names_of(figure), ElementsAre("starved", "poisoned"));
+    EXPECT_EQ(figure.plot.series[0].kind, Series::Kind::Stack);
+    EXPECT_THAT(figure.plot.series[0].y, Each(6));
+    EXPECT_EQ(whole_x(figure.plot), (Range{0.5, 3.5})) << "whole bars";
+}
+
+TEST(Figures, NothingIsKnownOfAnEmptyTable) {
+    const HistoryTable table;
+    for (const auto quantity :
+         {Quantity::Fitness, Quantity::Genes, Quantity::Diversity, Quantity::Survivors, Quantity::Deaths}) {
+        EXPECT_TRUE(figure_of(quantity, {table, std::nullopt, "lab"}, nullptr, "").plot.series.empty());
+    }
+    EXPECT_TRUE(histogram_of("impulse", {}).plot.series.empty());
+}
+
+TEST(Figures, AHistogramHasEveryOrganism) {
+    const Figure figure = histogram_of("impulse", {1, 1, 2, 5, 9});
+    const Series& bars = figure.plot.series.at(0);
+    EXPECT_EQ(bars.y.size(), 8u);
+    EXPECT_DOUBLE_EQ(bars.bar_width, 1);
+    EXPECT_EQ(bars.y[0] + bars.y[1] + bars.y[4] + bars.y[7], 5);
+    EXPECT_EQ(bars.y[0], 2);
+    const Figure alike = histogram_of("impulse", {3, 3, 3});
+    double count = 0;
+    for (const double bin : alike.plot.series.at(0).y) {
+        count += bin;
+    }
+    EXPECT_EQ(count, 3);
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,245 @@
+#include "client/viewer/scene/marks.h"
+
+#include "tests/unit/viewer/watch/population_pages.h"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+
+namespace evod::viewer {
+
+bool operator==(const Shape& a, const Shape& b) {
+    return a.x == b.x && a.y == b.y && a.half_width == b.half_width && a.half_height == b.half_height;
+}
+bool operator==(const Line& a, const Line& b) {
+    return a.x == b.x && a.y == b.y && a.end_x == b.end_x && a.end_y == b.end_y;
+}
+
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr palette::Ramp ramp = palette::Ramp::Viridis;
+
+struct MarksTest : testing::Test {
+    MarksTest() {
+        organisms.id = {0, 2, 9}; // 9 is in no population here
+        organisms.radius_px = {10, 11, 12};
+        organisms.health = {0, 50, 200};
+        at = {{100, 200, 300}, {10, 20, 30}};
+        EXPECT_EQ(population.add(page_of(0, 3, 3)), std::nullopt);
+    }
+    wire::OrganismPicture organisms;
+    Positions at;
+    Population population{2};
+    const Rectangle everything{0, 0, 1000, 1000};
+};
+
+TEST(RoundUp, ToOneTwoOrFiveTimesAPowerOfTen) {
+    EXPECT_EQ(round_up(0), 1);
+    EXPECT_EQ(round_up(1), 1);
+    EXPECT_EQ(round_up(1.01), 2);
+    EXPECT_EQ(round_up(3), 5);
+    EXPECT_EQ(round_up(5.1), 10);
+    EXPECT_EQ(round_up(1000), 1000);
+    EXPECT_NEAR(round_up(0.03), 0.05, 1e-12);
+}
+
+TEST_F(MarksTest, HealthGoesFromNothingToTheMostRoundedUp) {
+    const Scale scale = health_scale(organisms, ramp);
+    EXPECT_EQ(scale.low, 0);
+    EXPECT_EQ(scale.high, 200);
+    std::vector<Colour> colours;
+    put_health_colours(organisms, scale, colours);
+    ASSERT_EQ(colours.size(), 3u);
+    EXPECT_EQ(colours[0], palette::at(ramp, 0));
+    EXPECT_EQ(colours[1], palette::at(ramp, 64.0 / 255)); // a quarter, to 1/255
+    EXPECT_EQ(colours[2], palette::at(ramp, 1));
+    organisms.health = {1, 2, 3};
+    EXPECT_EQ(health_scale(organisms, ramp).high, 100) << "who is weak is not shown as strong";
+}
+
+TEST_F(MarksTest, AGeneGoesFromItsLeastToItsGreatest) {
+    std::vector<Colour> colours;
+    const Scale scale = gene_scale(population, 1, ramp);
+    EXPECT_EQ(scale.low, 100);
+    EXPECT_EQ(scale.high, 102);
+    put_gene_colours(organisms, population, 1, scale, colours);
+    EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0), palette::at(ramp, 1), palette::unknown));
+    const Scale all_equal{ramp, 5, 5};
+    EXPECT_EQ(all_equal(5), palette::at(ramp, 0.5));
+}
+
+TEST_F(MarksTest, FamiliesKeepTheirColoursWhileTheyAreAmongTheLargest) {
+    const auto population_of = [](std::initializer_list<std::uint32_t> founders) {
+        const auto count = static_cast<std::uint32_t>(founders.size());
+        auto page = page_of(0, count, count);
+        page.clear_founders();
+        for (const std::uint32_t founder : founders) {
+            put(*page.mutable_founders(), founder);
+        }
+        Population made{2};
+        EXPECT_EQ(made.add(page), std::nullopt);
+        return made;
+    };
+    FamilyColours colours;
+    colours.see(population_of({5, 5, 5, 6, 6, 7}));
+    EXPECT_EQ(colours.of(0), palette::kinds[0]);
+    EXPECT_EQ(colours.of(2), palette::kinds[2]);
+    EXPECT_EQ(colours.of(Population::no_family), palette::unknown);
+    colours.see(population_of({7, 7, 7, 5, 8, 8})); // 7, 8, 5: 6 is gone, and 8 is new
+    EXPECT_EQ(colours.of(0), palette::kinds[2]) << "7";
+    EXPECT_EQ(colours.of(1), palette::kinds[1]) << "8 has the colour that is free";
+    EXPECT_EQ(colours.of(2), palette::kinds[0]) << "5";
+    const auto next = population_of({8, 8, 5, 7});
+    colours.see(next);
+    std::vector<Colour> of_organisms;
+    put_family_colours(organisms, next, colours, of_organisms);
+    EXPECT_THAT(of_organisms, ElementsAre(palette::kinds[1], palette::kinds[0], palette::unknown));
+}
+
+TEST_F(MarksTest, RadiiAreAsLargeAsTheGeneAndOnlyOfThoseOfWhomSomethingIsSeen) {
+    std::vector<Shape> shapes;
+    put_radii(organisms, at, population, 1, everything, shapes);
+    EXPECT_THAT(shapes, ElementsAre(Shape{100, 10, 100, 100}, Shape{200, 20, 102, 102}));
+    shapes.clear();
+    put_radii(organisms, at, population, 1, {301, 0, 100, 100}, shapes);
+    EXPECT_THAT(shapes, ElementsAre(Shape{200, 20, 102, 102}));
+}
+
+TEST_F(MarksTest, ArrowsShowForcesAndLinesWhatTheyActOn) {
+    ColouredLines arrows, targets;
+    put_forces(organisms, at, population, everything, arrows, targets);
+    EXPECT_THAT(arrows.lines, ElementsAre(Line{100, 10, 100 + arrow_px_per_force, 10},
+                                          Line{200, 20, 200 + arrow_px_per_force, 20 + 2 * arrow_px_per_force}));
+    EXPECT_THAT(targets.lines, ElementsAre(Line{100, 10, 0, 0}, Line{200, 20, 2, 4}));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::seeks, palette::seeks));
+
+    auto page = page_of(0, 3, 3);
+    *page.mutable_choices() = {evod::v1::CHOICE_WANDER, evod::v1::CHOICE_SEEK, evod::v1::CHOICE_FLEE};
+    Population others{2};
+    ASSERT_EQ(others.add(page), std::nullopt);
+    arrows.clear();
+    targets.clear();
+    put_forces(organisms, at, others, everything, arrows, targets);
+    EXPECT_THAT(arrows.colours, ElementsAre(palette::wanders, palette::flees));
+    EXPECT_THAT(targets.colours, ElementsAre(palette::flees)) << "who wanders acts on nothing";
+    arrows.clear();
+    targets.clear();
+    put_forces(organisms, at, others, {5'000, 5'000, 10, 10}, arrows, targets);
+    EXPECT_THAT(arrows.lines, IsEmpty());
+}
+
+// ---- trails ----------------------------------------------------------------------------------------------------
+
+std::shared_ptr<wire::Picture> picture(double s, std::uint64_t generation = 1) {
+    auto made = std::make_shared<wire::Picture>();
+    made->about.set_simulated_s(s);
+    made->about.set_tick(static_cast<std::uint64_t>(s * 60));
+    made->about.set_generation(generation);
+    return made;
+}
+
+TEST(Trails, KeepAFewPicturesOfTheLastSeconds) {
+    Trails trails;
+    for (int tick = 0; tick <= 600; ++tick) {
+        trails.see(picture(tick / 60.0));
+    }
+    const auto& kept = trails.pictures();
+    EXPECT_EQ(kept.size(), 13u); // from 7 s to 10 s
+    EXPECT_NEAR(kept.front()->about.simulated_s(), 7, 1e-9);
+    EXPECT_NEAR(kept.back()->about.simulated_s(), 10, 1e-9);
+}
+
+TEST(Trails, BeginAnewWithEachLife) {
+    Trails trails;
+    trails.see(picture(1));
+    trails.see(picture(2));
+    trails.see(picture(2.5, 2));
+    EXPECT_EQ(trails.pictures().size(), 1u);
+    trails.see(picture(3, 2));
+    trails.see(picture(1, 2)); // a past that is looked at
+    EXPECT_EQ(trails.pictures().size(), 1u);
+    auto elsewhere = picture(1.5, 2);
+    elsewhere->about.set_island(1);
+    trails.see(elsewhere);
+    EXPECT_EQ(trails.pictures().size(), 1u);
+}
+
+TEST(Trails, LeadFromEachToItself) {
+    wire::OrganismPicture from, to;
+    from.id = {1, 2, 5, 6};
+    from.x_px = {10, 20, 50, 60};
+    from.y_px = {1, 2, 5, 6};
+    to.id = {2, 3, 6};
+    const std::vector<float> x{21, 31, 61}, y{3, 4, 7};
+    std::vector<Line> lines;
+    put_ways(from, to, x, y, lines);
+    EXPECT_THAT(lines, ElementsAre(Line{20, 2, 21, 3}, Line{60, 6, 61, 7}));
+}
+
+// ---- density ---------------------------------------------------------------------------------------------------
+
+TEST(Density, CellsLieWhereTheyLieWhateverIsSeen) {
+    const Positions places{{5, 15, 16, 95, 500}, {5, 5, 6, 95, 5}};
+    const DensityGrid grid = density_of(places, {0, 0, 100, 100}, 10);
+    EXPECT_EQ(grid.columns, 10u);
+    EXPECT_EQ(grid.rows, 10u);
+    EXPECT_EQ(grid.counts[0], 1u);
+    EXPECT_EQ(grid.counts[1], 2u);
+    EXPECT_EQ(grid.counts[99], 1u);
+    EXPECT_EQ(std::accumulate(grid.counts.begin(), grid.counts.end(), 0u), 4u) << "500 is beyond";
+    const DensityGrid moved = density_of(places, {13, 3, 50, 50}, 10);
+    EXPECT_EQ(moved.left_px, 10);
+    EXPECT_EQ(moved.top_px, 0);
+    EXPECT_EQ(moved.counts[0], 2u);
+}
+
+TEST(Density, CellsAreOfAFewPixelsAtAnyZoom) {
+    Camera camera;
+    camera.set_viewport({0, 0, 1000, 1000});
+    camera.set_island(100'000, 100'000);
+    for (int i = 0; i < 40; ++i) {
+        const double pixels = density_cell_px(camera, 5) * camera.zoom();
+        EXPECT_GE(pixels, 5 * (1 - 1e-9));
+        EXPECT_LT(pixels, 10);
+        camera.zoom_at({500, 500}, 1.2);
+    }
+}
+
+TEST(Density, SquaresAreColouredByHowManyAreInThem) {
+    const DensityGrid grid{.left_px = 100, .top_px = 0, .cell_px = 10, .columns = 2, .rows = 2, .counts = {0, 7, 3, 0}};
+    const Scale scale = density_scale(std::span{&grid, 1}, ramp);
+    EXPECT_EQ(scale.high, 10);
+    std::vector<Shape> shapes;
+    std::vector<Colour> colours;
+    put_density(grid, {1'000, 14}, scale, shapes, colours); // the lower wall stands at 14
+    EXPECT_THAT(shapes, ElementsAre(Shape{115, 5, 5, 5}, Shape{105, 12, 5, 2}));
+    EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0.7), palette::at(ramp, 0.3)));
+}
+
+TEST(Density, AnOverviewTakesWhateverThereIsToTell) {
+    wire::Picture picture;
+    picture.about.set_width_px(1024);
+    picture.about.set_height_px(512);
+    picture.about.set_tile_px(512);
+    picture.organisms.x_px = {10};
+    picture.organisms.y_px = {20};
+    wire::TilePicture dots, density;
+    dots.detail = evod::v1::DETAIL_DOTS;
+    dots.dots.organisms = {{300, 310}, {20, 20}};
+    density.tile = 1;
+    density.detail = evod::v1::DETAIL_DENSITY;
+    density.left_px = 512;
+    density.density.cells_per_side = 2;
+    density.density.organisms = {1, 2, 3, 4};
+    picture.tiles = {dots, density};
+    const DensityGrid grid = overview_of(picture, 4);
+    EXPECT_EQ(grid.columns, 4u);
+    EXPECT_EQ(grid.rows, 2u);
+    EXPECT_THAT(grid.counts, ElementsAre(1, 2, 1, 2, 0, 0, 3, 4));
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,83 @@
+#include "client/viewer/shell/recent_servers.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+struct RecentServersTest : testing::Test {
+    RecentServersTest() {
+        std::string name = (std::filesystem::temp_directory_path() / "evoview-XXXXXX").string();
+        folder = mkdtemp(name.data());
+        file = folder / "evod" / "recent_servers";
+    }
+    ~RecentServersTest() override { std::filesystem::remove_all(folder); }
+    void write(const std::string& text) const {
+        std::filesystem::create_directories(file.parent_path());
+        std::ofstream{file} << text;
+    }
+    std::string read() const {
+        std::ifstream in{file};
+        return {std::istreambuf_iterator<char>{in}, {}};
+    }
+    std::filesystem::path folder, file;
+};
+
+TEST_F(RecentServersTest, TheLastOneIsFirstAndNoneIsThereTwice) {
+    RecentServers recent{file};
+    EXPECT_TRUE(recent.addresses().empty());
+    for (const char* host : {"a", "b", "a"}) {
+        recent.add({.host = host, .port = 7744});
+    }
+    EXPECT_THAT(RecentServers{file}.addresses(), ElementsAre("a:7744", "b:7744"));
+    EXPECT_EQ(recent.problem(), "");
+    EXPECT_EQ(read(), "a:7744\nb:7744\n");
+}
+
+TEST_F(RecentServersTest, OnlyItsOwnerCanReadTheFile) {
+    RecentServers{file}.add({.host = "a", .port = 1});
+    struct stat about {};
+    ASSERT_EQ(stat(file.c_str(), &about), 0);
+    EXPECT_EQ(about.st_mode & 0777, 0600u);
+}
+
+TEST_F(RecentServersTest, TheOldestAreForgotten) {
+    RecentServers recent{file};
+    for (std::uint16_t port = 1; port <= 12; ++port) {
+        recent.add({.host = "a", .port = port});
+    }
+    const RecentServers again{file};
+    ASSERT_EQ(again.addresses().size(), RecentServers::kept_max);
+    EXPECT_EQ(again.addresses().front(), "a:12");
+    EXPECT_EQ(again.addresses().back(), "a:3");
+}
+
+TEST_F(RecentServersTest, ABadFileIsToldOfAndLeftAlone) {
+    const std::string bad = "lab:7744\nthis is no address\n";
+    write(bad);
+    RecentServers recent{file};
+    EXPECT_TRUE(recent.addresses().empty());
+    EXPECT_THAT(recent.problem(), HasSubstr("recent_servers:2: "));
+    recent.add({.host = "a", .port = 1});
+    EXPECT_THAT(recent.addresses(), ElementsAre("a:1")) << "for as long as the program runs";
+    EXPECT_EQ(read(), bad);
+}
+
+TEST_F(RecentServersTest, WhereItCannotBeWrittenThatIsTold) {
+    std::ofstream{folder / "evod"} << "a file, where the folder would be";
+    RecentServers recent{file};
+    recent.add({.host = "a", .port = 1});
+    EXPECT_NE(recent.problem(), "");
+    EXPECT_THAT(recent.addresses(), ElementsAre("a:1"));
+}
+
+} // namespace
+} // namespace evod::viewer

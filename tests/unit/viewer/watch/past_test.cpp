@@ -1,0 +1,87 @@
+#include "client/viewer/watch/past.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+evod::v1::RunMoment tick(std::uint64_t tick) {
+    evod::v1::RunMoment moment;
+    moment.set_tick(tick);
+    return moment;
+}
+
+TEST(Seeks, OneIsUnderWayAndOfThoseAskedForMeanwhileTheNewestFollows) {
+    Seeks seeks;
+    EXPECT_EQ(seeks.target(), nullptr);
+    ASSERT_TRUE(seeks.ask(tick(10)));
+    EXPECT_FALSE(seeks.ask(tick(20)));
+    EXPECT_FALSE(seeks.ask(tick(30)));
+    ASSERT_NE(seeks.target(), nullptr);
+    EXPECT_EQ(seeks.target()->tick(), 30u);
+    const auto next = seeks.answered();
+    ASSERT_TRUE(next);
+    EXPECT_EQ(next->tick(), 30u);
+    EXPECT_FALSE(seeks.answered());
+    EXPECT_EQ(seeks.target(), nullptr);
+    EXPECT_EQ(seeks.ask(tick(40))->tick(), 40u);
+}
+
+TEST(Seeks, ForgottenOnesDoNotFollow) {
+    Seeks seeks;
+    seeks.ask(tick(10));
+    seeks.ask(tick(20));
+    seeks.forget();
+    EXPECT_EQ(seeks.target(), nullptr);
+    EXPECT_EQ(seeks.ask(tick(30))->tick(), 30u);
+}
+
+TEST(TimeScale, EndsOfTheLineAreTheFirstAndTheLastTick) {
+    const TimeScale scale{.first_tick = 100, .last_tick = 500, .left = 10, .width = 200};
+    EXPECT_EQ(scale.x_of(100), 10);
+    EXPECT_EQ(scale.x_of(500), 210);
+    EXPECT_EQ(scale.x_of(300), 110);
+    EXPECT_EQ(scale.tick_at(10), 100u);
+    EXPECT_EQ(scale.tick_at(210), 500u);
+    EXPECT_EQ(scale.tick_at(110.2), 300u) << "the nearest";
+}
+
+TEST(TimeScale, WhatIsBeyondAnEndIsThatEnd) {
+    const TimeScale scale{.first_tick = 100, .last_tick = 500, .left = 10, .width = 200};
+    EXPECT_EQ(scale.x_of(7), 10);
+    EXPECT_EQ(scale.x_of(1000), 210);
+    EXPECT_EQ(scale.tick_at(-5), 100u);
+    EXPECT_EQ(scale.tick_at(5000), 500u);
+}
+
+TEST(TimeScale, EveryTickIsFoundWhereItIsDrawn) {
+    const TimeScale scale{.first_tick = 3, .last_tick = 1003, .left = 18, .width = 764.5};
+    for (std::uint64_t tick = 3; tick <= 1003; ++tick) {
+        EXPECT_EQ(scale.tick_at(scale.x_of(tick)), tick);
+    }
+}
+
+TEST(TimeScale, ARunOfOneMomentIsAtTheLeft) {
+    const TimeScale scale{.first_tick = 5, .last_tick = 5, .left = 10, .width = 200};
+    EXPECT_EQ(scale.x_of(5), 10);
+    EXPECT_EQ(scale.tick_at(150), 5u);
+}
+
+TEST(MarkedGenerations, AreRoundNumbersAndNoMoreThanHaveRoom) {
+    EXPECT_THAT(marked_generations(1, 4, 8), ElementsAre(1, 2, 3, 4));
+    EXPECT_THAT(marked_generations(1, 9, 4), ElementsAre(2, 4, 6, 8));
+    EXPECT_THAT(marked_generations(1, 100, 5), ElementsAre(20, 40, 60, 80, 100));
+    EXPECT_THAT(marked_generations(990, 1010, 2), ElementsAre(1000));
+    EXPECT_THAT(marked_generations(1, 4, 0), IsEmpty());
+    for (const std::size_t count_max : {1u, 2u, 3u, 7u, 12u}) {
+        for (const std::uint64_t last : {1u, 2u, 30u, 999u, 123'456u}) {
+            EXPECT_LE(marked_generations(1, last, count_max).size(), count_max) << last;
+        }
+    }
+}
+
+} // namespace
+} // namespace evod::viewer

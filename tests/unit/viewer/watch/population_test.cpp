@@ -1,0 +1,124 @@
+#include "client/viewer/watch/population.h"
+
+#include "tests/unit/viewer/watch/population_pages.h"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <limits>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Population, IsPutTogetherOfPages) {
+    Population population{2};
+    EXPECT_FALSE(population.whole());
+    ASSERT_EQ(population.add(page_of(0, 3, 5)), std::nullopt);
+    EXPECT_FALSE(population.whole());
+    EXPECT_EQ(population.next(), 3u);
+    ASSERT_EQ(population.add(page_of(3, 2, 5)), std::nullopt);
+    ASSERT_TRUE(population.whole());
+    EXPECT_EQ(population.generation(), 4u);
+    EXPECT_THAT(population.gene(0), ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(population.gene(1), ElementsAre(100, 101, 102, 103, 104));
+    EXPECT_EQ(population.first_parent(4), 5u);
+    EXPECT_EQ(population.second_parent(4), 6u);
+    EXPECT_EQ(population.choice(4), evod::v1::CHOICE_SEEK);
+    EXPECT_THAT(population.force_x(), ElementsAre(1, 1, 1, 1, 1));
+    EXPECT_THAT(population.force_y(), ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(population.target_x_px(), ElementsAre(0, 1, 2, 3, 4));
+    EXPECT_THAT(population.target_y_px(), ElementsAre(0, 2, 4, 6, 8));
+    EXPECT_EQ(population.range(1).min, 100);
+    EXPECT_EQ(population.range(1).mean, 102);
+    EXPECT_EQ(population.range(1).max, 104);
+    EXPECT_THAT(population.children_of(3), ElementsAre(1, 2));
+}
+
+TEST(Population, TheFirstGenerationHasNoParents) {
+    Population population{2};
+    ASSERT_EQ(population.add(page_of(0, 2, 4, 1)), std::nullopt);
+    ASSERT_EQ(population.add(page_of(2, 2, 4, 1)), std::nullopt);
+    EXPECT_FALSE(population.has_parents());
+    EXPECT_TRUE(population.children_of(1).empty());
+}
+
+TEST(Population, OfNobodyIsWhole) {
+    Population population{2};
+    ASSERT_EQ(population.add(page_of(0, 0, 0)), std::nullopt);
+    EXPECT_TRUE(population.whole());
+}
+
+TEST(Population, FamiliesAreThoseWhoComeOfOneFounderTheLargestFirst) {
+    Population population{2};
+    auto page = page_of(0, 20, 20);
+    page.clear_founders();
+    // 9 has one, 4 and 8 have two, ten others one each, and 5 has the rest.
+    for (const std::uint32_t founder : {9, 8, 4, 8, 4, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 5, 5, 5, 5, 5}) {
+        put(*page.mutable_founders(), founder);
+    }
+    ASSERT_EQ(population.add(page), std::nullopt);
+    EXPECT_EQ(population.family_count(), 14u);
+    std::vector<std::uint32_t> founders;
+    for (const auto& family : population.families()) {
+        founders.push_back(family.founder);
+    }
+    EXPECT_THAT(founders, ElementsAre(5, 4, 8, 9, 10, 11, 12));
+    EXPECT_EQ(population.families()[0].size, 5u);
+    EXPECT_EQ(population.family(1), 2); // of 8
+    EXPECT_EQ(population.family(14), Population::no_family);
+    page.clear_founders();
+    Population unknown{2};
+    ASSERT_EQ(unknown.add(page), std::nullopt);
+    EXPECT_TRUE(unknown.families().empty());
+    EXPECT_EQ(unknown.family(3), Population::no_family);
+}
+
+TEST(Population, RejectsWhatIsNoPage) {
+    struct Fault {
+        const char* what;
+        std::function<void(evod::v1::Population&)> change;
+    };
+    const auto a_byte_less = [](std::string& bytes) { bytes.pop_back(); };
+    const Fault faults[] = {
+        {"population.genes has", [&](auto& page) { a_byte_less(*page.mutable_genes()); }},
+        {"population.genes has", [&](auto& page) { page.mutable_genes()->append(8, '\0'); }},
+        {"population.parents has", [&](auto& page) { a_byte_less(*page.mutable_parents()); }},
+        {"population.parents has", [&](auto& page) { page.clear_parents(); }},
+        {"population.founders has", [&](auto& page) { a_byte_less(*page.mutable_founders()); }},
+        {"population.founders has", [&](auto& page) { page.clear_founders(); }},
+        {"population.choices has", [&](auto& page) { a_byte_less(*page.mutable_choices()); }},
+        {"population.choices has", [&](auto& page) { (*page.mutable_choices())[0] = 9; }},
+        {"population.forces has", [&](auto& page) { a_byte_less(*page.mutable_forces()); }},
+        {"population.targets has", [&](auto& page) { page.clear_targets(); }},
+        {"population.forces has what is no number",
+         [&](auto& page) {
+             page.mutable_forces()->resize(page.forces().size() - 4);
+             put(*page.mutable_forces(), std::numeric_limits<float>::infinity());
+         }},
+        {"population.first is", [&](auto& page) { page.set_first(2); }},
+        {"population.first is", [&](auto& page) { page.set_first(4'000'000'000); }},
+        {"population.count is", [&](auto& page) { page.set_count(0); }},
+        {"population.count is", [&](auto& page) { page.set_count(3); }},
+        {"population.generation is", [&](auto& page) { page.set_generation(5); }},
+        {"population.generation is", [&](auto& page) { page.set_organism_count(6); }},
+        {"population.genes has", [&](auto& page) { page.set_count(1); }},
+    };
+    for (const Fault& fault : faults) {
+        Population population{2};
+        ASSERT_EQ(population.add(page_of(0, 3, 5)), std::nullopt);
+        auto page = page_of(3, 2, 5);
+        fault.change(page);
+        const auto wrong = population.add(page);
+        ASSERT_TRUE(wrong) << fault.what;
+        EXPECT_THAT(*wrong, HasSubstr(fault.what));
+        EXPECT_EQ(population.next(), 3u) << "nothing was taken in";
+        EXPECT_EQ(population.add(page_of(3, 2, 5)), std::nullopt);
+        EXPECT_TRUE(population.whole());
+    }
+}
+
+} // namespace
+} // namespace evod::viewer

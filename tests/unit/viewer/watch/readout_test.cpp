@@ -1,0 +1,97 @@
+#include "client/viewer/watch/readout.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(Readout, WritesNumbersAndTimesAsPeopleReadThem) {
+    EXPECT_EQ(with_separators(0), "0");
+    EXPECT_EQ(with_separators(999), "999");
+    EXPECT_EQ(with_separators(1000), "1,000");
+    EXPECT_EQ(with_separators(1234567), "1,234,567");
+    EXPECT_EQ(shown_duration(0), "0.0 s");
+    EXPECT_EQ(shown_duration(12.39), "12.3 s");
+    EXPECT_EQ(shown_duration(59.99), "59.9 s");
+    EXPECT_EQ(shown_duration(60), "1:00.0");
+    EXPECT_EQ(shown_duration(3675.25), "61:15.2");
+}
+
+TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
+    evod::v1::Storage storage;
+    EXPECT_EQ(shown_storage(storage), "");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_FAILING);
+    storage.set_reason("it is full");
+    EXPECT_EQ(shown_storage(storage), "Commands are refused: it is full");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "running");
+    storage.set_state(evod::v1::STORAGE_STATE_STALLED);
+    EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk, commands are refused: it is full");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
+    EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk: it is full");
+}
+
+TEST(Readout, WritesSpeedsAsMultiplesOfRealTime) {
+    evod::v1::Speed speed;
+    speed.set_real_time_factor(1);
+    EXPECT_EQ(shown_speed(speed), "1×");
+    speed.set_real_time_factor(64);
+    EXPECT_EQ(shown_speed(speed), "64×");
+    speed.set_real_time_factor(0.125);
+    EXPECT_EQ(shown_speed(speed), "1/8×");
+    speed.set_real_time_factor(0.3);
+    EXPECT_EQ(shown_speed(speed), "0.3×");
+    speed.set_max(true);
+    EXPECT_EQ(shown_speed(speed), "max");
+}
+
+TEST(Readout, ARefusalIsASentence) {
+    evod::v1::Status status;
+    status.set_message("there is no such island");
+    auto& violation = *status.add_violations();
+    violation.set_field("subscribe_snapshots.island");
+    violation.set_got("9");
+    violation.set_allowed("0 to 7");
+    EXPECT_EQ(shown_refusal(status), "There is no such island (9); allowed: 0 to 7");
+}
+
+TEST(Readout, TellsTheIslandOnlyWhereThereAreSeveral) {
+    evod::v1::SnapshotFrame picture;
+    picture.set_world("default");
+    picture.set_island_count(1);
+    picture.mutable_speed()->set_real_time_factor(2);
+    picture.set_state(evod::v1::RUN_STATE_RUNNING);
+    picture.set_ticks_per_s(119.7);
+    RunControl control;
+    control.see(picture);
+    EXPECT_EQ(place_and_speed(picture, control), "default · 2× (120 ticks/s)");
+    picture.set_island_count(8);
+    picture.set_island(2);
+    EXPECT_EQ(place_and_speed(picture, control), "default · island 2 of 0–7 · 2× (120 ticks/s)");
+}
+
+TEST(Readout, HasEveryStatisticOfTheGenerationThatRunsAndOfTheOneBefore) {
+    evod::v1::SnapshotFrame picture;
+    picture.set_tick(36'034);
+    picture.set_simulated_s(600.56);
+    picture.mutable_live()->set_alive_count(43);
+    picture.mutable_live()->set_organism_count(50);
+    picture.mutable_live()->set_health_mean(78.25);
+    picture.mutable_live()->set_food_eaten(1312);
+    picture.mutable_live()->set_poison_eaten(45);
+    evod::v1::GenerationStatistics last;
+    last.set_generation(15);
+    last.set_fitness_best(251.34);
+    last.set_fitness_mean(160.2);
+    EXPECT_THAT(statistics(picture, &last),
+                ElementsAre("alive 43 of 50", "mean health 78.2", "food eaten 1,312", "poison eaten 45",
+                            "tick 36,034 (10:00.5)", "fitness of generation 15: best 251.3, mean 160.2"));
+    EXPECT_EQ(statistics(picture, nullptr).size(), 5u);
+}
+
+} // namespace
+} // namespace evod::viewer

@@ -1,0 +1,444 @@
+#include "client/viewer/watch/watch.h"
+
+#include "tests/unit/link/fake_server.h"
+
+#include <gmock/gmock.h>
+
+#include <thread>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+
+struct WatchTest : testing::Test {
+    Watch::Wanted wanted() const {
+        Watch::Wanted island{.connection = {}, .world = "default", .island = 1};
+        island.connection.server = server.endpoint();
+        return island;
+    }
+
+    /// Updates until the condition holds; fails if it does not within some seconds.
+    template <class Condition>
+    void until(Watch& watch, Condition condition) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{10};
+        while (!condition()) {
+            ASSERT_LT(std::chrono::steady_clock::now(), end) << "it never came to that";
+            watch.update(std::chrono::steady_clock::now());
+            for (std::string& notice : watch.take_notices()) {
+                notices.push_back(std::move(notice));
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        }
+    }
+
+    /// Welcomes the viewer and answers its subscriptions, the pictures as number 7; its question comes next.
+    link::FakeSession begin(Watch&) {
+        link::FakeSession session = server.accept_and_welcome();
+        const auto events = session.read_request();
+        EXPECT_TRUE(events.has_subscribe_events());
+        session.answer_subscription(events, 6);
+        const auto pictures = session.read_request();
+        EXPECT_EQ(pictures.subscribe_snapshots().world(), "default");
+        EXPECT_EQ(pictures.subscribe_snapshots().island(), 1u);
+        session.answer_subscription(pictures, 7);
+        return session;
+    }
+
+    static void send_picture(link::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
+                             std::uint64_t tick, const std::string& world = "default") {
+        evod::v1::SnapshotFrame frame;
+        wire::encode({.width_px = 100, .height_px = 100}, frame);
+        frame.set_world(world);
+        frame.set_run_id("a");
+        frame.set_subscription_id(subscription_id);
+        frame.set_island(island);
+        frame.set_island_count(3);
+        frame.set_tick(tick);
+        frame.set_state(evod::v1::RUN_STATE_RUNNING);
+        session.send(frame);
+    }
+
+    static evod::v1::WorldInfo info(const std::string& name, evod::v1::RunState state) {
+        evod::v1::WorldInfo world;
+        world.set_name(name);
+        world.set_run_id("a");
+        world.set_state(state);
+        return world;
+    }
+
+    static void answer_statistics(link::FakeSession& session, const evod::v1::Request& question) {
+        EXPECT_TRUE(question.has_get_statistics());
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(question.request_id());
+        auto& statistics = *message.mutable_response()->mutable_statistics();
+        *statistics.mutable_world() = info("default", evod::v1::RUN_STATE_RUNNING);
+        for (std::uint32_t island = 0; island < 3; ++island) {
+            statistics.add_last()->set_island(island);
+            statistics.mutable_last(static_cast<int>(island))->set_fitness_best(100 + island);
+        }
+        session.send(message);
+    }
+
+    link::FakeServer server;
+    std::vector<std::string> notices;
+};
+
+TEST_F(WatchTest, ShowsPicturesOfTheIslandAndKnowsItsLastGeneration) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    EXPECT_EQ(watch.picture()->about.tick(), 50u);
+    EXPECT_FALSE(watch.all_answered());
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    ASSERT_NE(watch.last_generation(), nullptr);
+    EXPECT_EQ(watch.last_generation()->fitness_best(), 101);
+}
+
+TEST_F(WatchTest, TurnsFromTheLastIslandToTheFirst) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    for (const std::uint32_t island : {2u, 0u}) {
+        watch.turn_islands(1);
+        EXPECT_EQ(watch.picture(), nullptr) << "nothing of the other island stays";
+        EXPECT_TRUE(session.read_request().has_unsubscribe());
+        const auto pictures = session.read_request();
+        EXPECT_EQ(pictures.subscribe_snapshots().island(), island);
+        session.answer_subscription(pictures, 20 + island);
+        answer_statistics(session, session.read_request());
+        send_picture(session, 20 + island, island, 60);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        EXPECT_EQ(watch.island(), island);
+        EXPECT_EQ(watch.picture()->about.island(), island);
+    }
+}
+
+TEST_F(WatchTest, ARefusedCommandIsToldAndTheStateIsAskedFor) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    watch.pause_or_resume();
+    const auto pause = session.read_request();
+    EXPECT_TRUE(pause.has_pause());
+    session.refuse(pause.request_id(), evod::v1::CODE_RESOURCE_EXHAUSTED, "the mailbox is full");
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("The mailbox is full"));
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_RUNNING);
+}
+
+TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    watch.step(1); // pauses it first
+    evod::v1::ServerMessage answer, event;
+    const auto answer_with = [&](const evod::v1::Request& request, evod::v1::RunState state) {
+        answer.mutable_response()->set_request_id(request.request_id());
+        *answer.mutable_response()->mutable_world() = info("default", state);
+        answer.mutable_response()->mutable_world()->set_tick(52);
+    };
+    const auto pause = session.read_request();
+    EXPECT_TRUE(pause.has_pause());
+    answer_with(pause, evod::v1::RUN_STATE_PAUSED);
+    session.send(answer);
+    until(watch, [&] { return watch.control().tick() == 52; });
+    const auto step = session.read_request();
+    EXPECT_EQ(step.run_until_tick().tick(), 53u);
+    answer_with(step, evod::v1::RUN_STATE_RUNNING);
+    event.mutable_event()->set_world("default");
+    auto& ended = *event.mutable_event()->mutable_run_control_changed()->mutable_world();
+    ended = info("default", evod::v1::RUN_STATE_PAUSED);
+    ended.set_tick(53);
+    session.send(answer);
+    session.send(event);
+    std::this_thread::sleep_for(std::chrono::milliseconds{20}); // so that both are most likely taken in together
+    until(watch, [&] { return watch.all_answered() && watch.control().tick() == 53; });
+    EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_PAUSED);
+}
+
+TEST_F(WatchTest, GoesToTheWorldAfterThisOne) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    watch.next_world();
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(session.read_request().request_id());
+    for (const char* name : {"alpha", "default", "omega"}) {
+        *message.mutable_response()->mutable_worlds()->add_worlds() = info(name, evod::v1::RUN_STATE_WAITING);
+    }
+    session.send(message);
+    until(watch, [&] { return watch.world() == "omega"; });
+    EXPECT_EQ(watch.island(), 0u);
+    EXPECT_FALSE(watch.control().known());
+    EXPECT_TRUE(session.read_request().has_unsubscribe());
+    EXPECT_EQ(session.read_request().subscribe_snapshots().world(), "omega");
+}
+
+TEST_F(WatchTest, AMissingWorldIsLookedAtAsSoonAsItIsMade) {
+    Watch watch{wanted()};
+    auto session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 6);
+    session.refuse(session.read_request().request_id(), evod::v1::CODE_NOT_FOUND, "no such world");
+    until(watch, [&] { return watch.refusal().has_value(); });
+    watch.update(std::chrono::steady_clock::now()); // asks how the world is doing, if it has not yet
+    session.refuse(session.read_request().request_id(), evod::v1::CODE_NOT_FOUND, "no such world");
+    EXPECT_EQ(*watch.refusal(), "No such world");
+    evod::v1::ServerMessage made;
+    made.mutable_event()->set_world("default");
+    *made.mutable_event()->mutable_world_created()->mutable_world() = info("default", evod::v1::RUN_STATE_WAITING);
+    session.send(made);
+    until(watch, [&] { return !watch.refusal(); });
+    auto request = session.read_request();
+    if (request.has_unsubscribe()) {
+        request = session.read_request();
+    }
+    EXPECT_EQ(request.subscribe_snapshots().world(), "default");
+}
+
+TEST_F(WatchTest, TellsOfOthersChangesAndFollowsThem) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    evod::v1::ServerMessage message;
+    message.mutable_event()->set_world("default");
+    auto& changed = *message.mutable_event()->mutable_parameters_changed();
+    changed.set_by("evoctl 127.0.0.1");
+    changed.add_changed()->set_name("mutation_chance");
+    session.send(message);
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("evoctl 127.0.0.1 changed mutation_chance"));
+    auto paused = info("default", evod::v1::RUN_STATE_PAUSED);
+    paused.set_tick(60);
+    *message.mutable_event()->mutable_run_control_changed()->mutable_world() = paused;
+    session.send(message);
+    until(watch, [&] { return watch.control().state() == evod::v1::RUN_STATE_PAUSED; });
+    message.mutable_event()->mutable_generation_finished()->add_statistics()->set_island(1);
+    message.mutable_event()->mutable_generation_finished()->mutable_statistics(0)->set_fitness_best(222);
+    session.send(message);
+    until(watch, [&] { return watch.last_generation() && watch.last_generation()->fitness_best() == 222; });
+}
+
+TEST_F(WatchTest, KnowsHowItStandsWithTheDisk) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    until(watch, [&] { return session.unread_bytes() > 0; });
+    const auto question = session.read_request();
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(question.request_id());
+    auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
+    world = info("default", evod::v1::RUN_STATE_RUNNING);
+    world.mutable_storage()->set_state(evod::v1::STORAGE_STATE_FAILING);
+    world.mutable_storage()->set_reason("it is full");
+    session.send(message);
+    until(watch, [&] { return watch.storage().reason() == "it is full"; });
+    auto& told = *message.mutable_event()->mutable_storage_changed()->mutable_storage();
+    told.set_state(evod::v1::STORAGE_STATE_STALLED);
+    session.send(message);
+    until(watch, [&] { return link::worlds_wait(watch.storage()); });
+    EXPECT_TRUE(notices.empty());
+    told.set_state(evod::v1::STORAGE_STATE_KEEPS_UP);
+    session.send(message);
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("Run files can be written again"));
+    EXPECT_FALSE(link::worlds_wait(watch.storage()));
+}
+
+TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
+    Watch watch{wanted()};
+    {
+        auto session = begin(watch);
+        send_picture(session, 7, 1, 50);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        answer_statistics(session, session.read_request());
+        until(watch, [&] { return watch.all_answered(); });
+    }
+    until(watch, [&] { return watch.connection_status().state != link::State::Connected; });
+    EXPECT_NE(watch.picture(), nullptr) << "the last picture stays in sight";
+    auto session = begin(watch);
+    until(watch, [&] { return !watch.all_answered(); });
+    answer_statistics(session, session.read_request());
+    send_picture(session, 7, 1, 70);
+    until(watch, [&] { return watch.picture()->about.tick() == 70; });
+}
+
+TEST_F(WatchTest, AllIslandsComeOverOneSubscription) {
+    Watch::Wanted all = wanted();
+    all.all_islands = true;
+    Watch watch{all};
+    link::FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 6);
+    const auto pictures = session.read_request();
+    EXPECT_FALSE(pictures.subscribe_snapshots().has_island());
+    session.answer_subscription(pictures, 7);
+    for (const std::uint32_t island : {0u, 1u, 2u}) {
+        send_picture(session, 7, island, 50 + island);
+    }
+    until(watch, [&] { return watch.picture_of(0) && watch.picture_of(1) && watch.picture_of(2); });
+    answer_statistics(session, session.read_request());
+    EXPECT_EQ(watch.island_count(), 3u);
+    EXPECT_EQ(watch.picture()->about.tick(), 51u) << "of the island that is chosen";
+    watch.turn_islands(1);
+    EXPECT_EQ(watch.picture()->about.tick(), 52u) << "there already";
+    watch.show_all_islands(false);
+    EXPECT_TRUE(session.read_request().has_unsubscribe());
+    EXPECT_EQ(session.read_request().subscribe_snapshots().island(), 2u);
+}
+
+/// In the past of the world, paused.
+struct PastTest : WatchTest {
+    static evod::v1::WorldInfo past(std::uint64_t tick) {
+        evod::v1::WorldInfo world = info("default@3", evod::v1::RUN_STATE_PAUSED);
+        world.set_tick(tick);
+        auto& recording = *world.mutable_recording();
+        recording.set_past_of("default");
+        recording.set_first_generation(1);
+        recording.set_last_generation(9);
+        recording.set_last_tick(900);
+        return world;
+    }
+    static void answer_with(link::FakeSession& session, const evod::v1::Request& request,
+                            const evod::v1::WorldInfo& world) {
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(request.request_id());
+        *message.mutable_response()->mutable_world() = world;
+        session.send(message);
+    }
+    /// The next request but for questions how far the past reaches, which are answered.
+    static evod::v1::Request next(link::FakeSession& session) {
+        for (;;) {
+            const evod::v1::Request request = session.read_request();
+            if (!request.has_get_statistics()) {
+                return request;
+            }
+            evod::v1::ServerMessage message;
+            message.mutable_response()->set_request_id(request.request_id());
+            *message.mutable_response()->mutable_statistics()->mutable_world() =
+                request.get_statistics().world() == "default" ? info("default", evod::v1::RUN_STATE_RUNNING)
+                                                              : past(100);
+            session.send(message);
+        }
+    }
+    /// Watches the past, with pictures as subscription 9.
+    link::FakeSession look_back(Watch& watch) {
+        auto session = begin(watch);
+        send_picture(session, 7, 1, 850);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        answer_statistics(session, session.read_request());
+        until(watch, [&] { return watch.all_answered(); });
+        watch.open_past({});
+        const auto open = session.read_request();
+        EXPECT_EQ(open.open_past().world(), "default");
+        answer_with(session, open, past(100));
+        until(watch, [&] { return watch.opened_past(); });
+        EXPECT_EQ(next(session).unsubscribe().subscription_id(), 7u);
+        const auto pictures = next(session);
+        EXPECT_EQ(pictures.subscribe_snapshots().world(), "default@3");
+        session.answer_subscription(pictures, 9);
+        const auto events = next(session);
+        EXPECT_EQ(events.subscribe_events().world(), "default@3") << "those of all worlds leave it out";
+        session.answer_subscription(events, 10);
+        send_picture(session, 9, 1, 100, "default@3"); // once it is there the answers are, too
+        until(watch, [&] { return watch.picture() != nullptr; });
+        return session;
+    }
+};
+
+TEST_F(PastTest, IsAWorldOfItsOwnUntilOneReturnsToThePresent) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    ASSERT_NE(watch.recording(), nullptr);
+    EXPECT_EQ(watch.recording()->last_tick(), 900u);
+    EXPECT_EQ(watch.world(), "default@3");
+    EXPECT_EQ(watch.island(), 1u);
+    watch.return_to_present();
+    EXPECT_EQ(watch.world(), "default");
+    EXPECT_EQ(watch.recording(), nullptr);
+    EXPECT_EQ(next(session).unsubscribe().subscription_id(), 10u);
+    EXPECT_EQ(next(session).close_past().world(), "default@3");
+    EXPECT_EQ(next(session).unsubscribe().subscription_id(), 9u);
+    EXPECT_EQ(next(session).subscribe_snapshots().world(), "default");
+}
+
+TEST_F(PastTest, OfManySeeksTheNewestFollowsTheOneUnderWay) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    for (const std::uint64_t tick : {200u, 300u, 400u}) {
+        evod::v1::RunMoment moment;
+        moment.set_tick(tick);
+        watch.seek(moment);
+    }
+    auto seek = next(session);
+    EXPECT_EQ(seek.seek().world(), "default@3");
+    EXPECT_EQ(seek.seek().to().tick(), 200u);
+    answer_with(session, seek, past(200));
+    until(watch, [&] { return watch.control().tick() == 200; });
+    seek = next(session);
+    EXPECT_EQ(seek.seek().to().tick(), 400u);
+    ASSERT_NE(watch.sought(), nullptr);
+    answer_with(session, seek, past(400));
+    until(watch, [&] { return watch.sought() == nullptr; });
+    EXPECT_EQ(watch.control().tick(), 400u);
+}
+
+TEST_F(PastTest, GenerationsAreTurnedFromTheOneLastAskedForAndWithinTheRun) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    evod::v1::RunMoment moment;
+    moment.set_generation(4);
+    watch.seek(moment);
+    watch.turn_generations(-1);
+    watch.turn_generations(-1);
+    EXPECT_EQ(watch.sought()->generation(), 2u);
+    watch.turn_generations(-5);
+    EXPECT_EQ(watch.sought()->generation(), 1u);
+    watch.turn_generations(50);
+    EXPECT_EQ(watch.sought()->generation(), 9u);
+}
+
+TEST_F(PastTest, APastThatCannotBeOpenedIsTold) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 850);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    watch.open_past({});
+    EXPECT_FALSE(watch.all_answered());
+    session.refuse(session.read_request().request_id(), evod::v1::CODE_FAILED_PRECONDITION, "the server keeps no runs");
+    until(watch, [&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre("The server keeps no runs"));
+    EXPECT_FALSE(watch.opened_past());
+    EXPECT_EQ(watch.world(), "default");
+}
+
+TEST_F(PastTest, AForkIsMadeFromWhatIsShown) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    watch.fork("other");
+    const auto fork = next(session);
+    EXPECT_EQ(fork.fork_world().world(), "default@3");
+    EXPECT_EQ(fork.fork_world().name(), "other");
+    EXPECT_FALSE(fork.fork_world().has_at_generation());
+    answer_with(session, fork, info("other", evod::v1::RUN_STATE_WAITING));
+    until(watch, [&] { return watch.forked() == "other"; });
+}
+
+} // namespace
+} // namespace evod::viewer
