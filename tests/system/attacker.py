@@ -10,10 +10,13 @@ became of it, as JSON. It never has more than NUMBER connections, and makes no m
     deaf N       N sessions that subscribe to pictures and never read them
     connects N   N connections a second, each closed at once
     malformed N  N frames a second with bodies that are no message, on one session that reads its answers
+    churn N      N sessions that watch, listen and ask for half a second or so and leave, some of them rudely; then
+                 others come
     views N      N viewers of the world w, each of a part of it of its own; pictures are read away
     watch N      N viewers of the whole world w; pictures are read away
 """
 import json
+import random
 import select
 import socket
 import struct
@@ -51,6 +54,7 @@ def subscribing(view=None):
 class Connection(socket.socket):
     since = 0.0  # time.monotonic()
     position = 0  # of the next byte to send, where they are sent one by one
+    leaves = 0.0  # time.monotonic()
 
 
 def connect(i, *sent, receive_bytes=None):
@@ -180,6 +184,34 @@ def malformed():
                 counts["frames"] += 0 if rest else 100
 
 
+def churn():
+    chance = random.Random(1)
+    wishes = [subscribing(), *(subscribing(view(i)) for i in range(3)),
+              asking(subscribe_events=c.SubscribeEvents()), asking(get_history=c.GetHistory(world="w")),
+              asking(get_organism=c.GetOrganism(world="w")), asking(list_worlds=c.ListWorlds()),
+              asking(describe=c.Describe()), asking(get_metrics=c.GetMetrics()), asking(open_past=c.OpenPast(world="w")),
+              asking(unsubscribe=c.Unsubscribe(subscription_id=1)), b"EV\x01\x01\x03\0\0\0\xff\xff\xff"]
+
+    def come(i):
+        connection = connect(i, hello, *chance.choices(wishes, k=chance.randrange(8)))
+        connection.leaves = connection.since + chance.expovariate(2)
+        return connection
+
+    def stays(connection):
+        if time.monotonic() < connection.leaves:
+            return True
+        manner = chance.randrange(3)
+        try:
+            if manner == 1:  # in the middle of a frame
+                connection.send(asking(list_worlds=c.ListWorlds())[:9])
+            if manner == 2:  # without a word, and with answers unread
+                connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        except OSError:
+            pass  # the server was first
+        return False
+    hold(come, again=True, each_round=stays, pause_s=0.05)
+
+
 def view(i):
     return c.View(region=c.Region(left_px=300.0 * (i % 20), top_px=300.0 * (i // 20 % 20), width_px=1280, height_px=720))
 
@@ -189,6 +221,7 @@ attacks = {"idle": lambda: hold(lambda i: connect(i, hello)),
            "deaf": lambda: hold(lambda i: connect(i, hello, subscribing(), receive_bytes=4096), reads=False),
            "connects": connects,
            "malformed": malformed,
+           "churn": churn,
            "views": lambda: hold(lambda i: connect(i, hello, subscribing(view(i)))),
            "watch": lambda: hold(lambda i: connect(i, hello, subscribing()))}
 attacks[attack]()

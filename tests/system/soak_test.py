@@ -1,0 +1,63 @@
+"""Clients that come and go for a long time, and worlds that begin anew many times: the server does not grow.
+
+EVOD names the program, MESSAGES the folder of the message classes; SECONDS, which is 60 unless it is set, is for how long
+they come and go.
+"""
+import os
+import sys
+import time
+import unittest
+
+import hostile_test as hostile
+from hostile_test import c, plain, w
+
+SECONDS, ROUND_S = float(os.environ.get("SECONDS", 60)), 10.0
+RESETS, AT_ONCE, TICKS_EACH = 10_000, 25, 3
+GROWTH_BYTES = 8 << 20
+
+
+class Soak(hostile.Attacked):
+    def test_clients_come_and_go(self):
+        """Round after round, beside honest ones."""
+        begun, rounds, connected = time.monotonic(), [], 0
+        while len(rounds) < 3 or time.monotonic() - begun < SECONDS:
+            # The first brings the heap to its size.
+            back_bytes = GROWTH_BYTES if rounds else 8 * GROWTH_BYTES
+            became = self.attacked("churn", 100, at_least_s=ROUND_S, memory_back_bytes=back_bytes)
+            self.assertGreater(became["closed"], 500)
+            connected += became["connected"]
+            with plain.Client(self.server) as last:
+                plain.until(lambda: self.sessions(last) == 1, "all have gone")
+            rounds.append(self.memory_bytes())
+        print(f"{connected} clients; MiB after each round:", *(f"{x / (1 << 20):.1f}" for x in rounds), file=sys.stderr)
+        self.assertLess(rounds[-1], rounds[0] + GROWTH_BYTES)
+
+    @staticmethod
+    def sessions(client):
+        families = client.call(get_metrics=c.GetMetrics()).metrics.families
+        return sum(sample.value for family in families if family.name == "evod_sessions" for sample in family.samples)
+
+    def test_a_world_begins_anew_ten_thousand_times(self):
+        with plain.Client(self.server) as control, plain.Client(self.server) as viewer:
+            control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=plain.assignments(
+                population_size=10, food_count=5, poison_count=5)))
+            control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
+            viewer.call(subscribe_events=c.SubscribeEvents(world="w"))
+            viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world="w", rate_hz=60))
+            memory, hashes = [], set()
+            while len(memory) < 10:
+                for _ in range(RESETS // 10 // AT_ONCE):
+                    asked = [control.ask(reset_world=c.ResetWorld(world="w")) for _ in range(AT_ONCE)]
+                    self.assertEqual({control.response(one).status.code for one in asked}, {0})
+                    hashes.add(control.run_to(TICKS_EACH, "w").state_hash)
+                    viewer.next_picture(lambda one: one.tick == TICKS_EACH)
+                    viewer.events.clear()
+                memory.append(self.memory_bytes())
+            control.call(delete_world=c.DeleteWorld(world="w"))
+        print("MiB after each thousand:", *(f"{x / (1 << 20):.1f}" for x in memory), file=sys.stderr)
+        self.assertEqual(len(hashes), 1)  # as it was told no other seed
+        self.assertLess(memory[-1], memory[0] + GROWTH_BYTES)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2, warnings="ignore")
