@@ -8,7 +8,6 @@
 #pragma once
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/stage/input.h"
 
 #include <SFML/Window/Event.hpp>
 
@@ -19,6 +18,11 @@
 struct ImFont;
 
 namespace evod::viewer {
+
+/// Events that widgets take for themselves.
+struct Captured {
+    bool keyboard = false, mouse = false;
+};
 
 class Gui {
   public:

@@ -1,6 +1,7 @@
 #include "client/viewer/panels/panels.h"
 
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
@@ -9,7 +10,6 @@
 #include "client/viewer/panels/run_panel.h"
 #include "client/viewer/panels/view_panel.h"
 #include "client/viewer/panels/worlds_panel.h"
-#include "client/viewer/stage/overlay.h"
 
 #include <imgui.h>
 
@@ -17,6 +17,10 @@
 #include <string>
 
 namespace evod::viewer {
+
+std::string panel_key(std::size_t index) {
+    return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
+}
 
 Panels::Panels() {
     places_.push_back({std::make_unique<WorldsPanel>()});

@@ -5,11 +5,18 @@
 
 #include "client/viewer/panels/panel.h"
 
+#include <cstddef>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace evod::viewer {
+
+/// As many panels as there are keys: F1 is the help.
+constexpr std::size_t panel_key_count = 11;
+/// "F2" for the first; empty for those beyond the keys.
+std::string panel_key(std::size_t index);
 
 class Panels {
   public:

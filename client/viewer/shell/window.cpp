@@ -17,7 +17,7 @@ void toggle(bool& shown) {
 } // namespace
 
 Window::Window(Screen& screen, const Options& options)
-    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{options} {}
+    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{wanted_of(options), options.beside} {}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = link::WorldView::Clock;

@@ -1,5 +1,7 @@
 #include "client/viewer/stage/input.h"
 
+#include "client/viewer/panels/panels.h"
+
 #include <cmath>
 
 namespace evod::viewer {
@@ -83,9 +85,8 @@ constexpr HelpLine lines[] = {
     {"Q", "quit; the worlds run on"},
 };
 
-// One panel for each: F1 is the help.
 constexpr Key::Key first_panel_key = Key::F2, last_panel_key = Key::F12;
-constexpr std::size_t panel_key_count = last_panel_key - first_panel_key + 1;
+static_assert(last_panel_key - first_panel_key + 1 == panel_key_count);
 
 constexpr double zoom_of_one_notch = 1.2;
 constexpr double pan_pixels_per_s = 700;
@@ -101,10 +102,6 @@ std::optional<std::size_t> panel_of(Action action) {
     return action < Action::FirstPanel
                ? std::nullopt
                : std::optional{static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::FirstPanel)};
-}
-
-std::string panel_key(std::size_t index) {
-    return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
 }
 
 std::optional<Action> Input::press(const sf::Event::KeyEvent& key) {

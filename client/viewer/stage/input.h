@@ -7,6 +7,7 @@
 #pragma once
 
 #include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
 
 #include <SFML/Window/Event.hpp>
 
@@ -53,8 +54,6 @@ enum class Action {
 
 /// Which panel is to be shown or hidden; nullopt if that is not what the action says.
 std::optional<std::size_t> panel_of(Action action);
-/// "F2" for the first; empty for those beyond the keys.
-std::string panel_key(std::size_t index);
 
 constexpr unsigned step_many_ticks = 60;
 
@@ -63,11 +62,6 @@ struct HelpLine {
     std::string_view keys, text;
 };
 std::span<const HelpLine> help_lines();
-
-/// Events that the overlay takes for itself.
-struct Captured {
-    bool keyboard = false, mouse = false;
-};
 
 class Input {
   public:

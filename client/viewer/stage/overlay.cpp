@@ -1,7 +1,9 @@
 #include "client/viewer/stage/overlay.h"
 
 #include "client/viewer/drawing/palette.h"
-#include "client/viewer/scene/scene.h"
+#include "client/viewer/drawing/window_layout.h"
+#include "client/viewer/panels/panels.h"
+#include "client/viewer/stage/input.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -15,9 +17,7 @@ namespace evod::viewer {
 
 namespace {
 
-// In pixels at scale 1.
-constexpr float panel_strip = 26, top_strip = 38, bottom_strip = 30; // heights
-constexpr float edge = 14;                                           // between text and the window's edge
+constexpr float edge = 14; // pixels at scale 1 between text and the window's edge
 constexpr std::chrono::seconds notice_shown{6};
 constexpr std::size_t notices_max = 4;
 
@@ -57,20 +57,6 @@ Colour state_colour(const Watch& watch) {
 }
 
 } // namespace
-
-Rectangle panel_strip_of(unsigned width_pixels, double scale) {
-    return {0, 0, double(width_pixels), std::round(panel_strip * scale)};
-}
-
-Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale) {
-    const double top = panel_strip_of(width_pixels, scale).height;
-    return {0, top, double(width_pixels), std::max(height_pixels - top, 1.0)};
-}
-
-Rectangle viewport_of(Rectangle place, double scale) {
-    const double top = std::round(top_strip * scale), bottom = std::round(bottom_strip * scale);
-    return {place.left, place.top + top, place.width, std::max(place.height - top - bottom, 1.0)};
-}
 
 void Overlay::notice(std::string text, Clock::time_point now) {
     std::erase_if(notices_, [&](const Notice& shown) { return shown.text == text; });

@@ -16,17 +16,6 @@
 
 namespace evod::viewer {
 
-/// The strip at the top of a window that hands act upon, with the names of the panels.
-Rectangle panel_strip_of(unsigned width_pixels, double scale = 1);
-/// What that strip leaves to the worlds.
-Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale = 1);
-
-/// The part of a window, or of a place in it, that the strips of a world leave to the island.
-Rectangle viewport_of(Rectangle place, double scale = 1);
-inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
-    return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
-}
-
 class Overlay {
   public:
     using Clock = link::WorldView::Clock;

@@ -8,7 +8,6 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/scene/minimap.h"
 #include "client/viewer/scene/sight.h"
-#include "client/viewer/shell/options.h"
 #include "client/viewer/stage/timeline.h"
 #include "client/viewer/watch/watch.h"
 
@@ -63,7 +62,8 @@ class Pane {
 
 class Panes {
   public:
-    explicit Panes(const Options& options, double rate_hz = Watch::Wanted{}.rate_hz);
+    /// beside  a second world; nullopt: only one
+    explicit Panes(Watch::Wanted wanted, const std::optional<std::string>& beside = {});
 
     /// Takes in what has come for each of them.
     void update(link::WorldView::Clock::time_point now);

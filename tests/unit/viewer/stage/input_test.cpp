@@ -1,5 +1,7 @@
 #include "client/viewer/stage/input.h"
 
+#include "client/viewer/panels/panels.h"
+
 #include <gtest/gtest.h>
 
 namespace evod::viewer {
