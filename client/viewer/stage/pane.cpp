@@ -73,7 +73,7 @@ void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interact
 
 bool Panes::focus_at(Point screen) {
     for (std::size_t i = 0; i < panes_.size(); ++i) {
-        if (!panes_[i]->place().contains(screen) && !panes_[i]->timeline_place().contains(screen)) {
+        if (!panes_[i]->place().contains(screen)) {
             continue;
         }
         focus_ = i;

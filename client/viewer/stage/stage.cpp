@@ -48,14 +48,20 @@ void Stage::draw(Panes& panes, const Frame& frame) {
     std::size_t scene = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         Pane& pane = panes[i];
+        gui_.spots().begin_panel(i == 0 ? "left" : "right");
         for (const Tile& tile : pane.tiles()) {
             if (scenes_.size() <= scene) {
                 scenes_.push_back(std::make_unique<Scene>());
             }
-            draw_tile(pane, tile, *scenes_[scene++], frame);
+            draw_tile(pane, tile, *scenes_[scene++], frame, static_cast<int>(i));
         }
         overlay_.build_world(pane.watch, gui_, pane.place(), frame.interactive && panes.has_focus(pane));
         pane.timeline.build(pane.watch, gui_, pane.timeline_place(), static_cast<int>(i));
+        gui_.spots().begin_panel({});
+        const bool line = pane.timeline.take_press(), map = pane.minimap.take_press();
+        if (line || map) {
+            panes.focus(i);
+        }
     }
     overlay_.build(gui_, panels_.titles(), frame.now);
     if (frame.interactive) {
@@ -64,7 +70,7 @@ void Stage::draw(Panes& panes, const Frame& frame) {
     gui_.draw();
 }
 
-void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame) {
+void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame, int pane_number) {
     const bool chosen = tile.island == pane.watch.island();
     const double blend = frame.glide ? tile.view.blend_at(frame.now) : 1;
     const wire::Picture* picture = tile.view.latest().get();
@@ -94,7 +100,7 @@ void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& f
     if (picture != nullptr && chosen) {
         build_legend(legend_of(sight, *picture, scene.density_scale(), scene.density_cell_px()), tile.camera, gui_);
         if (sight.shown.minimap) {
-            pane.minimap.build(pane.watch, tile.camera);
+            pane.minimap.build(pane.watch, tile.camera, gui_, pane_number);
         }
     }
     if (marked.pointed_at) {
