@@ -37,6 +37,8 @@ class Gui {
 
     void handle(const sf::Event& event);
     Captured captured() const;
+    /// Closes the menu, list or question that is in front, between two frames; false if none is open.
+    bool close_popup();
     /// Whether every event has been given to Dear ImGui.
     bool settled() const { return waiting_.empty(); }
 

@@ -40,6 +40,12 @@ void Stage::select_at(Pane& pane, Point screen) {
     }
 }
 
+Captured Stage::captured(const sf::Event& event) const {
+    Captured captured = gui_.captured();
+    captured.keyboard |= event.type == sf::Event::KeyPressed && panels_.take(event.key);
+    return captured;
+}
+
 void Stage::draw(Panes& panes, const Frame& frame) {
     panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
@@ -63,7 +69,7 @@ void Stage::draw(Panes& panes, const Frame& frame) {
             panes.focus(i);
         }
     }
-    overlay_.build(gui_, panels_.titles(), frame.now);
+    overlay_.build(gui_, panels_, frame.now);
     if (frame.interactive) {
         panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
     }

@@ -46,6 +46,9 @@ class Stage {
         return capture(frame, [&] { draw(panes, frame); });
     }
 
+    /// What of an event is for widgets and panels.
+    Captured captured(const sf::Event& event) const;
+
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
