@@ -56,7 +56,7 @@ void draw_frame(benchmark::State& state) {
     Stage stage;
     Options options;
     options.connection = nobody();
-    Panes panes{options};
+    Panes panes{wanted_of(options)};
     Pane& pane = panes.focused();
     const auto start = link::WorldView::Clock::now();
     const auto first = picture(organism_count, 0), second = picture(organism_count, 2);

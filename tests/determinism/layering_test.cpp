@@ -63,7 +63,19 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"proto/wire", {"proto/evod"}},
     {"client/link", {"proto/wire", "proto/evod"}},
     {"client/ctl", {"client/link", "proto/wire", "proto/evod"}},
-    {"client/viewer", {"client/link", "proto/wire", "proto/evod"}},
+    {"client/viewer/drawing", {}},
+    {"client/viewer/watch", {"client/link", "proto/wire", "proto/evod"}},
+    {"client/viewer/scene",
+     {"client/viewer/watch", "client/viewer/drawing", "client/link", "proto/wire", "proto/evod"}},
+    {"client/viewer/panels",
+     {"client/viewer/scene", "client/viewer/watch", "client/viewer/drawing", "client/link", "proto/wire",
+      "proto/evod"}},
+    {"client/viewer/stage",
+     {"client/viewer/panels", "client/viewer/scene", "client/viewer/watch", "client/viewer/drawing", "client/link",
+      "proto/wire", "proto/evod"}},
+    {"client/viewer/shell",
+     {"client/viewer/stage", "client/viewer/panels", "client/viewer/scene", "client/viewer/watch",
+      "client/viewer/drawing", "client/link", "proto/wire", "proto/evod"}},
 };
 
 std::string without_comments(const std::string& text) {

@@ -3,6 +3,7 @@
 #include <SFML/Window/Clipboard.hpp>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -186,6 +187,18 @@ bool Gui::give(const sf::Event& event, Given& given) {
 Captured Gui::captured() const {
     const ImGuiIO& io = ImGui::GetIO();
     return {.keyboard = io.WantCaptureKeyboard, .mouse = io.WantCaptureMouse};
+}
+
+bool Gui::close_popup() {
+    // Dear ImGui itself closes them with Esc only where keys move from widget to widget.
+    const auto& open = ImGui::GetCurrentContext()->OpenPopupStack;
+    bool seen = false;
+    while (!open.empty() && !seen) {
+        const ImGuiWindow* window = open.back().Window;
+        seen = window == nullptr || window->Active; // or else its panel is hidden
+        ImGui::ClosePopupToLevel(open.Size - 1, true);
+    }
+    return seen;
 }
 
 void Gui::begin(unsigned width_pixels, unsigned height_pixels, double seconds) {

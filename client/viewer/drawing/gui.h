@@ -8,7 +8,6 @@
 #pragma once
 
 #include "client/viewer/drawing/widgets.h"
-#include "client/viewer/stage/input.h"
 
 #include <SFML/Window/Event.hpp>
 
@@ -19,6 +18,11 @@
 struct ImFont;
 
 namespace evod::viewer {
+
+/// Events that widgets take for themselves.
+struct Captured {
+    bool keyboard = false, mouse = false;
+};
 
 class Gui {
   public:
@@ -33,6 +37,8 @@ class Gui {
 
     void handle(const sf::Event& event);
     Captured captured() const;
+    /// Closes the menu, list or question that is in front, between two frames; false if none is open.
+    bool close_popup();
     /// Whether every event has been given to Dear ImGui.
     bool settled() const { return waiting_.empty(); }
 

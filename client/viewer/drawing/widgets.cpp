@@ -49,6 +49,11 @@ bool button(const char* label) {
     return pressed;
 }
 
+bool window_pressed() {
+    constexpr ImGuiHoveredFlags in_any_case = ImGuiHoveredFlags_AllowWhenBlockedByActiveItem; // a field that is left
+    return ImGui::IsWindowHovered(in_any_case) && (ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1));
+}
+
 void say(std::string_view text, Colour colour) {
     ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
     ImGui::PushTextWrapPos(0);

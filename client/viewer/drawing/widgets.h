@@ -48,6 +48,9 @@ void mark(std::string_view name);
 /// ImGui::Button(), marked.
 bool button(const char* label);
 
+/// Whether a button of the mouse goes down in this frame on the window that is being made, or on what is in it.
+bool window_pressed();
+
 /// Small text in a quiet colour, or in the given one; wrapped at the edge of the panel.
 void say(std::string_view text, Colour colour = palette::text_quiet);
 

@@ -23,8 +23,8 @@ std::string print(const char* format, Arguments... arguments) {
 }
 
 /// A gene between the least and the greatest of the population; a line across the bar is the mean.
-void build_gene(const std::string& name, float value, const Population::Range& range) {
-    constexpr float height = 12;
+void build_gene(const std::string& name, float value, const Population::Range& range, float pixel) {
+    const float height = 12 * pixel;
     ImGui::TextUnformatted(name.c_str());
     const std::string text = print("%.1f", double{value});
     ImGui::SameLine(ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x);
@@ -38,8 +38,8 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(palette::background));
     list.AddRectFilled(corner, {across(value), corner.y + height}, ink(palette::organism));
-    list.AddLine({across(range.mean), corner.y - 2}, {across(range.mean), corner.y + height + 2}, ink(palette::wall),
-                 2);
+    list.AddLine({across(range.mean), corner.y - 2 * pixel}, {across(range.mean), corner.y + height + 2 * pixel},
+                 ink(palette::wall), 2 * pixel);
     ImGui::Dummy({width, height});
     if (ImGui::IsItemHovered()) {
         ImGui::SetTooltip("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
@@ -47,8 +47,8 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     }
 }
 
-void build_health(const std::vector<OrganismStory::Health>& points) {
-    constexpr float height = 70;
+void build_health(const std::vector<OrganismStory::Health>& points, float pixel) {
+    const float height = 70 * pixel;
     const float width = ImGui::GetContentRegionAvail().x;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -65,7 +65,7 @@ void build_health(const std::vector<OrganismStory::Health>& points) {
             line.push_back(
                 {corner.x + static_cast<float>((s - begin) / long_s) * width, corner.y + (1 - health / most) * height});
         }
-        list.AddPolyline(line.data(), static_cast<int>(line.size()), ink(palette::organism), 0, 1.5f);
+        list.AddPolyline(line.data(), static_cast<int>(line.size()), ink(palette::organism), 0, 1.5f * pixel);
         list.AddText(corner, ink(palette::text_quiet), print("%g", double{most}).c_str());
     }
     ImGui::Dummy({width, height});
@@ -142,13 +142,13 @@ void OrganismPanel::build(Context& context) {
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
     ImGui::Separator();
-    build_health(story->health());
+    build_health(story->health(), context.gui.scale());
     ImGui::Separator();
     const auto& names = context.sight.gene_names();
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {
         const float value = info.genes(static_cast<int>(gene));
         if (gene < story->ranges().size()) {
-            build_gene(names[gene], value, story->ranges()[gene]);
+            build_gene(names[gene], value, story->ranges()[gene], context.gui.scale());
         } else {
             ImGui::Text("%s %.1f", names[gene].c_str(), double{value});
         }

@@ -8,6 +8,9 @@
 #include "client/viewer/scene/sight.h"
 #include "client/viewer/watch/watch.h"
 
+#include <SFML/Window/Keyboard.hpp>
+
+#include <span>
 #include <string_view>
 
 namespace evod::viewer {
@@ -26,6 +29,13 @@ class Panel {
         float width, height; // in pixels at scale 1
     };
 
+    /// A key that the panel takes while it has the keyboard, and what the help says of it.
+    struct Key {
+        sf::Keyboard::Key key;
+        std::string_view help; // empty: what the one before does
+        bool control = false, shift = false;
+    };
+
     virtual ~Panel() = default;
 
     /// Also of the window, and of its line in the help: "Parameters".
@@ -33,6 +43,11 @@ class Panel {
 
     /// Until a person makes it another.
     virtual Size first_size() const { return {380, 480}; }
+
+    /// All other keys are the window's, whatever panel is in front.
+    virtual std::span<const Key> keys() const { return {}; }
+    /// Whether there is something now that they act upon.
+    virtual bool takes_keys() const { return true; }
 
     /// The widgets, between ImGui::Begin() and ImGui::End(); called only while it is shown.
     virtual void build(Context& context) = 0;

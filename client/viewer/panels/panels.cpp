@@ -1,6 +1,7 @@
 #include "client/viewer/panels/panels.h"
 
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/panels/parameters_panel.h"
@@ -9,7 +10,6 @@
 #include "client/viewer/panels/run_panel.h"
 #include "client/viewer/panels/view_panel.h"
 #include "client/viewer/panels/worlds_panel.h"
-#include "client/viewer/stage/overlay.h"
 
 #include <imgui.h>
 
@@ -17,6 +17,10 @@
 #include <string>
 
 namespace evod::viewer {
+
+std::string panel_key(std::size_t index) {
+    return index < panel_key_count ? "F" + std::to_string(index + 2) : "";
+}
 
 Panels::Panels() {
     places_.push_back({std::make_unique<WorldsPanel>()});
@@ -35,27 +39,37 @@ Panels::Panels() {
 void Panels::toggle(std::size_t index) {
     if (index < places_.size()) {
         places_[index].shown = !places_[index].shown;
-        front_ = index;
+        use(index);
     }
 }
 
+void Panels::use(std::size_t index) {
+    std::erase(used_, index);
+    used_.push_back(index);
+}
+
 void Panels::show(std::string_view title) {
-    for (Place& place : places_) {
-        place.shown = place.shown || place.panel->title() == title;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        if (titles_[i] == title && !places_[i].shown) {
+            toggle(i);
+        }
     }
 }
 
 bool Panels::close_front() {
-    if (front_ >= places_.size() || !places_[front_].shown) {
-        const auto last = std::ranges::find_if(places_.rbegin(), places_.rend(), &Place::shown);
-        if (last == places_.rend()) {
-            return false;
-        }
-        last->shown = false;
-        return true;
+    const auto last = std::find_if(used_.rbegin(), used_.rend(), [this](std::size_t i) { return places_[i].shown; });
+    if (last == used_.rend()) {
+        return false;
     }
-    places_[front_].shown = false;
+    places_[*last].shown = false;
     return true;
+}
+
+bool Panels::take(const sf::Event::KeyEvent& key) const {
+    return keyboard_ && shown(*keyboard_) && places_[*keyboard_].panel->takes_keys() && !key.alt && !key.system &&
+           std::ranges::any_of(keys_of(*keyboard_), [&](const Panel::Key& its) {
+               return its.key == key.code && its.control == key.control && its.shift == key.shift;
+           });
 }
 
 void Panels::begin_session() {
@@ -63,6 +77,7 @@ void Panels::begin_session() {
     for (std::size_t i = 0; i < places_.size(); ++i) {
         fresh.places_[i].shown = places_[i].shown;
     }
+    fresh.used_ = std::move(used_);
     *this = std::move(fresh);
 }
 
@@ -114,6 +129,7 @@ void Panels::build(Panel::Context context) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const Rectangle island =
         viewport_of(below_panel_strip(static_cast<unsigned>(window.x), static_cast<unsigned>(window.y), scale), scale);
+    keyboard_.reset();
     for (std::size_t i = 0; i < places_.size(); ++i) {
         Place& place = places_[i];
         if (!place.shown) {
@@ -139,7 +155,8 @@ void Panels::build(Panel::Context context) {
             place.built = ImGui::GetFrameCount();
         }
         if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) {
-            front_ = i;
+            use(i);
+            keyboard_ = i;
         }
         ImGui::End();
     }

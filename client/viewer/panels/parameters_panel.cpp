@@ -57,6 +57,15 @@ void explain(const ParameterDescription& about, const ParameterEdits& edits, std
 
 } // namespace
 
+std::span<const Panel::Key> ParametersPanel::keys() const {
+    static constexpr Key keys[] = {
+        {.key = sf::Keyboard::Z, .help = "take back one's own last change", .control = true},
+        {.key = sf::Keyboard::Y, .help = "make it again", .control = true},
+        {.key = sf::Keyboard::Z, .help = "", .control = true, .shift = true},
+    };
+    return keys;
+}
+
 void ParametersPanel::build(Context& context) {
     Watch& watch = context.watch;
     follow(watch, context.shown_anew);

@@ -131,11 +131,11 @@ void RunPanel::build_speed(Watch& watch) {
     if (!ImGui::IsItemActive()) {
         factor_.reset();
     }
+    ImGui::EndDisabled();
     ImGui::SameLine();
     if (widgets::button("Real time")) {
         watch.real_time();
     }
-    ImGui::EndDisabled();
     if (watch.control().told().slowed()) {
         widgets::say("The server's machine cannot keep up: the clock goes slower, no tick is left out.");
     }

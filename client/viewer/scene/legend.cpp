@@ -106,14 +106,14 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     for (const Legend::Entry& entry : legend.entries) {
         width = std::max(width, width_of(entry.text) + swatch + gap);
     }
-    const float height =
-        (legend.ramp ? 2 * line + bar_height + 4 : 0) + static_cast<float>(legend.entries.size()) * line + 2 * inside;
+    const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) +
+                         static_cast<float>(legend.entries.size()) * line + 2 * inside;
     const Rectangle& seen = camera.viewport();
-    const ImVec2 corner{std::floor(static_cast<float>(seen.left)) + 12,
-                        std::floor(static_cast<float>(seen.top + seen.height) - height) - 12};
+    const ImVec2 corner{std::floor(static_cast<float>(seen.left)) + 12 * pixel,
+                        std::floor(static_cast<float>(seen.top + seen.height) - height - 12 * pixel)};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip), 4);
-    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4);
+    list.AddRectFilled(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip), 4 * pixel);
+    list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4 * pixel);
     const float left = corner.x + inside;
     float top = corner.y + inside;
     const auto write = [&](float x, float y, const std::string& text) {
@@ -129,14 +129,15 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
             list.AddRectFilled({x, top}, {x + 1, top + bar_height},
                                ink(palette::at(scale.ramp, (i + 0.5) / bar_width)));
         }
-        top += bar_height + 4;
+        top += bar_height + 4 * pixel;
         const std::string high = number(scale.high);
         write(left, top, number(scale.low));
         write(left + bar_width - width_of(high), top, high);
         top += line;
     }
     for (const Legend::Entry& entry : legend.entries) {
-        list.AddRectFilled({left, top + 2}, {left + swatch, top + 2 + swatch}, ink(entry.colour), 2);
+        list.AddRectFilled({left, top + 2 * pixel}, {left + swatch, top + 2 * pixel + swatch}, ink(entry.colour),
+                           2 * pixel);
         write(left + swatch + gap, top, entry.text);
         top += line;
     }

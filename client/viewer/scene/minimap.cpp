@@ -1,9 +1,12 @@
 #include "client/viewer/scene/minimap.h"
 
+#include "client/viewer/drawing/widgets.h"
+
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace evod::viewer {
 
@@ -29,12 +32,13 @@ Rectangle MinimapPlace::frame_of(const Rectangle& seen) const {
     return {across(corner.x), down(corner.y), across(other.x) - across(corner.x), down(other.y) - down(corner.y)};
 }
 
-MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height) {
+MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height, double scale) {
     MinimapPlace place;
-    place.zoom = MinimapPlace::side_pixels_max / std::max(island_width, island_height);
+    const double margin = MinimapPlace::margin_pixels * scale;
+    place.zoom = scale * MinimapPlace::side_pixels_max / std::max(island_width, island_height);
     const double width = island_width * place.zoom, height = island_height * place.zoom;
-    place.screen = {viewport.left + viewport.width - width - MinimapPlace::margin_pixels,
-                    viewport.top + viewport.height - height - MinimapPlace::margin_pixels, width, height};
+    place.screen = {viewport.left + viewport.width - width - margin, viewport.top + viewport.height - height - margin,
+                    width, height};
     return place;
 }
 
@@ -43,27 +47,31 @@ bool sees_all(const Camera& camera, double island_width, double island_height) {
     return seen.contains({0, 0}) && seen.contains({island_width, island_height});
 }
 
-void Minimap::build(const Watch& watch, Camera& camera) {
-    const wire::Picture* picture = watch.overview() != nullptr ? watch.overview() : watch.picture();
+void Minimap::build(Watch& watch, Camera& camera, const Gui& gui, int number) {
+    const std::shared_ptr<const wire::Picture> picture =
+        watch.overview() != nullptr ? watch.overview() : watch.view().latest();
     const double width = picture->about.width_px(), height = picture->about.height_px();
     if (sees_all(camera, width, height)) {
         return;
     }
-    if (picture != counted_ || picture->about.tick() != counted_tick_) {
+    if (picture != counted_) {
         grid_ = overview_of(*picture, cells_max);
         counted_ = picture;
-        counted_tick_ = picture->about.tick();
     }
-    const MinimapPlace place = minimap_place(camera.viewport(), width, height);
+    const float pixel = gui.scale();
+    const MinimapPlace place = minimap_place(camera.viewport(), width, height, double{pixel});
     const ImVec2 size{static_cast<float>(place.screen.width), static_cast<float>(place.screen.height)};
     const ImVec2 corner = vector({place.screen.left, place.screen.top});
     ImGui::SetNextWindowPos(corner);
     ImGui::SetNextWindowSize(size);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-    ImGui::Begin("Minimap", nullptr,
+    const std::string name = "##minimap " + std::to_string(number);
+    ImGui::Begin(name.c_str(), nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);
+    pressed_ = widgets::window_pressed();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
     list.AddRectFilled(corner, other, ink(palette::strip));
@@ -83,12 +91,13 @@ void Minimap::build(const Watch& watch, Camera& camera) {
     const Rectangle frame = place.frame_of(camera.visible());
     // Never so small that it cannot be found.
     const ImVec2 middle = vector(frame.centre());
-    const ImVec2 half{std::max(static_cast<float>(frame.width) / 2, 3.f),
-                      std::max(static_cast<float>(frame.height) / 2, 3.f)};
+    const ImVec2 half{std::max(static_cast<float>(frame.width) / 2, 3 * pixel),
+                      std::max(static_cast<float>(frame.height) / 2, 3 * pixel)};
     list.AddRect({middle.x - half.x, middle.y - half.y}, {middle.x + half.x, middle.y + half.y}, ink(palette::poison),
-                 0, 0, 2);
+                 0, 0, 2 * pixel);
     list.PopClipRect();
     ImGui::InvisibleButton("there", size);
+    widgets::mark("minimap");
     if (ImGui::IsItemActive()) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         camera.look_at(place.to_world({mouse.x, mouse.y}));

@@ -5,14 +5,18 @@
 #pragma once
 
 #include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
 #include "client/viewer/scene/marks.h"
 #include "client/viewer/watch/watch.h"
+
+#include <memory>
+#include <utility>
 
 namespace evod::viewer {
 
 /// Where the minimap stands on the screen, and what is where on it.
 struct MinimapPlace {
-    static constexpr double side_pixels_max = 180, margin_pixels = 12;
+    static constexpr double side_pixels_max = 180, margin_pixels = 12; // at scale 1
 
     Rectangle screen;
     double zoom = 1; // pixels per px of the world
@@ -26,7 +30,9 @@ struct MinimapPlace {
 };
 
 /// In the lower right corner of the viewport.
-MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height);
+///
+/// scale  of its pixels
+MinimapPlace minimap_place(const Rectangle& viewport, double island_width, double island_height, double scale = 1);
 
 /// Whether there is something of the island that is not seen.
 bool sees_all(const Camera& camera, double island_width, double island_height);
@@ -34,12 +40,16 @@ bool sees_all(const Camera& camera, double island_width, double island_height);
 class Minimap {
   public:
     /// Between Gui::begin() and Gui::draw(). Moves the camera to where it is pressed.
-    void build(const Watch& watch, Camera& camera);
+    ///
+    /// number  tells the minimaps of a window apart
+    void build(Watch& watch, Camera& camera, const Gui& gui, int number);
+    /// Whether a button of the mouse went down on it, once.
+    bool take_press() { return std::exchange(pressed_, false); }
 
   private:
-    const wire::Picture* counted_ = nullptr; // the picture of which grid_ is
-    std::uint64_t counted_tick_ = 0;
+    std::shared_ptr<const wire::Picture> counted_; // the picture of which grid_ is
     DensityGrid grid_;
+    bool pressed_ = false;
 };
 
 } // namespace evod::viewer

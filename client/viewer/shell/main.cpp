@@ -15,21 +15,26 @@ namespace {
 void run(Options options) {
     Screen screen{options};
     StartScreen start{screen, options.connection};
-    bool ask = options.start, must_connect = !options.server_given;
+    bool ask = options.start, must_connect = !options.server_given, connected = false;
     while (screen.window().isOpen()) {
         if (ask) {
             const auto chosen = start.run();
             if (!chosen) {
                 return;
             }
-            options = Options{};
+            if (connected) {
+                options = Options{}; // the world of another server
+            }
             options.connection = *chosen;
             must_connect = true;
         }
         Window::Ending ending;
         {
             Window window{screen, options};
-            ending = window.run(must_connect, [&] { start.remember(options.connection.server); });
+            ending = window.run(must_connect, [&] {
+                connected = true;
+                start.remember(options.connection.server);
+            });
         }
         screen.stage().panels().begin_session(); // what they ask of the other server is never answered
         ask = ending.elsewhere;

@@ -72,6 +72,15 @@ Options::Size size_of(const Options& options, double scale) {
     return options.size.value_or(Options::Size{scaled(1280), scaled(720)});
 }
 
+Watch::Wanted wanted_of(const Options& options, double rate_hz) {
+    return {.connection = options.connection,
+            .world = options.world,
+            .island = options.island,
+            .rate_hz = rate_hz,
+            .all_islands = options.all_islands,
+            .past_generation = options.past_generation};
+}
+
 std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options options;
     Options::Screenshot screenshot;

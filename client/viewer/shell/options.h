@@ -3,6 +3,7 @@
 
 #include "client/link/connection.h"
 #include "client/viewer/shell/script.h"
+#include "client/viewer/watch/watch.h"
 
 #include <cstdint>
 #include <optional>
@@ -52,6 +53,9 @@ struct Options {
 
 /// The size of the window or the screenshot.
 Options::Size size_of(const Options& options, double scale);
+
+/// What the first pane watches.
+Watch::Wanted wanted_of(const Options& options, double rate_hz = Watch::Wanted{}.rate_hz);
 
 /// The options; or the exit status, after help, version or an error was printed.
 std::variant<Options, int> parse_options(int argc, const char* const* argv);

@@ -39,7 +39,7 @@ class Recorder {
         , scale_{options.scale.value_or(1)} // a film is on no screen
         , size_{size_of(options, scale_)}
         , film_{begin_film(wanted.path, size_.width, size_.height, wanted.fps)}
-        , panes_{options, rate_hz} {}
+        , panes_{wanted_of(options, rate_hz), options.beside} {}
 
     void run() {
         if (wait_until([&] { return all_have_pictures(panes_); }, true)) {

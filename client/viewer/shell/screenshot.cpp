@@ -37,7 +37,7 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     sf::Context context{context_settings(), 1, 1};
     const double scale = options.scale.value_or(1); // a file is on no screen
     Stage stage{scale};
-    Panes panes{options, rate_hz};
+    Panes panes{wanted_of(options, rate_hz), options.beside};
     bool told = false;
     const auto late = [&]() -> const Watch* { // a world that is not there yet
         const bool all = all_have_pictures(panes);

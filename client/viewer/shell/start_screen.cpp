@@ -161,6 +161,7 @@ void StartScreen::choose() {
     } else {
         options_.tls.reset();
     }
+    reason_.clear();
     chosen_ = options_;
 }
 

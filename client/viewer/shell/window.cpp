@@ -17,7 +17,7 @@ void toggle(bool& shown) {
 } // namespace
 
 Window::Window(Screen& screen, const Options& options)
-    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{options} {}
+    : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{wanted_of(options), options.beside} {}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
     using Clock = link::WorldView::Clock;
@@ -54,7 +54,7 @@ Window::Ending Window::run(bool must_connect, const std::function<void()>& conne
 
 void Window::handle_events() {
     for (sf::Event event; screen_.poll(event);) {
-        const Captured captured = stage_.gui().captured();
+        const Captured captured = stage_.captured(event);
         if (event.type == sf::Event::MouseButtonPressed && !captured.mouse) {
             panes_.focus_at({double(event.mouseButton.x), double(event.mouseButton.y)});
         }
@@ -133,6 +133,9 @@ void Window::carry_out(Action action) {
         elsewhere_ = true;
         return;
     case Action::Close:
+        if (stage_.gui().close_popup()) {
+            return;
+        }
         if (stage_.overlay().help()) {
             stage_.overlay().toggle_help();
         } else if (!stage_.panels().close_front()) {

@@ -1,73 +1,21 @@
 // Input: keys and mouse → what is asked of the window.
 //
-// One table says which key does what, and the help is drawn from it. Signs (+ − . >) are taken as text, so that they
-// are found wherever a keyboard layout has them; everything else by key.
+// Which key does what is said in keys.h; held arrows and the mouse move the camera here.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
 
 #include "client/viewer/drawing/camera.h"
+#include "client/viewer/drawing/gui.h"
+#include "client/viewer/stage/keys.h"
 
 #include <SFML/Window/Event.hpp>
 
 #include <optional>
 #include <set>
-#include <span>
-#include <string>
-#include <string_view>
 #include <utility>
 
 namespace evod::viewer {
-
-enum class Action {
-    PauseOrResume,
-    StepOne,
-    StepMany,
-    Faster,
-    Slower,
-    RealTime,
-    MaxSpeed,
-    NextIsland,
-    PreviousIsland,
-    NextWorld,
-    PastOrPresent,
-    PreviousGeneration,
-    NextGeneration,
-    Beside,
-    OtherHalf,
-    LinkCameras,
-    AllIslands,
-    Fit,
-    Screenshot,
-    NextColouring,
-    Radii,
-    Forces,
-    Trails,
-    Follow,
-    Start, // to the start screen
-    Help,
-    Close, // the help, or else the panel in front, or else the window
-    Quit,
-    FirstPanel, // and from here on the panels after it, by index
-};
-
-/// Which panel is to be shown or hidden; nullopt if that is not what the action says.
-std::optional<std::size_t> panel_of(Action action);
-/// "F2" for the first; empty for those beyond the keys.
-std::string panel_key(std::size_t index);
-
-constexpr unsigned step_many_ticks = 60;
-
-/// A line of the help.
-struct HelpLine {
-    std::string_view keys, text;
-};
-std::span<const HelpLine> help_lines();
-
-/// Events that the overlay takes for itself.
-struct Captured {
-    bool keyboard = false, mouse = false;
-};
 
 class Input {
   public:

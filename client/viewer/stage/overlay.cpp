@@ -1,7 +1,9 @@
 #include "client/viewer/stage/overlay.h"
 
 #include "client/viewer/drawing/palette.h"
-#include "client/viewer/scene/scene.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/drawing/window_layout.h"
+#include "client/viewer/stage/keys.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -9,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <utility>
 
 namespace evod::viewer {
@@ -16,8 +19,8 @@ namespace evod::viewer {
 namespace {
 
 // In pixels at scale 1.
-constexpr float panel_strip = 26, top_strip = 38, bottom_strip = 30; // heights
-constexpr float edge = 14;                                           // between text and the window's edge
+constexpr float edge = 14;         // between text and the window's edge
+constexpr float help_width = 1060; // of the help with the panels' keys beside those of the window
 constexpr std::chrono::seconds notice_shown{6};
 constexpr std::size_t notices_max = 4;
 
@@ -58,20 +61,6 @@ Colour state_colour(const Watch& watch) {
 
 } // namespace
 
-Rectangle panel_strip_of(unsigned width_pixels, double scale) {
-    return {0, 0, double(width_pixels), std::round(panel_strip * scale)};
-}
-
-Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale) {
-    const double top = panel_strip_of(width_pixels, scale).height;
-    return {0, top, double(width_pixels), std::max(height_pixels - top, 1.0)};
-}
-
-Rectangle viewport_of(Rectangle place, double scale) {
-    const double top = std::round(top_strip * scale), bottom = std::round(bottom_strip * scale);
-    return {place.left, place.top + top, place.width, std::max(place.height - top - bottom, 1.0)};
-}
-
 void Overlay::notice(std::string text, Clock::time_point now) {
     std::erase_if(notices_, [&](const Notice& shown) { return shown.text == text; });
     notices_.push_back({std::move(text), now + notice_shown});
@@ -85,7 +74,7 @@ void Overlay::build_world(const Watch& watch, const Gui& gui, Rectangle place, b
     build_connection(watch, gui, place);
 }
 
-void Overlay::build(const Gui& gui, std::span<const std::string_view> panels, Clock::time_point now) {
+void Overlay::build(const Gui& gui, const Panels& panels, Clock::time_point now) {
     build_notices(gui, now);
     if (help_) {
         build_help(gui, panels);
@@ -154,7 +143,7 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle pla
     const std::string trouble = shown_storage(watch.storage());
     std::string text;
     if (status.state == link::State::Failed) {
-        text = "No connection to " + server + ": " + status.reason + "\nBackspace goes to the start screen";
+        text = "No connection to " + server + ": " + status.reason + "\nCtrl+Backspace goes to the start screen";
     } else if (status.state != link::State::Connected) {
         text = "Connecting to " + server + " …" + (status.reason.empty() ? "" : "\n" + status.reason + "; retrying");
     } else if (const auto refusal = watch.refusal()) {
@@ -216,31 +205,33 @@ void Overlay::build_organism(const wire::Picture& picture, std::size_t organism,
     write(list, gui.label(), {corner.x + 8 * scale, corner.y + 6 * scale}, palette::note_text, text);
 }
 
-void Overlay::build_help(const Gui& gui, std::span<const std::string_view> panels) {
+void Overlay::build_help(const Gui& gui, const Panels& panels) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const float scale = gui.scale();
-    const auto line = [](std::string_view keys, std::string_view text) {
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(keys.data(), keys.data() + keys.size());
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(text.data(), text.data() + text.size());
-    };
     ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {18 * scale, 14 * scale});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * scale);
     ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {10 * scale, 2 * scale});
     ImGui::Begin("Keys", &help_,
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
-                     ImGuiWindowFlags_NoSavedSettings);
-    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-        for (const HelpLine& help : help_lines()) {
-            line(help.keys, help.text);
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_HorizontalScrollbar);
+    const auto build_lines = [](const char* name, std::span<const HelpLine> lines) {
+        if (ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_NoHostExtendX)) {
+            for (const HelpLine& line : lines) {
+                for (const std::string& text : {line.keys, line.text}) {
+                    ImGui::TableNextColumn();
+                    ImGui::TextUnformatted(text.c_str());
+                }
+            }
+            ImGui::EndTable();
         }
-        for (std::size_t i = 0; i < panels.size(); ++i) {
-            line(panel_key(i), "show or hide the panel " + std::string{panels[i]});
-        }
-        ImGui::EndTable();
+    };
+    build_lines("of the window", help_lines());
+    widgets::mark("Keys");
+    if (window.x >= help_width * scale) {
+        ImGui::SameLine(0, 16 * scale);
     }
+    build_lines("of the panels", help_lines(panels));
     ImGui::End();
     ImGui::PopStyleVar(3);
 }

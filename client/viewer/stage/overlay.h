@@ -5,27 +5,15 @@
 
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/gui.h"
+#include "client/viewer/panels/panels.h"
 #include "client/viewer/watch/watch.h"
 
 #include <chrono>
 #include <deque>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 
 namespace evod::viewer {
-
-/// The strip at the top of a window that hands act upon, with the names of the panels.
-Rectangle panel_strip_of(unsigned width_pixels, double scale = 1);
-/// What that strip leaves to the worlds.
-Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale = 1);
-
-/// The part of a window, or of a place in it, that the strips of a world leave to the island.
-Rectangle viewport_of(Rectangle place, double scale = 1);
-inline Rectangle viewport_of(unsigned width_pixels, unsigned height_pixels) {
-    return viewport_of({0, 0, double(width_pixels), double(height_pixels)});
-}
 
 class Overlay {
   public:
@@ -39,9 +27,7 @@ class Overlay {
 
     // Between Gui::begin() and Gui::draw():
     /// Notices and help, over the whole window.
-    ///
-    /// panels  their titles, for the help
-    void build(const Gui& gui, std::span<const std::string_view> panels, Clock::time_point now);
+    void build(const Gui& gui, const Panels& panels, Clock::time_point now);
     /// The strips of a world that is shown at a place of the window, and how its connection stands.
     void build_world(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
     /// Which island a tile shows.
@@ -58,7 +44,7 @@ class Overlay {
     void build_strips(const Watch& watch, const Gui& gui, Rectangle place, bool focused);
     void build_connection(const Watch& watch, const Gui& gui, Rectangle place);
     void build_notices(const Gui& gui, Clock::time_point now);
-    void build_help(const Gui& gui, std::span<const std::string_view> panels);
+    void build_help(const Gui& gui, const Panels& panels);
 
     bool help_ = false;
     std::deque<Notice> notices_;

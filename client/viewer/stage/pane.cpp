@@ -1,9 +1,9 @@
 #include "client/viewer/stage/pane.h"
 
-#include "client/viewer/drawing/island_layout.h"
-#include "client/viewer/stage/overlay.h"
+#include "client/viewer/drawing/window_layout.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace evod::viewer {
 
@@ -47,17 +47,11 @@ void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
 
 // ---- all of them -----------------------------------------------------------------------------------------------
 
-Panes::Panes(const Options& options, double rate_hz)
-    : wanted_{.connection = options.connection,
-              .world = options.world,
-              .island = options.island,
-              .rate_hz = rate_hz,
-              .all_islands = options.all_islands,
-              .past_generation = options.past_generation} {
+Panes::Panes(Watch::Wanted wanted, const std::optional<std::string>& beside) : wanted_{std::move(wanted)} {
     panes_.push_back(std::make_unique<Pane>(wanted_));
     wanted_.past_generation.reset();
-    if (options.beside) {
-        wanted_.world = *options.beside;
+    if (beside) {
+        wanted_.world = *beside;
         panes_.push_back(std::make_unique<Pane>(wanted_));
     }
 }
@@ -79,7 +73,7 @@ void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interact
 
 bool Panes::focus_at(Point screen) {
     for (std::size_t i = 0; i < panes_.size(); ++i) {
-        if (!panes_[i]->place().contains(screen) && !panes_[i]->timeline_place().contains(screen)) {
+        if (!panes_[i]->place().contains(screen)) {
             continue;
         }
         focus_ = i;

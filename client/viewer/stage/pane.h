@@ -8,7 +8,6 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/scene/minimap.h"
 #include "client/viewer/scene/sight.h"
-#include "client/viewer/shell/options.h"
 #include "client/viewer/stage/timeline.h"
 #include "client/viewer/watch/watch.h"
 
@@ -49,7 +48,7 @@ class Pane {
     ///
     /// with_timeline  a world that shows the past has its time line at the bottom
     void lay_out(Rectangle place, bool with_timeline, double scale);
-    const Rectangle& place() const { return place_; }                   // but for the time line
+    const Rectangle& place() const { return place_; }                   // without the time line
     const Rectangle& timeline_place() const { return timeline_place_; } // of no height if there is none
 
   private:
@@ -63,7 +62,8 @@ class Pane {
 
 class Panes {
   public:
-    explicit Panes(const Options& options, double rate_hz = Watch::Wanted{}.rate_hz);
+    /// beside  a second world; nullopt: only one
+    explicit Panes(Watch::Wanted wanted, const std::optional<std::string>& beside = {});
 
     /// Takes in what has come for each of them.
     void update(link::WorldView::Clock::time_point now);
@@ -77,6 +77,7 @@ class Panes {
 
     /// Gives the focus to the pane at a point of the window, and chooses the island there. False: there is none.
     bool focus_at(Point screen);
+    void focus(std::size_t index) { focus_ = index; }
     void focus_next() { focus_ = (focus_ + 1) % panes_.size(); }
     /// Of the tile at a point of the window; of the focused pane where there is none.
     Camera& camera_at(Point screen);

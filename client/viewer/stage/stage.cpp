@@ -40,6 +40,12 @@ void Stage::select_at(Pane& pane, Point screen) {
     }
 }
 
+Captured Stage::captured(const sf::Event& event) const {
+    Captured captured = gui_.captured();
+    captured.keyboard |= event.type == sf::Event::KeyPressed && panels_.take(event.key);
+    return captured;
+}
+
 void Stage::draw(Panes& panes, const Frame& frame) {
     panes.lay_out(frame.width_pixels, frame.height_pixels, frame.interactive, gui_.scale());
     gui_.begin(frame.width_pixels, frame.height_pixels, std::chrono::duration<double>{frame.now - drawn_}.count());
@@ -48,23 +54,29 @@ void Stage::draw(Panes& panes, const Frame& frame) {
     std::size_t scene = 0;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         Pane& pane = panes[i];
+        gui_.spots().begin_panel(i == 0 ? "left" : "right");
         for (const Tile& tile : pane.tiles()) {
             if (scenes_.size() <= scene) {
                 scenes_.push_back(std::make_unique<Scene>());
             }
-            draw_tile(pane, tile, *scenes_[scene++], frame);
+            draw_tile(pane, tile, *scenes_[scene++], frame, static_cast<int>(i));
         }
         overlay_.build_world(pane.watch, gui_, pane.place(), frame.interactive && panes.has_focus(pane));
         pane.timeline.build(pane.watch, gui_, pane.timeline_place(), static_cast<int>(i));
+        gui_.spots().begin_panel({});
+        const bool line = pane.timeline.take_press(), map = pane.minimap.take_press();
+        if (line || map) {
+            panes.focus(i);
+        }
     }
-    overlay_.build(gui_, panels_.titles(), frame.now);
+    overlay_.build(gui_, panels_, frame.now);
     if (frame.interactive) {
         panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
     }
     gui_.draw();
 }
 
-void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame) {
+void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame, int pane_number) {
     const bool chosen = tile.island == pane.watch.island();
     const double blend = frame.glide ? tile.view.blend_at(frame.now) : 1;
     const wire::Picture* picture = tile.view.latest().get();
@@ -94,7 +106,7 @@ void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& f
     if (picture != nullptr && chosen) {
         build_legend(legend_of(sight, *picture, scene.density_scale(), scene.density_cell_px()), tile.camera, gui_);
         if (sight.shown.minimap) {
-            pane.minimap.build(pane.watch, tile.camera);
+            pane.minimap.build(pane.watch, tile.camera, gui_, pane_number);
         }
     }
     if (marked.pointed_at) {

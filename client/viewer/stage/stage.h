@@ -34,7 +34,7 @@ class Stage {
         std::optional<Point> pointed_at{}; // on the screen
     };
 
-    /// Draws on the current framebuffer.
+    /// Draws on the current framebuffer. A pane whose time line or minimap is pressed gets the focus.
     void draw(Panes& panes, const Frame& frame);
 
     /// Draws widgets alone, where nothing is watched.
@@ -46,6 +46,9 @@ class Stage {
         return capture(frame, [&] { draw(panes, frame); });
     }
 
+    /// What of an event is for widgets and panels.
+    Captured captured(const sf::Event& event) const;
+
     Gui& gui() { return gui_; }
     Overlay& overlay() { return overlay_; }
     Panels& panels() { return panels_; }
@@ -55,7 +58,7 @@ class Stage {
     void select_at(Pane& pane, Point screen);
 
   private:
-    void draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame);
+    void draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame, int pane_number);
 
     Gui gui_;
     std::vector<std::unique_ptr<Scene>> scenes_; // one for each tile

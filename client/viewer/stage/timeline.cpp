@@ -1,6 +1,7 @@
 #include "client/viewer/stage/timeline.h"
 
 #include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/past.h"
 #include "client/viewer/watch/readout.h"
 
@@ -13,8 +14,10 @@ namespace evod::viewer {
 
 namespace {
 
+// In pixels at scale 1.
 constexpr float line_height = 26, label_height = 13;
-constexpr float mark_room = 70; // pixels from mark to mark, at least
+constexpr float edge = 12, line_edge = 6; // from the window to the widgets, and on to the ends of the line
+constexpr float mark_room = 70;           // from mark to mark, at least
 
 ImU32 ink(Colour colour) {
     return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
@@ -49,18 +52,20 @@ void Timeline::build(Watch& watch, const Gui& gui, Rectangle place, int number) 
         world_ = watch.world();
         run_id_ = watch.control().run_id();
     }
+    const float pixel = gui.scale();
     ImGui::SetNextWindowPos({static_cast<float>(place.left), static_cast<float>(place.top)});
     ImGui::SetNextWindowSize({static_cast<float>(place.width), static_cast<float>(place.height)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12, 4});
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6, 3});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {edge * pixel, 4 * pixel});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * pixel, 3 * pixel});
     ImGui::PushFont(&gui.label());
     const std::string name = "##timeline " + std::to_string(number);
     ImGui::Begin(name.c_str(), nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus);
+    pressed_ = widgets::window_pressed();
     build_line(watch, gui, place);
-    build_buttons(watch);
+    build_buttons(watch, pixel);
     ImGui::End();
     ImGui::PopFont();
     ImGui::PopStyleVar(3);
@@ -71,14 +76,13 @@ void Timeline::learn_beginnings(Watch& watch, const evod::v1::Recording& recordi
     if (const wire::Picture* picture = watch.picture()) {
         const std::uint64_t generation = picture->about.generation();
         begin_tick_[generation] = picture->about.tick() - picture->about.generation_tick();
-        if (generation != shown_generation_) {
-            shown_generation_ = generation;
-            asked_.clear(); // a replay knows what ended before the moment that it shows
-        }
+        shown_generation_ = generation;
     }
     for (const std::uint64_t generation :
          marked_generations(recording.first_generation(), recording.last_generation(), count_max)) {
-        if (begin_tick_.contains(generation) || !asked_.insert(generation).second) {
+        // A replay knows only what ended before the moment that it shows.
+        const bool known = !recording.past_of().empty() || generation <= shown_generation_;
+        if (!known || begin_tick_.contains(generation) || !asked_.insert(generation).second) {
             continue;
         }
         evod::v1::Request request; // it begins where the one before ends
@@ -99,10 +103,10 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     const evod::v1::Recording recording = *watch.recording(); // a seek that is answered changes it
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float pixel = gui.scale(), label_size = label_height * pixel;
-    const float width = std::max(static_cast<float>(place.width) - 24, 1.f);
+    const float width = std::max(static_cast<float>(place.width) - 2 * edge * pixel, 1.f);
     ImGui::InvisibleButton("line", {width, line_height * pixel});
-    const TimeScale scale{recording.first_tick(), std::max(recording.last_tick(), recording.first_tick()), corner.x + 6,
-                          width - 12};
+    const TimeScale scale{recording.first_tick(), std::max(recording.last_tick(), recording.first_tick()),
+                          corner.x + line_edge * pixel, width - 2 * line_edge * pixel};
     const auto under_mouse = scale.tick_at(ImGui::GetIO().MousePos.x);
     const evod::v1::RunMoment* sought = watch.sought();
     std::uint64_t shown = watch.picture() ? watch.picture()->about.tick() : watch.control().tick();
@@ -121,11 +125,11 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     }
 
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const float top = corner.y + label_size + 3, bottom = corner.y + line_height * pixel - 2;
+    const float top = corner.y + label_size + 3 * pixel, bottom = corner.y + (line_height - 2) * pixel;
     const auto left = static_cast<float>(scale.left), right = left + static_cast<float>(scale.width);
     const auto x = std::round(static_cast<float>(scale.x_of(shown)));
-    list.AddRectFilled({left, top}, {right, bottom}, ink(palette::strip_edge), 3);
-    list.AddRectFilled({left, top}, {x, bottom}, ink(palette::past), 3);
+    list.AddRectFilled({left, top}, {right, bottom}, ink(palette::strip_edge), 3 * pixel);
+    list.AddRectFilled({left, top}, {x, bottom}, ink(palette::past), 3 * pixel);
     const auto count_max = static_cast<std::size_t>(width / (mark_room * pixel));
     learn_beginnings(watch, recording, count_max);
     for (const std::uint64_t generation :
@@ -135,42 +139,45 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
             continue;
         }
         const float at = std::round(static_cast<float>(scale.x_of(begin->second)));
-        list.AddLine({at, top - 3}, {at, bottom}, ink(palette::text_quiet));
+        list.AddLine({at, top - 3 * pixel}, {at, bottom}, ink(palette::text_quiet));
         const std::string text = std::to_string(generation);
-        list.AddText(&gui.label(), label_size, {at + 2, corner.y - 1}, ink(palette::text_quiet), text.c_str());
+        list.AddText(&gui.label(), label_size, {at + 2 * pixel, corner.y - pixel}, ink(palette::text_quiet),
+                     text.c_str());
     }
-    list.AddRectFilled({x - 4, top - 3}, {x + 4, bottom + 2}, ink(held ? palette::focus : palette::text), 2);
+    list.AddRectFilled({x - 4 * pixel, top - 3 * pixel}, {x + 4 * pixel, bottom + 2 * pixel},
+                       ink(held ? palette::focus : palette::text), 2 * pixel);
 }
 
-void Timeline::build_buttons(Watch& watch) {
+void Timeline::build_buttons(Watch& watch, float pixel) {
     const evod::v1::Recording recording = *watch.recording();
-    if (ImGui::Button("|<")) {
+    if (widgets::button("|<")) {
         watch.seek(beginning_of(recording.first_generation()));
     }
     tell("to the beginning");
     ImGui::SameLine();
-    if (ImGui::Button("<")) {
+    if (widgets::button("<")) {
         watch.turn_generations(-1);
     }
     tell("the generation before: [");
     ImGui::SameLine();
     const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING;
-    if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20, 0})) {
+    if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20 * pixel, 0})) {
         watch.pause_or_resume();
     }
+    widgets::mark(runs ? "Pause" : "Play");
     tell("Space");
     ImGui::SameLine();
-    if (ImGui::Button(">")) {
+    if (widgets::button(">")) {
         watch.turn_generations(1);
     }
     tell("the next generation: ]");
     ImGui::SameLine();
-    if (ImGui::Button(">|")) {
+    if (widgets::button(">|")) {
         watch.seek({});
     }
     tell("to the last moment that is known");
     ImGui::SameLine();
-    if (ImGui::Button("-")) {
+    if (widgets::button("-")) {
         watch.slower();
     }
     tell("half as fast");
@@ -178,7 +185,7 @@ void Timeline::build_buttons(Watch& watch) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(shown_speed(watch.control().speed()).c_str());
     ImGui::SameLine();
-    if (ImGui::Button("+")) {
+    if (widgets::button("+")) {
         watch.faster();
     }
     tell("twice as fast");
@@ -198,7 +205,7 @@ void Timeline::build_buttons(Watch& watch) {
     build_fork(watch);
     if (watch.opened_past()) {
         ImGui::SameLine();
-        if (ImGui::Button("Present")) {
+        if (widgets::button("Present")) {
             watch.return_to_present();
         }
         tell("back to the world that lives: P");
@@ -209,7 +216,7 @@ void Timeline::build_fork(Watch& watch) {
     const auto status = watch.connection_status();
     const bool may = status.welcome && status.welcome->role() == evod::v1::ROLE_ADMIN;
     ImGui::BeginDisabled(!may);
-    if (ImGui::Button("Fork …")) {
+    if (widgets::button("Fork …")) {
         ImGui::OpenPopup("fork");
     }
     ImGui::EndDisabled();

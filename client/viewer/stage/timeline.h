@@ -14,21 +14,24 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace evod::viewer {
 
 class Timeline {
   public:
-    static constexpr double height_pixels = 62;
+    static constexpr double height_pixels = 62; // at scale 1
 
     /// Between Gui::begin() and Gui::draw(). Nothing of a world that lives.
     ///
     /// number  tells the time lines of a window apart
     void build(Watch& watch, const Gui& gui, Rectangle place, int number);
+    /// Whether a button of the mouse went down on it, once.
+    bool take_press() { return std::exchange(pressed_, false); }
 
   private:
     void build_line(Watch& watch, const Gui& gui, Rectangle place);
-    void build_buttons(Watch& watch);
+    void build_buttons(Watch& watch, float pixel);
     void build_fork(Watch& watch);
     void learn_beginnings(Watch& watch, const evod::v1::Recording& recording, std::size_t count_max);
 
@@ -37,6 +40,7 @@ class Timeline {
     std::set<std::uint64_t> asked_;                     // generations whose beginning was asked for
     std::uint64_t shown_generation_ = 0;
     int typed_generation_ = 1;
+    bool pressed_ = false;
     std::array<char, 65> fork_name_{};
 };
 

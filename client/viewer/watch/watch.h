@@ -106,7 +106,7 @@ class Watch {
     /// 1 before the first picture.
     std::uint32_t island_count() const;
     /// How many there are where on all of the island, now and then, while a view is set; else null.
-    const wire::Picture* overview() const { return overview_picture_.get(); }
+    const std::shared_ptr<const wire::Picture>& overview() const { return overview_picture_; }
     const RunControl& control() const { return control_; }
     /// Of the generation before, on this island; null in the first.
     const evod::v1::GenerationStatistics* last_generation() const;

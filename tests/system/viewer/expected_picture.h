@@ -6,7 +6,7 @@
 
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/palette.h"
-#include "client/viewer/stage/overlay.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "proto/wire/snapshot_codec.h"
 
 #include <SFML/Graphics/Image.hpp>

@@ -168,6 +168,89 @@ quit
     EXPECT_TRUE(world.speed().max());
 }
 
+TEST_F(PanelsTest, EscClosesAQuestionThenThePanelUsedLast) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F2
+key F3
+click "Reset …"
+wait widget "Keep it"
+key Escape
+wait gone "Keep it"
+wait widget "Reset …"
+key Escape
+wait gone "Reset …"
+wait widget Worlds/default
+key Space
+wait state running
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, TheGlassBoxTakesItsKeysAndNoOthers) {
+    RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("data")}};
+    evod::v1::Request run;
+    run.mutable_run()->set_generations(2);
+    server.ask(run);
+    const Ran ran = play(server.address(), R"(
+wait generation 2
+wait state waiting
+key F8
+wait widget "Glass box/Play"
+key Space
+wait widget "Glass box/Stop"
+key .
+wait state paused
+key H
+wait widget Keys
+key Escape
+wait gone Keys
+wait widget "Glass box/the newest"
+key Escape
+wait gone "Glass box/the newest"
+key Space
+wait state running
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_RUNNING);
+}
+
+TEST_F(PanelsTest, AWorldWantedAtTheCommandLineIsShownOnceThereIsAConnection) {
+    RealServer server{{"--seed", "7"}};
+    evod::v1::Request create, statistics;
+    create.mutable_create_world()->set_name("mars");
+    server.ask(create);
+    const Ran ran =
+        play("--start --world mars", "set Server localhost:1\nwait widget error\nset Server \"" + server.address() +
+                                         "\"\nwait picture\nkey Space\n" + "wait state running\nquit\n");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    statistics.mutable_get_statistics()->set_world("mars");
+    EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_RUNNING);
+}
+
+TEST_F(PanelsTest, AClickOnATimeLineGivesItsHalfTheFocus) {
+    RealServer server{{"--seed", "7", "--data", folder.file("data")}};
+    evod::v1::Request create, run;
+    create.mutable_create_world()->set_name("mars");
+    server.ask(create);
+    run.mutable_run_until_tick()->set_world("default");
+    run.mutable_run_until_tick()->set_tick(30);
+    server.ask(run);
+    const Ran ran = play(server.address() + " --world default --past 1 --beside mars", R"(
+wait picture
+wait widget "left/|<"
+key X
+click "left/|<"
+key P
+wait gone "left/|<"
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
 TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
     RealServer server{{"--seed", "7"}};
     evod::v1::Request create;
@@ -236,8 +319,8 @@ TEST_F(PanelsTest, TheStartScreenSaysWhyThereIsNoConnectionAndIsComeBackTo) {
     const std::string address = "\"" + server.address() + "\"\n";
     const Ran ran =
         play("--start", "set Server localhost:1\nwait widget error\nset Server " + address +
-                            "wait picture\nkey Backspace\nset Server elsewhere:1\nwait widget error\nclick " + address +
-                            "click Connect\nwait picture\nquit\n");
+                            "wait picture\nkey Ctrl+Backspace\nset Server elsewhere:1\nwait widget error\nclick " +
+                            address + "click Connect\nwait picture\nquit\n");
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 

@@ -2,7 +2,7 @@
 // is drawn in each place is what the server says.
 //
 // Runs under Xvfb.
-#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/stage/timeline.h"
 #include "client/viewer/watch/past.h"
 #include "tests/system/viewer/expected_picture.h"

@@ -1,7 +1,7 @@
 // evoview --record: as many pictures as were asked for, each of the tick in its name, and the world given back.
 //
 // Runs under Xvfb.
-#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/shell/film.h"
 #include "tests/system/viewer/expected_picture.h"
 #include "tests/system/viewer/past_of_world.h"

@@ -1,7 +1,7 @@
 // evoview --screenshot against a server of the test's own: every pixel is what the picture says.
 //
 // Runs under Xvfb.
-#include "client/viewer/stage/overlay.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "tests/system/viewer/expected_picture.h"
 #include "tests/system/viewer/known_picture.h"
 #include "tests/system/viewer/playing_server.h"

@@ -23,7 +23,7 @@ struct SightTest : testing::Test {
         Options options;
         options.connection.server = link::parse_endpoint(server.address()).value();
         options.world = "default";
-        panes.emplace(options);
+        panes.emplace(wanted_of(options));
     }
 
     sf::Image draw() {

@@ -44,6 +44,17 @@ bool pressed(ImGuiKey key) {
 
 } // namespace
 
+std::span<const Panel::Key> BreedingPanel::keys() const {
+    using Keyboard = sf::Keyboard;
+    static constexpr Key keys[] = {
+        {Keyboard::Space, "play, stop"},           {Keyboard::Enter, ""},
+        {Keyboard::Left, "one step back"},         {Keyboard::Right, "one step"},
+        {Keyboard::PageUp, "to the stage before"}, {Keyboard::PageDown, "to the next stage"},
+        {Keyboard::Home, "to the beginning"},      {Keyboard::End, "to the end"},
+    };
+    return keys;
+}
+
 void BreedingPanel::build(Context& context) {
     if (context.watch.picture() == nullptr) {
         ImGui::TextUnformatted("Waiting for the first picture …");
@@ -286,7 +297,6 @@ void BreedingPanel::take_keys() {
     if (!ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) || ImGui::IsAnyItemActive()) {
         return;
     }
-    ImGui::CaptureKeyboardFromApp(true);
     if (pressed(ImGuiKey_LeftArrow)) {
         stepper_.back();
     } else if (pressed(ImGuiKey_RightArrow)) {

@@ -20,6 +20,8 @@ class BreedingPanel : public Panel {
   public:
     std::string_view title() const override { return "Glass box"; }
     Size first_size() const override { return {900, 620}; }
+    std::span<const Key> keys() const override;
+    bool takes_keys() const override { return shown_.has_value(); }
     void build(Context& context) override;
 
   private:

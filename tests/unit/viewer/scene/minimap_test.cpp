@@ -13,6 +13,13 @@ TEST(Minimap, StandsInTheLowerRightCornerInTheShapeOfTheIsland) {
     EXPECT_DOUBLE_EQ(place.screen.top + place.screen.height, 640 - MinimapPlace::margin_pixels);
 }
 
+TEST(Minimap, IsAsLargeAsTheScale) {
+    const MinimapPlace place = minimap_place({0, 40, 1000, 600}, 40'000, 10'000, 2);
+    EXPECT_DOUBLE_EQ(place.screen.width, 2 * MinimapPlace::side_pixels_max);
+    EXPECT_DOUBLE_EQ(place.screen.left + place.screen.width, 1000 - 2 * MinimapPlace::margin_pixels);
+    EXPECT_NEAR(place.to_world(place.screen.centre()).x, 20'000, 1e-9);
+}
+
 TEST(Minimap, PlacesOnItArePlacesOfTheWorld) {
     const MinimapPlace place = minimap_place({0, 40, 1000, 600}, 10'000, 20'000);
     EXPECT_EQ(place.to_world({place.screen.left, place.screen.top}), (Point{0, 0}));

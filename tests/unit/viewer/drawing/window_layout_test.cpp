@@ -1,4 +1,4 @@
-#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/drawing/window_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "client/viewer/drawing/island_layout.h"
+#include "client/viewer/drawing/window_layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,20 @@ double share(double whole, std::size_t count) {
 }
 
 } // namespace
+
+Rectangle panel_strip_of(unsigned width_pixels, double scale) {
+    return {0, 0, double(width_pixels), std::round(panel_strip * scale)};
+}
+
+Rectangle below_panel_strip(unsigned width_pixels, unsigned height_pixels, double scale) {
+    const double top = panel_strip_of(width_pixels, scale).height;
+    return {0, top, double(width_pixels), std::max(height_pixels - top, 1.0)};
+}
+
+Rectangle viewport_of(Rectangle place, double scale) {
+    const double top = std::round(top_strip * scale), bottom = std::round(bottom_strip * scale);
+    return {place.left, place.top + top, place.width, std::max(place.height - top - bottom, 1.0)};
+}
 
 std::vector<Rectangle> side_by_side(Rectangle place, std::size_t count) {
     std::vector<Rectangle> columns;
