@@ -1,26 +1,16 @@
 #include "client/viewer/panels/organism_panel.h"
 
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace evod::viewer {
 
 namespace {
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[128];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
 
 /// A gene between the least and the greatest of the population; a line across the bar is the mean.
 void build_gene(const std::string& name, float value, const Population::Range& range) {
@@ -41,10 +31,8 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     list.AddLine({across(range.mean), corner.y - 2}, {across(range.mean), corner.y + height + 2}, ink(palette::wall),
                  2);
     ImGui::Dummy({width, height});
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
-                          double{range.mean});
-    }
+    widgets::explain(print("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+                           double{range.mean}));
 }
 
 void build_health(const std::vector<OrganismStory::Health>& points) {
@@ -58,7 +46,7 @@ void build_health(const std::vector<OrganismStory::Health>& points) {
         for (const auto& point : points) {
             most = std::max(most, point.health);
         }
-        most = static_cast<float>(round_up(most));
+        most = static_cast<float>(nice_step(most));
         const double begin = points.front().s, long_s = points.back().s - begin;
         std::vector<ImVec2> line;
         for (const auto& [s, health] : points) {

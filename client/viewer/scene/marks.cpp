@@ -1,5 +1,7 @@
 #include "client/viewer/scene/marks.h"
 
+#include "client/viewer/text/numbers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -39,19 +41,6 @@ Colour colour_of(evod::v1::Choice choice) {
 }
 
 } // namespace
-
-double round_up(double value) {
-    if (!(value > 0)) {
-        return 1;
-    }
-    const double ten = std::pow(10, std::floor(std::log10(value) + 1e-9));
-    for (const double factor : {1.0, 2.0, 5.0}) {
-        if (value <= factor * ten * (1 + 1e-9)) {
-            return factor * ten;
-        }
-    }
-    return 10 * ten;
-}
 
 Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
     float most = 100;
@@ -277,7 +266,7 @@ Scale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp) {
             most = std::max(most, count);
         }
     }
-    return {ramp, 0, round_up(most)};
+    return {ramp, 0, nice_step(most)};
 }
 
 } // namespace evod::viewer

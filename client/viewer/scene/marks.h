@@ -36,9 +36,6 @@ struct Scale {
     Colour operator()(double value) const { return palette::at(ramp, share(value)); }
 };
 
-/// The least of 1, 2 and 5 times a power of ten that is not less than `value`; 1 of nothing.
-double round_up(double value);
-
 /// 0 to the greatest health of the picture rounded up to hundreds, at least 100: so it stays from picture to picture.
 Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp);
 

@@ -1,5 +1,7 @@
 #include "client/viewer/scene/minimap.h"
 
+#include "client/viewer/drawing/ink.h"
+
 #include <imgui.h>
 
 #include <algorithm>
@@ -10,10 +12,6 @@ namespace evod::viewer {
 namespace {
 
 constexpr std::size_t cells_max = 60; // along the longer side
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
 
 ImVec2 vector(Point point) {
     return {static_cast<float>(point.x), static_cast<float>(point.y)};

@@ -1,6 +1,7 @@
 #include "client/viewer/stage/timeline.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/past.h"
 #include "client/viewer/watch/readout.h"
 
@@ -16,10 +17,6 @@ namespace {
 constexpr float line_height = 26, label_height = 13;
 constexpr float mark_room = 70; // pixels from mark to mark, at least
 
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
 evod::v1::RunMoment beginning_of(std::uint64_t generation) {
     evod::v1::RunMoment moment;
     moment.set_generation(generation);
@@ -30,12 +27,6 @@ evod::v1::RunMoment moment_of_tick(std::uint64_t tick) {
     evod::v1::RunMoment moment;
     moment.set_tick(tick);
     return moment;
-}
-
-void tell(const std::string& text) {
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-        ImGui::SetTooltip("%s", text.c_str());
-    }
 }
 
 } // namespace
@@ -137,7 +128,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
         const float at = std::round(static_cast<float>(scale.x_of(begin->second)));
         list.AddLine({at, top - 3}, {at, bottom}, ink(palette::text_quiet));
         const std::string text = std::to_string(generation);
-        list.AddText(&gui.label(), label_size, {at + 2, corner.y - 1}, ink(palette::text_quiet), text.c_str());
+        write(list, gui.label(), {at + 2, corner.y - 1}, palette::text_quiet, text);
     }
     list.AddRectFilled({x - 4, top - 3}, {x + 4, bottom + 2}, ink(held ? palette::focus : palette::text), 2);
 }
@@ -147,33 +138,33 @@ void Timeline::build_buttons(Watch& watch) {
     if (ImGui::Button("|<")) {
         watch.seek(beginning_of(recording.first_generation()));
     }
-    tell("to the beginning");
+    widgets::explain("to the beginning");
     ImGui::SameLine();
     if (ImGui::Button("<")) {
         watch.turn_generations(-1);
     }
-    tell("the generation before: [");
+    widgets::explain("the generation before: [");
     ImGui::SameLine();
     const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING;
     if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20, 0})) {
         watch.pause_or_resume();
     }
-    tell("Space");
+    widgets::explain("Space");
     ImGui::SameLine();
     if (ImGui::Button(">")) {
         watch.turn_generations(1);
     }
-    tell("the next generation: ]");
+    widgets::explain("the next generation: ]");
     ImGui::SameLine();
     if (ImGui::Button(">|")) {
         watch.seek({});
     }
-    tell("to the last moment that is known");
+    widgets::explain("to the last moment that is known");
     ImGui::SameLine();
     if (ImGui::Button("-")) {
         watch.slower();
     }
-    tell("half as fast");
+    widgets::explain("half as fast");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(shown_speed(watch.control().speed()).c_str());
@@ -181,7 +172,7 @@ void Timeline::build_buttons(Watch& watch) {
     if (ImGui::Button("+")) {
         watch.faster();
     }
-    tell("twice as fast");
+    widgets::explain("twice as fast");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
@@ -192,8 +183,8 @@ void Timeline::build_buttons(Watch& watch) {
     } else if (!ImGui::IsItemActive()) {
         typed_generation_ = static_cast<int>(shown_generation_);
     }
-    tell(std::to_string(recording.first_generation()) + " to " + std::to_string(recording.last_generation()) +
-         "; Enter goes there");
+    widgets::explain(std::to_string(recording.first_generation()) + " to " +
+                     std::to_string(recording.last_generation()) + "; Enter goes there");
     ImGui::SameLine();
     build_fork(watch);
     if (watch.opened_past()) {
@@ -201,7 +192,7 @@ void Timeline::build_buttons(Watch& watch) {
         if (ImGui::Button("Present")) {
             watch.return_to_present();
         }
-        tell("back to the world that lives: P");
+        widgets::explain("back to the world that lives: P");
     }
 }
 
@@ -213,7 +204,7 @@ void Timeline::build_fork(Watch& watch) {
         ImGui::OpenPopup("fork");
     }
     ImGui::EndDisabled();
-    tell(may ? "a new world that begins with this moment" : "only the role admin may make worlds");
+    widgets::explain(may ? "a new world that begins with this moment" : "only the role admin may make worlds");
     if (ImGui::BeginPopup("fork")) {
         ImGui::TextUnformatted("A new world from the moment that is shown. Its name:");
         if (ImGui::IsWindowAppearing()) {

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace evod::viewer {
 
@@ -28,14 +27,8 @@ Sheet sheet_of(const Gui& gui, float height) {
     return sheet;
 }
 
-std::string shown_number(const std::optional<double>& number, std::string_view unit) {
-    if (!number) {
-        return "–";
-    }
-    char text[64];
-    std::snprintf(text, sizeof text, "%.4g%s%.*s", *number, unit.empty() ? "" : " ", static_cast<int>(unit.size()),
-                  unit.data());
-    return text;
+std::string shown(const std::optional<double>& number, std::string_view unit) {
+    return number ? with_unit(*number, unit) : "–";
 }
 
 bool pressed(ImGuiKey key) {
@@ -376,8 +369,8 @@ void BreedingPanel::build_theory(const Gui& gui) {
     for (const Finding& finding : comparison_->findings) {
         ImGui::Separator();
         ImGui::TextWrapped("%.*s: expected %s, happened %s", static_cast<int>(finding.name.size()), finding.name.data(),
-                           shown_number(finding.expected, finding.unit).c_str(),
-                           shown_number(finding.happened, finding.unit).c_str());
+                           shown(finding.expected, finding.unit).c_str(),
+                           shown(finding.happened, finding.unit).c_str());
         if (const auto off = finding.deviation()) {
             ImGui::TextWrapped("%+.2f standard errors", *off);
         }

@@ -1,21 +1,13 @@
 #include "client/viewer/panels/breeding/caption.h"
 
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/text/numbers.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 namespace evod::viewer {
 
 namespace {
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[192];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
 
 std::string counted(std::uint64_t count, const char* one, const char* many) {
     return with_separators(count) + " " + (count == 1 ? one : many);

@@ -1,27 +1,18 @@
 #include "client/viewer/panels/breeding/drawing.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/panels/breeding/family.h"
 #include "client/viewer/panels/breeding/tournament.h"
 #include "client/viewer/panels/breeding/wheel_layout.h"
+#include "client/viewer/text/numbers.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace evod::viewer {
 
 namespace {
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-Colour faint(Colour colour, std::uint8_t alpha) {
-    colour.alpha = alpha;
-    return colour;
-}
 
 /// Black or white, whichever can be read on it; what can be seen through is on light paper.
 Colour text_on(Colour paper) {
@@ -30,29 +21,16 @@ Colour text_on(Colour paper) {
     return light > 140 ? palette::text : palette::note_text;
 }
 
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[160];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
-
-ImVec2 size_of(const Sheet& sheet, const std::string& text) {
-    return sheet.font.CalcTextSizeA(sheet.font.FontSize, 1e9f, 0, text.data(), text.data() + text.size());
-}
-
 void write(const Sheet& sheet, ImVec2 place, Colour colour, const std::string& text) {
-    sheet.list.AddText(&sheet.font, sheet.font.FontSize, {std::floor(place.x), std::floor(place.y)}, ink(colour),
-                       text.data(), text.data() + text.size());
+    write(sheet.list, sheet.font, place, colour, text);
 }
 
 void write_centred(const Sheet& sheet, ImVec2 centre, Colour colour, const std::string& text) {
-    const ImVec2 size = size_of(sheet, text);
-    write(sheet, {centre.x - size.x / 2, centre.y - size.y / 2}, colour, text);
+    write_centred(sheet.list, sheet.font, centre, colour, text);
 }
 
 void write_to_the_left(const Sheet& sheet, ImVec2 right, Colour colour, const std::string& text) {
-    write(sheet, {right.x - size_of(sheet, text).x, right.y}, colour, text);
+    write_to_the_left(sheet.list, sheet.font, right, colour, text);
 }
 
 float line_height(const Sheet& sheet) {

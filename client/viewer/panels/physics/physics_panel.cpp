@@ -1,6 +1,7 @@
 #include "client/viewer/panels/physics/physics_panel.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -17,10 +18,6 @@ constexpr std::chrono::milliseconds ask_every{250}, patience{5000};
 constexpr double demo_s = 10; // of the motion that is shown
 constexpr std::size_t table_rows = 8;
 
-ImVec4 ink(Colour colour) {
-    return {colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, colour.alpha / 255.f};
-}
-
 struct Curve {
     Colour colour;
     std::vector<float> values; // evenly spaced
@@ -33,7 +30,7 @@ void draw_curves(const char* name, std::span<const Curve> curves, float low, flo
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
     ImGui::Dummy(size);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, other, ImGui::GetColorU32(ink(palette::strip)));
+    list.AddRectFilled(corner, other, ink(palette::strip));
     list.PushClipRect(corner, other, true);
     std::vector<ImVec2> points;
     for (const Curve& curve : curves) {
@@ -45,12 +42,11 @@ void draw_curves(const char* name, std::span<const Curve> curves, float low, flo
             const float share = std::clamp((curve.values[i] - low) / std::max(high - low, 1e-9f), -1.f, 2.f);
             points.push_back({corner.x + along * size.x, other.y - share * size.y});
         }
-        list.AddPolyline(points.data(), static_cast<int>(points.size()), ImGui::GetColorU32(ink(curve.colour)), 0,
-                         1.5f);
+        list.AddPolyline(points.data(), static_cast<int>(points.size()), ink(curve.colour), 0, 1.5f);
     }
-    list.AddText({corner.x + 4, corner.y + 2}, ImGui::GetColorU32(ink(palette::text_quiet)), name);
+    list.AddText({corner.x + 4, corner.y + 2}, ink(palette::text_quiet), name);
     list.PopClipRect();
-    list.AddRect(corner, other, ImGui::GetColorU32(ink(palette::strip_edge)));
+    list.AddRect(corner, other, ink(palette::strip_edge));
 }
 
 /// A measure over time, from 0 up, with its newest value.
@@ -61,12 +57,6 @@ void draw_measure(const char* name, const MotionHistory& history, Of&& of) {
     char text[128];
     std::snprintf(text, sizeof text, name, of(history.last()));
     draw_curves(text, curves, 0, most * 1.6f, 52);
-}
-
-void coloured(Colour colour, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
 }
 
 } // namespace
@@ -115,7 +105,7 @@ void PhysicsPanel::ask(Context& context) {
 
 void PhysicsPanel::build_motion() {
     if (!refusal_.empty()) {
-        coloured(palette::warning, refusal_);
+        widgets::say(refusal_, palette::warning);
     }
     if (history_.empty()) {
         ImGui::TextUnformatted("…");
@@ -123,10 +113,9 @@ void PhysicsPanel::build_motion() {
     }
     const evod::v1::Motion& now = history_.last();
     const TickVerdict verdict = judge_tick(now);
-    coloured(verdict.level == TickVerdict::Level::Good    ? palette::running
-             : verdict.level == TickVerdict::Level::Close ? palette::stopped
-                                                          : palette::warning,
-             verdict.sentence);
+    widgets::say(verdict.sentence, verdict.level == TickVerdict::Level::Good    ? palette::running
+                                   : verdict.level == TickVerdict::Level::Close ? palette::stopped
+                                                                                : palette::warning);
     ImGui::Text("%s bodies, %s pairs touch; tick of %.4g s", with_separators(now.body_count()).c_str(),
                 with_separators(now.touching_count()).c_str(), now.tick_s());
     using Motion = evod::v1::Motion;
@@ -188,11 +177,11 @@ void PhysicsPanel::build_demo() {
     draw("x in 10 s, px", spring_ ? -reach : 0, reach, [](const State& state) { return state.x_px; });
     const double energy = demo.energy(rows_.front().exact);
     draw("energy, of that at the start", 0, 3, [&](const State& state) { return demo.energy(state) / energy; });
-    coloured(exact_colour, "the truth");
+    widgets::say("the truth", exact_colour);
     ImGui::SameLine();
-    coloured(symplectic_colour, "symplectic Euler");
+    widgets::say("symplectic Euler", symplectic_colour);
     ImGui::SameLine();
-    coloured(explicit_colour, "explicit Euler");
+    widgets::say("explicit Euler", explicit_colour);
 
     if (ImGui::BeginTable("steps", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
         for (const char* name : {"t, s", "x, px"}) {

@@ -1,6 +1,8 @@
 #include "client/viewer/panels/plots/plot.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/offscreen.h"
+#include "client/viewer/text/numbers.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
@@ -17,14 +19,10 @@ constexpr float gap = 6; // between letters and what they stand beside
 constexpr float tick_pixels = 4;
 constexpr float line_pixels = 1.6f;
 constexpr float dash_pixels = 6, dash_gap_pixels = 4;
-constexpr unsigned dense_alpha = 110;
+constexpr std::uint8_t dense_alpha = 110;
 constexpr double y_room = 0.04; // of the height, above and below
 constexpr double zoom_of_one_notch = 1.25;
 constexpr double shown_min = 4; // generations, or as much of another x
-
-ImU32 ink(Colour colour, unsigned alpha = 255) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha * alpha / 255);
-}
 
 struct Box {
     float left, top, right, bottom;
@@ -68,7 +66,7 @@ class Drawing {
             return lines;
         }
         const float pixels = column(*found);
-        list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(palette::text_quiet, 150));
+        list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(faint(palette::text_quiet, 150)));
         lines.push_back(plot_.x_label + " " + shown_number(*found));
         for (const Series& series : plot_.series) {
             const auto index = nearest(series.x, *found);
@@ -87,11 +85,9 @@ class Drawing {
     }
 
   private:
-    float width_of(const std::string& text) const {
-        return font_.CalcTextSizeA(font_.FontSize, 1e9f, 0, text.c_str()).x;
-    }
+    float width_of(const std::string& text) const { return size_of(text, font_).x; }
     void write(float x, float y, Colour colour, const std::string& text) {
-        list_.AddText(&font_, font_.FontSize, {std::round(x), std::round(y)}, ink(colour), text.c_str());
+        evod::viewer::write(list_, font_, {x, y}, colour, text);
     }
 
     double columns() const { return std::max(area_.right - area_.left, 1.0f); }
@@ -244,8 +240,8 @@ class Drawing {
             } else if (series.kind == Series::Kind::Dashes && !dense) {
                 draw_dashes(points, ink(series.colour));
             } else if (series.kind == Series::Kind::Dashes) {
-                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour, dense_alpha), 0,
-                                  1);
+                list_.AddPolyline(points.data(), static_cast<int>(points.size()),
+                                  ink(faint(series.colour, dense_alpha)), 0, 1);
             } else {
                 list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour), 0, line_pixels);
             }

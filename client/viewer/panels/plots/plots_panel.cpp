@@ -1,6 +1,6 @@
 #include "client/viewer/panels/plots/plots_panel.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -34,14 +34,6 @@ constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},
                         {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors},
                         {"Deaths", Quantity::Deaths}};
-
-void say(const std::string& text, Colour colour = palette::text_quiet) {
-    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(colour.red, colour.green, colour.blue, colour.alpha));
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
 
 /// CSV files of the working folder, by name.
 std::vector<std::string> csv_files() {
@@ -229,10 +221,10 @@ void PlotsPanel::build(Context& context) {
     build_choices();
     build_comparison(context);
     if (!own_->trouble.empty()) {
-        say(own_->trouble, palette::warning);
+        widgets::say(own_->trouble, palette::warning);
     }
     if (other_world_ && !other_world_->trouble.empty()) {
-        say(other_name_ + ": " + other_world_->trouble, palette::warning);
+        widgets::say(other_name_ + ": " + other_world_->trouble, palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -272,9 +264,9 @@ void PlotsPanel::build_choices() {
     }
     ImGui::SameLine();
     const HistoryTable& table = own_->history.table();
-    say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
-                      : with_separators(table.column(std::nullopt, "generation").size()) + " generations, up to " +
-                            with_separators(table.last_generation()));
+    widgets::say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
+                               : with_separators(table.column(std::nullopt, "generation").size()) +
+                                     " generations, up to " + with_separators(table.last_generation()));
 }
 
 void PlotsPanel::compare_with_file(const std::string& path) {
@@ -360,13 +352,13 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     ImGui::SameLine();
     const Population& population = population_->whole;
     if (!population_->trouble.empty()) {
-        say(population_->trouble, palette::warning);
+        widgets::say(population_->trouble, palette::warning);
     } else if (!population.whole()) {
-        say("…");
+        widgets::say("…");
     } else {
-        say("generation " + with_separators(population.generation()) + ", island " +
-            std::to_string(island_.value_or(context.watch.island())) +
-            (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
+        widgets::say("generation " + with_separators(population.generation()) + ", island " +
+                     std::to_string(island_.value_or(context.watch.island())) +
+                     (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -469,7 +461,7 @@ void PlotsPanel::build_export() {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
     ImGui::DragInt2("pixels", picture_pixels_.data(), 10, 200, picture_pixels_max);
     if (!told_.empty()) {
-        say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
+        widgets::say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
     }
 }
 

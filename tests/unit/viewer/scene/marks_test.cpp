@@ -36,16 +36,6 @@ struct MarksTest : testing::Test {
     const Rectangle everything{0, 0, 1000, 1000};
 };
 
-TEST(RoundUp, ToOneTwoOrFiveTimesAPowerOfTen) {
-    EXPECT_EQ(round_up(0), 1);
-    EXPECT_EQ(round_up(1), 1);
-    EXPECT_EQ(round_up(1.01), 2);
-    EXPECT_EQ(round_up(3), 5);
-    EXPECT_EQ(round_up(5.1), 10);
-    EXPECT_EQ(round_up(1000), 1000);
-    EXPECT_NEAR(round_up(0.03), 0.05, 1e-12);
-}
-
 TEST_F(MarksTest, HealthGoesFromNothingToTheMostRoundedUp) {
     const Scale scale = health_scale(organisms, ramp);
     EXPECT_EQ(scale.low, 0);

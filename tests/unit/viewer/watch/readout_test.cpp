@@ -7,18 +7,6 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Readout, WritesNumbersAndTimesAsPeopleReadThem) {
-    EXPECT_EQ(with_separators(0), "0");
-    EXPECT_EQ(with_separators(999), "999");
-    EXPECT_EQ(with_separators(1000), "1,000");
-    EXPECT_EQ(with_separators(1234567), "1,234,567");
-    EXPECT_EQ(shown_duration(0), "0.0 s");
-    EXPECT_EQ(shown_duration(12.39), "12.3 s");
-    EXPECT_EQ(shown_duration(59.99), "59.9 s");
-    EXPECT_EQ(shown_duration(60), "1:00.0");
-    EXPECT_EQ(shown_duration(3675.25), "61:15.2");
-}
-
 TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
     evod::v1::Storage storage;
     EXPECT_EQ(shown_storage(storage), "");
