@@ -2,6 +2,7 @@
 
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
+#include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -36,27 +37,17 @@ void build_gene(const std::string& name, float value, const Population::Range& r
 }
 
 void build_health(const std::vector<OrganismStory::Health>& points) {
-    constexpr float height = 70;
-    const float width = ImGui::GetContentRegionAvail().x;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(palette::background));
-    if (points.size() > 1) {
-        float most = 1;
-        for (const auto& point : points) {
-            most = std::max(most, point.health);
-        }
-        most = static_cast<float>(nice_step(most));
-        const double begin = points.front().s, long_s = points.back().s - begin;
-        std::vector<ImVec2> line;
-        for (const auto& [s, health] : points) {
-            line.push_back(
-                {corner.x + static_cast<float>((s - begin) / long_s) * width, corner.y + (1 - health / most) * height});
-        }
-        list.AddPolyline(line.data(), static_cast<int>(line.size()), ink(palette::organism), 0, 1.5f);
-        list.AddText(corner, ink(palette::text_quiet), print("%g", double{most}).c_str());
+    std::vector<double> s, health;
+    double most = 1;
+    for (const OrganismStory::Health& point : points) {
+        s.push_back(point.s);
+        health.push_back(point.health);
+        most = std::max(most, health.back());
     }
-    ImGui::Dummy({width, height});
+    most = nice_step(most);
+    Plot plot{.title = shown_number(most)};
+    plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
+    curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
                                   ? ("health over " + shown_duration(points.back().s - points.front().s)).c_str()
                                   : "health, from now on");

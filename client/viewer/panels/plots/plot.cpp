@@ -36,6 +36,12 @@ class Drawing {
         lay_out(box);
     }
 
+    /// Without axes: the lines fill the box, from y.min to y.max.
+    Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
+        : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
+        group(columns());
+    }
+
     /// Where the data are.
     const Box& area() const { return area_; }
     double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
@@ -43,13 +49,14 @@ class Drawing {
     void draw() {
         list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
         draw_axes();
-        list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
-        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
-            draw(i);
-        }
-        list_.PopClipRect();
-        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
+        draw_series();
         draw_legend();
+    }
+
+    void draw_bare() {
+        list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
+        draw_series();
+        write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
     }
 
     /// A line through the numbers that are nearest to the x, and which they are. Empty if there are none.
@@ -99,6 +106,12 @@ class Drawing {
         return area_.bottom - static_cast<float>(share * (area_.bottom - area_.top));
     }
 
+    void group(double columns) {
+        for (const Series& series : plot_.series) {
+            groups_.push_back(groups_of(series.x, x_, static_cast<std::size_t>(columns)));
+        }
+    }
+
     /// Groups of every series, the tops of stacks, the range of y, and the area that letters leave.
     void lay_out(Box box) {
         const float letter = font_.FontSize;
@@ -125,15 +138,16 @@ class Drawing {
         label_left_ = box.left;
 
         std::optional<Range> y;
-        const auto columns_now = static_cast<std::size_t>(std::max(box.right - box.left, 1.0f));
-        for (const Series& series : plot_.series) {
-            groups_.push_back(groups_of(series.x, x_, columns_now));
-            if (groups_.back().empty()) {
+        group(std::max(box.right - box.left, 1.0f));
+        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            const Series& series = plot_.series[i];
+            const std::vector<Group>& groups = groups_[i];
+            if (groups.empty()) {
                 continue;
             }
-            const std::size_t begin = groups_.back().front().begin, end = groups_.back().back().end;
+            const std::size_t begin = groups.front().begin, end = groups.back().end;
             if (series.kind == Series::Kind::Stack) {
-                take_stack(series, groups_.back());
+                take_stack(series, groups);
                 y = joined(y, range_of(tops_));
                 continue;
             }
@@ -211,6 +225,15 @@ class Drawing {
             write(x + letter + gap, y, palette::text, series.name);
             x += width;
         }
+    }
+
+    void draw_series() {
+        list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
+        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            draw(i);
+        }
+        list_.PopClipRect();
+        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
     }
 
     void draw(std::size_t index) {
@@ -381,6 +404,14 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
         const Box& area = drawing.area();
         view.x = moved(*view.x, -io.MouseDelta.x / (area.right - area.left) * view.x->width(), whole);
     }
+}
+
+void curve_widget(const Plot& plot, Range y, float height_pixels) {
+    const ImVec2 place = ImGui::GetCursorScreenPos();
+    const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), height_pixels};
+    ImGui::Dummy(size);
+    const Box box{place.x, place.y, place.x + size.x, place.y + size.y};
+    Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_bare();
 }
 
 sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {
