@@ -27,7 +27,7 @@ void add_families(const Sight& sight, const Population& population, Legend& lege
     if (others > 0) {
         legend.entries.push_back(
             {palette::unknown, with_separators(population.family_count() - population.families().size()) +
-                                   " smaller families: " + with_separators(others)});
+                                   " smaller lineages: " + with_separators(others)});
     }
 }
 
@@ -37,7 +37,7 @@ std::string gene_title(const std::string& name) {
     return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
 }
 
-Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<Scale>& density,
+Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<ColourScale>& density,
                  double density_cell_px) {
     Legend legend;
     const Population* population = sight.population();
@@ -70,8 +70,8 @@ Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::op
         legend.entries.push_back({palette::unknown, sight.trouble()});
     }
     if (sight.shown.radii && population != nullptr) {
-        legend.entries.push_back({palette::food_radius, "sees food so far"});
-        legend.entries.push_back({palette::poison_radius, "sees poison so far"});
+        legend.entries.push_back({palette::food_radius, "perception radius for food"});
+        legend.entries.push_back({palette::poison_radius, "perception radius for poison"});
     }
     if (sight.shown.forces && population != nullptr) {
         legend.entries.push_back({palette::seeks, "seeks food"});
@@ -104,14 +104,10 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     const float left = corner.x + inside;
     float top = corner.y + inside;
     if (legend.ramp) {
-        const Scale& scale = legend.ramp->scale;
+        const ColourScale& scale = legend.ramp->scale;
         write(list, font, {left, top}, palette::text, legend.ramp->title);
         top += line;
-        for (int i = 0; i < static_cast<int>(bar_width); ++i) {
-            const float x = left + static_cast<float>(i);
-            list.AddRectFilled({x, top}, {x + 1, top + bar_height},
-                               ink(palette::at(scale.ramp, (i + 0.5) / bar_width)));
-        }
+        draw_ramp(list, {left, top}, {bar_width, bar_height}, scale.ramp);
         top += bar_height + 4;
         write(list, font, {left, top}, palette::text, shown_number(scale.low));
         write_to_the_left(list, font, {left + bar_width, top}, palette::text, shown_number(scale.high));

@@ -65,7 +65,7 @@ void Minimap::build(const Watch& watch, Camera& camera) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
     list.AddRectFilled(corner, other, ink(palette::strip));
-    const Scale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
+    const ColourScale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
     const auto cell = static_cast<float>(grid_.cell_px * place.zoom);
     for (std::size_t i = 0; i < grid_.counts.size(); ++i) {
         if (grid_.counts[i] > 0) {
