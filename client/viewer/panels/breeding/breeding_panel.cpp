@@ -3,6 +3,7 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/caption.h"
 #include "client/viewer/panels/breeding/drawing.h"
+#include "client/viewer/panels/breeding/selection_drawing.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -330,8 +331,8 @@ void BreedingPanel::build_stage(const Context& context) {
         widgets::say("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
             widgets::say(
-                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
-                "bound");
+                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or "
+                "clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.control().told().gene_names());
             ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
