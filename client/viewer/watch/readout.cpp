@@ -31,9 +31,13 @@ std::string shown_storage(const evod::v1::Storage& storage) {
 }
 
 const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage) {
+    return state == evod::v1::RUN_STATE_WAITING ? "waiting – Space runs" : state_word(state, storage);
+}
+
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage) {
     switch (state) {
     case evod::v1::RUN_STATE_WAITING:
-        return "waiting – Space runs";
+        return "waiting";
     case evod::v1::RUN_STATE_RUNNING:
         return link::worlds_wait(storage) ? "waits for the disk" : "running";
     case evod::v1::RUN_STATE_PAUSED:

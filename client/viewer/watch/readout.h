@@ -14,6 +14,8 @@ namespace evod::viewer {
 std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
 /// storage  as it stands: a world that runs may have to wait for it.
 const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage);
+/// The same without the key that runs it.
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage);
 
 /// What a person has to know of it: "Commands are refused: …", "Worlds wait for the disk: …"; empty while it keeps up.
 std::string shown_storage(const evod::v1::Storage& storage);

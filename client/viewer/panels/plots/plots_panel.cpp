@@ -1,15 +1,13 @@
 #include "client/viewer/panels/plots/plots_panel.h"
 
+#include "client/viewer/drawing/png.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 namespace evod::viewer {
@@ -406,11 +404,14 @@ std::string PlotsPanel::file_name(const std::string& what) const {
 
 void PlotsPanel::save_csv() {
     const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
-    std::ofstream file{path, std::ios::binary};
-    const std::string text = own_->history.table().to_csv();
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    told_trouble_ = !file.flush();
-    told_ = told_trouble_ ? "Could not write " + path + ": " + std::strerror(errno) : "Saved " + path;
+    told_trouble_ = false;
+    try {
+        write_file(path, own_->history.table().to_csv());
+        told_ = "Saved " + path;
+    } catch (const std::runtime_error& error) {
+        told_ = error.what();
+        told_trouble_ = true;
+    }
 }
 
 void PlotsPanel::save_png() {
@@ -422,11 +423,7 @@ void PlotsPanel::save_png() {
         const auto pixels = [this](std::size_t i) {
             return static_cast<unsigned>(std::clamp(picture_pixels_[i], 200, picture_pixels_max));
         };
-        errno = 0;
-        if (!picture_of(plot, view, pixels(0), pixels(1)).saveToFile(path)) {
-            throw std::runtime_error{"Could not write " + path + (errno != 0 ? ": " : "") +
-                                     (errno != 0 ? std::strerror(errno) : "")};
-        }
+        write_file(path, png_of(picture_of(plot, view, pixels(0), pixels(1))));
         return path;
     };
     try {

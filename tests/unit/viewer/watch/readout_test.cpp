@@ -19,6 +19,9 @@ TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
     EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk, commands are refused: it is full");
     EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
     EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_WAITING, storage), "waiting – Space runs");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage), "waiting");
     storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
     EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk: it is full");
 }
