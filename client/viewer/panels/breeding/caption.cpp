@@ -42,7 +42,7 @@ std::string scaling_caption(const BreedingRecord& record) {
             record.number("tournament_size").value_or(0));
     }
     if (method == "random") {
-        return "Fitness by rank. Random selection does not look at it.";
+        return "Fitness by rank. Uniform random selection does not look at it.";
     }
     if (method == "truncation") {
         return "Fitness by rank. Truncation takes the best, in order, over and over.";

@@ -58,7 +58,7 @@ const char* shown_mutation(evod::v1::MutationKind kind) {
     case evod::v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case evod::v1::MUTATION_KIND_CLAMP:
-        return "bound";
+        return "clamped";
     default:
         return "mutation";
     }
