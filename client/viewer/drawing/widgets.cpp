@@ -1,6 +1,6 @@
 #include "client/viewer/drawing/widgets.h"
 
-#include <imgui.h>
+#include "client/viewer/drawing/ink.h"
 
 #include <utility>
 
@@ -81,10 +81,6 @@ void explain(std::string_view text) {
     if (wants_note()) {
         note(text);
     }
-}
-
-ImVec4 ink(Colour colour) {
-    return {float(colour.red) / 255, float(colour.green) / 255, float(colour.blue) / 255, float(colour.alpha) / 255};
 }
 
 } // namespace widgets

@@ -15,8 +15,6 @@
 #include <string>
 #include <string_view>
 
-struct ImVec4;
-
 namespace evod::viewer {
 
 /// Where the widgets of the last whole frame are, and on which the mouse rests.
@@ -60,8 +58,6 @@ bool wants_note();
 void note(std::string_view text);
 /// The note, if it is wanted.
 void explain(std::string_view text);
-
-ImVec4 ink(Colour colour);
 
 } // namespace widgets
 } // namespace evod::viewer

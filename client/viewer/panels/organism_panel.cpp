@@ -1,26 +1,17 @@
 #include "client/viewer/panels/organism_panel.h"
 
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace evod::viewer {
 
 namespace {
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[128];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
 
 /// A gene between the least and the greatest of the population; a line across the bar is the mean.
 void build_gene(const std::string& name, float value, const Population::Range& range, float pixel) {
@@ -41,34 +32,22 @@ void build_gene(const std::string& name, float value, const Population::Range& r
     list.AddLine({across(range.mean), corner.y - 2 * pixel}, {across(range.mean), corner.y + height + 2 * pixel},
                  ink(palette::wall), 2 * pixel);
     ImGui::Dummy({width, height});
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
-                          double{range.mean});
-    }
+    widgets::explain(print("all of this generation: %.1f to %.1f, mean %.1f", double{range.min}, double{range.max},
+                           double{range.mean}));
 }
 
-void build_health(const std::vector<OrganismStory::Health>& points, float pixel) {
-    const float height = 70 * pixel;
-    const float width = ImGui::GetContentRegionAvail().x;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, {corner.x + width, corner.y + height}, ink(palette::background));
-    if (points.size() > 1) {
-        float most = 1;
-        for (const auto& point : points) {
-            most = std::max(most, point.health);
-        }
-        most = static_cast<float>(round_up(most));
-        const double begin = points.front().s, long_s = points.back().s - begin;
-        std::vector<ImVec2> line;
-        for (const auto& [s, health] : points) {
-            line.push_back(
-                {corner.x + static_cast<float>((s - begin) / long_s) * width, corner.y + (1 - health / most) * height});
-        }
-        list.AddPolyline(line.data(), static_cast<int>(line.size()), ink(palette::organism), 0, 1.5f * pixel);
-        list.AddText(corner, ink(palette::text_quiet), print("%g", double{most}).c_str());
+void build_health(const std::vector<OrganismStory::Health>& points) {
+    std::vector<double> s, health;
+    double most = 1;
+    for (const OrganismStory::Health& point : points) {
+        s.push_back(point.s);
+        health.push_back(point.health);
+        most = std::max(most, health.back());
     }
-    ImGui::Dummy({width, height});
+    most = nice_step(most);
+    Plot plot{.title = shown_number(most)};
+    plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
+    curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
                                   ? ("health over " + shown_duration(points.back().s - points.front().s)).c_str()
                                   : "health, from now on");
@@ -142,7 +121,7 @@ void OrganismPanel::build(Context& context) {
     ImGui::Text("eaten: %u food, %u poison", info.food_eaten(), info.poison_eaten());
     ImGui::Text("radius %.1f px, mass %.2f kg", info.radius_px(), info.mass_kg());
     ImGui::Separator();
-    build_health(story->health(), context.gui.scale());
+    build_health(story->health());
     ImGui::Separator();
     const auto& names = context.sight.gene_names();
     for (std::size_t gene = 0; gene < names.size() && gene < static_cast<std::size_t>(info.genes_size()); ++gene) {

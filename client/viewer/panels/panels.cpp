@@ -1,5 +1,6 @@
 #include "client/viewer/panels/panels.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/breeding/breeding_panel.h"
@@ -94,7 +95,7 @@ void Panels::build_strip(const Gui& gui) {
     ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 4 * scale);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * scale, 2 * scale});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * scale, 0});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, widgets::ink(palette::strip));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ink(palette::strip));
     ImGui::Begin("##panels", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoFocusOnAppearing);

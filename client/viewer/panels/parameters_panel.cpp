@@ -1,5 +1,6 @@
 #include "client/viewer/panels/parameters_panel.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
@@ -271,10 +272,10 @@ void ParametersPanel::build_row(std::size_t i) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
-    const Colour ink = edits_.violation(i) != nullptr ? palette::warning
-                       : edits_.is_edited(i)          ? palette::stopped
-                                                      : palette::text;
-    ImGui::PushStyleColor(ImGuiCol_Text, widgets::ink(ink));
+    const Colour colour = edits_.violation(i) != nullptr ? palette::warning
+                          : edits_.is_edited(i)          ? palette::stopped
+                                                         : palette::text;
+    ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
     ImGui::TextUnformatted(about.name().c_str());
     ImGui::PopStyleColor();
     explain(about, edits_, i);
@@ -287,7 +288,7 @@ void ParametersPanel::build_row(std::size_t i) {
     const EffectWords effect = words_of(about.effect());
     ImGui::PushStyleColor(
         ImGuiCol_Text,
-        widgets::ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::running : palette::text_quiet));
+        ink(about.effect() == evod::v1::PARAMETER_EFFECT_NEXT_TICK ? palette::running : palette::text_quiet));
     ImGui::TextUnformatted(effect.mark);
     ImGui::PopStyleColor();
     widgets::explain(effect.sentence);

@@ -55,8 +55,7 @@ void RunPanel::build(Context& context) {
 void RunPanel::build_state(const Watch& watch) {
     const RunControl& control = watch.control();
     const evod::v1::WorldInfo& told = control.told();
-    std::string state =
-        control.state() == evod::v1::RUN_STATE_WAITING ? "waiting" : shown_state(control.state(), watch.storage());
+    std::string state = state_word(control.state(), watch.storage());
     if (control.state() == evod::v1::RUN_STATE_TERMINATED) {
         state += std::string{": "} + outcome_words(control.outcome());
     } else if (told.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {

@@ -20,7 +20,7 @@ void build_colouring(Sight& sight) {
         case ColourBy::Health:
             return "health";
         case ColourBy::Lineage:
-            return "family (who of the first generation they come of)";
+            return "lineage (who of the first generation they come of)";
         default:
             return "nothing";
         }
@@ -57,7 +57,7 @@ void ViewPanel::build(Context& context) {
     Sight& sight = context.sight;
     build_colouring(sight);
     ImGui::Separator();
-    ImGui::Checkbox("how far they see food and poison (V)", &sight.shown.radii);
+    ImGui::Checkbox("perception radii of food and poison (V)", &sight.shown.radii);
     ImGui::Checkbox("forces, and what they act on (G)", &sight.shown.forces);
     ImGui::Checkbox("trails of the last 3 simulated seconds (T)", &sight.shown.trails);
     ImGui::Separator();

@@ -19,10 +19,6 @@ void cell(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-const char* state_word(const evod::v1::WorldInfo& world) {
-    return world.state() == evod::v1::RUN_STATE_WAITING ? "waiting" : shown_state(world.state(), world.storage());
-}
-
 } // namespace
 
 void WorldsPanel::build(Context& context) {
@@ -110,7 +106,7 @@ void WorldsPanel::build_worlds(Watch& watch) {
             chosen = world.name();
         }
         widgets::mark(world.name());
-        cell(state_word(world));
+        cell(state_word(world.state(), world.storage()));
         cell(with_separators(world.generation()));
         cell(with_separators(world.tick()));
         cell(shown_speed(world.speed()) + (world.slowed() ? " (slower)" : ""));

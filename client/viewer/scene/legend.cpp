@@ -1,26 +1,16 @@
 #include "client/viewer/scene/legend.h"
 
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/drawing/ink.h"
+#include "client/viewer/text/numbers.h"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace evod::viewer {
 
 namespace {
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value);
-    return text;
-}
 
 void add_families(const Sight& sight, const Population& population, Legend& legend) {
     if (population.families().empty()) {
@@ -37,7 +27,7 @@ void add_families(const Sight& sight, const Population& population, Legend& lege
     if (others > 0) {
         legend.entries.push_back(
             {palette::unknown, with_separators(population.family_count() - population.families().size()) +
-                                   " smaller families: " + with_separators(others)});
+                                   " smaller lineages: " + with_separators(others)});
     }
 }
 
@@ -47,12 +37,12 @@ std::string gene_title(const std::string& name) {
     return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
 }
 
-Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<Scale>& density,
+Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<ColourScale>& density,
                  double density_cell_px) {
     Legend legend;
     const Population* population = sight.population();
     if (density) {
-        const std::string side = number(density_cell_px);
+        const std::string side = shown_number(density_cell_px);
         legend.ramp = {"organisms in " + side + " × " + side + " px", *density};
         return legend;
     }
@@ -80,8 +70,8 @@ Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::op
         legend.entries.push_back({palette::unknown, sight.trouble()});
     }
     if (sight.shown.radii && population != nullptr) {
-        legend.entries.push_back({palette::food_radius, "sees food so far"});
-        legend.entries.push_back({palette::poison_radius, "sees poison so far"});
+        legend.entries.push_back({palette::food_radius, "perception radius for food"});
+        legend.entries.push_back({palette::poison_radius, "perception radius for poison"});
     }
     if (sight.shown.forces && population != nullptr) {
         legend.entries.push_back({palette::seeks, "seeks food"});
@@ -99,12 +89,9 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     const float inside = 8 * pixel, line = 18 * pixel, bar_width = 200 * pixel, bar_height = 12 * pixel,
                 swatch = 12 * pixel, gap = 6 * pixel;
     const ImFont& font = gui.label();
-    const auto width_of = [&](const std::string& text) {
-        return font.CalcTextSizeA(font.FontSize, 1e9f, 0, text.data(), text.data() + text.size()).x;
-    };
-    float width = legend.ramp ? std::max(bar_width, width_of(legend.ramp->title)) : 0;
+    float width = legend.ramp ? std::max(bar_width, size_of(legend.ramp->title, font).x) : 0;
     for (const Legend::Entry& entry : legend.entries) {
-        width = std::max(width, width_of(entry.text) + swatch + gap);
+        width = std::max(width, size_of(entry.text, font).x + swatch + gap);
     }
     const float height = (legend.ramp ? 2 * line + bar_height + 4 * pixel : 0) +
                          static_cast<float>(legend.entries.size()) * line + 2 * inside;
@@ -116,29 +103,20 @@ void build_legend(const Legend& legend, const Camera& camera, const Gui& gui) {
     list.AddRect(corner, {corner.x + width + 2 * inside, corner.y + height}, ink(palette::strip_edge), 4 * pixel);
     const float left = corner.x + inside;
     float top = corner.y + inside;
-    const auto write = [&](float x, float y, const std::string& text) {
-        list.AddText(&font, font.FontSize, {std::floor(x), std::floor(y)}, ink(palette::text), text.data(),
-                     text.data() + text.size());
-    };
     if (legend.ramp) {
-        const Scale& scale = legend.ramp->scale;
-        write(left, top, legend.ramp->title);
+        const ColourScale& scale = legend.ramp->scale;
+        write(list, font, {left, top}, palette::text, legend.ramp->title);
         top += line;
-        for (int i = 0; i < static_cast<int>(bar_width); ++i) {
-            const float x = left + static_cast<float>(i);
-            list.AddRectFilled({x, top}, {x + 1, top + bar_height},
-                               ink(palette::at(scale.ramp, (i + 0.5) / bar_width)));
-        }
+        draw_ramp(list, {left, top}, {bar_width, bar_height}, scale.ramp);
         top += bar_height + 4 * pixel;
-        const std::string high = number(scale.high);
-        write(left, top, number(scale.low));
-        write(left + bar_width - width_of(high), top, high);
+        write(list, font, {left, top}, palette::text, shown_number(scale.low));
+        write_to_the_left(list, font, {left + bar_width, top}, palette::text, shown_number(scale.high));
         top += line;
     }
     for (const Legend::Entry& entry : legend.entries) {
         list.AddRectFilled({left, top + 2 * pixel}, {left + swatch, top + 2 * pixel + swatch}, ink(entry.colour),
                            2 * pixel);
-        write(left + swatch + gap, top, entry.text);
+        write(list, font, {left + swatch + gap, top}, palette::text, entry.text);
         top += line;
     }
 }

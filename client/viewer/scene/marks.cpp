@@ -1,5 +1,7 @@
 #include "client/viewer/scene/marks.h"
 
+#include "client/viewer/text/numbers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +12,7 @@ namespace {
 /// A ramp as a table, which is faster to look up and as fine as colours are.
 class Table {
   public:
-    explicit Table(const Scale& scale) : scale_{scale} {
+    explicit Table(const ColourScale& scale) : scale_{scale} {
         for (int i = 0; i <= last; ++i) {
             colours_[static_cast<std::size_t>(i)] = palette::at(scale.ramp, i / double{last});
         }
@@ -22,7 +24,7 @@ class Table {
 
   private:
     static constexpr int last = 255;
-    Scale scale_;
+    ColourScale scale_;
     std::array<Colour, last + 1> colours_;
 };
 
@@ -40,20 +42,7 @@ Colour colour_of(evod::v1::Choice choice) {
 
 } // namespace
 
-double round_up(double value) {
-    if (!(value > 0)) {
-        return 1;
-    }
-    const double ten = std::pow(10, std::floor(std::log10(value) + 1e-9));
-    for (const double factor : {1.0, 2.0, 5.0}) {
-        if (value <= factor * ten * (1 + 1e-9)) {
-            return factor * ten;
-        }
-    }
-    return 10 * ten;
-}
-
-Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
+ColourScale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
     float most = 100;
     for (const float health : organisms.health) {
         most = std::max(most, health);
@@ -61,7 +50,7 @@ Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
     return {ramp, 0, 100 * std::ceil(most / 100.0)};
 }
 
-Scale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp) {
+ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp) {
     const Population::Range range = population.range(gene);
     return {ramp, range.min, range.max};
 }
@@ -95,7 +84,8 @@ void put_discs(const Positions& at, std::span<const float> radius_px, std::vecto
     }
 }
 
-void put_health_colours(const wire::OrganismPicture& organisms, const Scale& scale, std::vector<Colour>& colours) {
+void put_health_colours(const wire::OrganismPicture& organisms, const ColourScale& scale,
+                        std::vector<Colour>& colours) {
     const Table table{scale};
     for (const float health : organisms.health) {
         colours.push_back(table(health));
@@ -103,7 +93,7 @@ void put_health_colours(const wire::OrganismPicture& organisms, const Scale& sca
 }
 
 void put_gene_colours(const wire::OrganismPicture& organisms, const Population& population, std::size_t gene,
-                      const Scale& scale, std::vector<Colour>& colours) {
+                      const ColourScale& scale, std::vector<Colour>& colours) {
     const Table table{scale};
     const auto values = population.gene(gene);
     for (const std::uint32_t id : organisms.id) {
@@ -242,7 +232,7 @@ DensityGrid overview_of(const wire::Picture& picture, std::size_t cells_max) {
     return grid;
 }
 
-void put_density(const DensityGrid& grid, Point island, const Scale& scale, std::vector<Shape>& shapes,
+void put_density(const DensityGrid& grid, Point island, const ColourScale& scale, std::vector<Shape>& shapes,
                  std::vector<Colour>& colours) {
     for (std::size_t i = 0; i < grid.counts.size(); ++i) {
         if (grid.counts[i] > 0) {
@@ -270,14 +260,14 @@ std::vector<DensityGrid> densities_of(const wire::Picture& picture) {
     return grids;
 }
 
-Scale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp) {
+ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp) {
     std::uint32_t most = 0;
     for (const DensityGrid& grid : grids) {
         for (const std::uint32_t count : grid.counts) {
             most = std::max(most, count);
         }
     }
-    return {ramp, 0, round_up(most)};
+    return {ramp, 0, nice_step(most)};
 }
 
 } // namespace evod::viewer

@@ -8,7 +8,7 @@
 
 #include "client/link/world_view.h"
 #include "client/viewer/drawing/camera.h"
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/colour_scale.h"
 #include "client/viewer/scene/shapes.h"
 #include "client/viewer/watch/population.h"
 
@@ -26,24 +26,11 @@ using Positions = link::WorldView::Positions;
 /// What organisms are coloured by.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
-/// Numbers → colours: the ends of the ramp are `low` and `high`, and what is beyond them has their colour.
-struct Scale {
-    palette::Ramp ramp = palette::Ramp::Viridis;
-    double low = 0, high = 1;
-
-    /// Where low = high everything is in the middle.
-    double share(double value) const { return high > low ? (value - low) / (high - low) : 0.5; }
-    Colour operator()(double value) const { return palette::at(ramp, share(value)); }
-};
-
-/// The least of 1, 2 and 5 times a power of ten that is not less than `value`; 1 of nothing.
-double round_up(double value);
-
 /// 0 to the greatest health of the picture rounded up to hundreds, at least 100: so it stays from picture to picture.
-Scale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp);
+ColourScale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp);
 
 /// From the least to the greatest value in the population.
-Scale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
+ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
 
 /// Families keep their colours from generation to generation, for as long as they are among the largest.
 class FamilyColours {
@@ -59,10 +46,10 @@ class FamilyColours {
 
 void put_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);
 
-void put_health_colours(const wire::OrganismPicture& organisms, const Scale& scale, std::vector<Colour>& colours);
+void put_health_colours(const wire::OrganismPicture& organisms, const ColourScale& scale, std::vector<Colour>& colours);
 /// Who is not in the population is `unknown`.
 void put_gene_colours(const wire::OrganismPicture& organisms, const Population& population, std::size_t gene,
-                      const Scale& scale, std::vector<Colour>& colours);
+                      const ColourScale& scale, std::vector<Colour>& colours);
 void put_family_colours(const wire::OrganismPicture& organisms, const Population& population,
                         const FamilyColours& families, std::vector<Colour>& colours);
 
@@ -126,7 +113,7 @@ double density_cell_px(const Camera& camera, double cell_pixels);
 DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_px);
 
 /// Squares coloured by how many are in them, cut at the right and lower wall; empty ones are left out.
-void put_density(const DensityGrid& grid, Point island, const Scale& scale, std::vector<Shape>& shapes,
+void put_density(const DensityGrid& grid, Point island, const ColourScale& scale, std::vector<Shape>& shapes,
                  std::vector<Colour>& colours);
 
 /// The densities of tiles as grids, those that there are.
@@ -136,6 +123,6 @@ std::vector<DensityGrid> densities_of(const wire::Picture& picture);
 DensityGrid overview_of(const wire::Picture& picture, std::size_t cells_max);
 
 /// 0 to the most in one cell, rounded up.
-Scale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp);
+ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp);
 
 } // namespace evod::viewer

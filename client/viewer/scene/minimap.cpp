@@ -1,5 +1,6 @@
 #include "client/viewer/scene/minimap.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 
 #include <imgui.h>
@@ -13,10 +14,6 @@ namespace evod::viewer {
 namespace {
 
 constexpr std::size_t cells_max = 60; // along the longer side
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
 
 ImVec2 vector(Point point) {
     return {static_cast<float>(point.x), static_cast<float>(point.y)};
@@ -75,7 +72,7 @@ void Minimap::build(Watch& watch, Camera& camera, const Gui& gui, int number) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 other{corner.x + size.x, corner.y + size.y};
     list.AddRectFilled(corner, other, ink(palette::strip));
-    const Scale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
+    const ColourScale scale = density_scale(std::span{&grid_, 1}, palette::Ramp::Viridis);
     const auto cell = static_cast<float>(grid_.cell_px * place.zoom);
     for (std::size_t i = 0; i < grid_.counts.size(); ++i) {
         if (grid_.counts[i] > 0) {

@@ -1,5 +1,7 @@
 #include "client/viewer/scene/scene.h"
 
+#include "client/viewer/drawing/ink.h"
+
 #include <imgui.h>
 
 #include <algorithm>
@@ -297,23 +299,20 @@ void Scene::draw_labels(link::WorldView& view, double blend, const Camera& camer
     if (!labels_are_readable(camera, labelled_.size())) {
         return;
     }
-    const Colour ink = palette::health;
     const Point corner = camera.to_screen({0, 0});
     const Point other = camera.to_screen({picture->about.width_px(), picture->about.height_px()});
     for (const std::size_t i : labelled_) {
-        std::array<char, 16> digits;
-        const char* end = std::to_chars(digits.begin(), digits.end(), shown_health(picture->organisms.health[i])).ptr;
+        std::array<char, 16> room;
+        const char* end = std::to_chars(room.begin(), room.end(), shown_health(picture->organisms.health[i])).ptr;
+        const std::string_view digits{room.data(), static_cast<std::size_t>(end - room.data())};
         const Point centre = camera.to_screen({organisms.x_px[i], organisms.y_px[i]});
         const double radius = picture->organisms.radius_px[i] * camera.zoom();
-        const double width = font.CalcTextSizeA(font.FontSize, 1e9f, 0, digits.data(), end).x;
+        const double width = size_of(digits, font).x;
         // Black on the black wall could not be read: at a side the number moves inwards, at the top below the organism.
         const double above = centre.y - radius - font.FontSize - 1;
         const double top = above < corner.y ? centre.y + radius + 1 : above;
         const double left = std::max(std::min(centre.x - width / 2, other.x - width - 1), corner.x + 1);
-        // Whole pixels keep the glyphs sharp.
-        const ImVec2 place{static_cast<float>(std::floor(left)), static_cast<float>(std::floor(top))};
-        list.AddText(&font, font.FontSize, place, IM_COL32(ink.red, ink.green, ink.blue, ink.alpha), digits.data(),
-                     end);
+        write(list, font, {static_cast<float>(left), static_cast<float>(top)}, palette::health, digits);
     }
 }
 

@@ -49,7 +49,7 @@ class Scene {
               const Sight& sight, const Marked& marked);
 
     /// What the densities that were drawn last mean; nullopt if none were.
-    const std::optional<Scale>& density_scale() const { return density_scale_; }
+    const std::optional<ColourScale>& density_scale() const { return density_scale_; }
     double density_cell_px() const { return density_cell_px_; }
 
     /// Adds the health of the organisms that are seen. To be called after draw(), with the same view, blend and camera.
@@ -77,7 +77,7 @@ class Scene {
     };
     std::deque<Ways> ways_;
     std::shared_ptr<const wire::Picture> uploaded_;
-    std::optional<Scale> density_scale_;
+    std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
     std::vector<Shape> shapes_; // being put together
     std::vector<Line> lines_;

@@ -115,7 +115,7 @@ void Sight::take_page(Watch& watch, const link::Result<evod::v1::Response>& resp
     if (!response || !response->has_population()) {
         refused_ = response && response->status().code() == evod::v1::CODE_UNIMPLEMENTED;
         trouble_ = !response  ? response.error().what
-                   : refused_ ? "This server does not tell of genes, families and forces; a newer one does"
+                   : refused_ ? "This server does not tell of genes, lineages and forces; a newer one does"
                               : shown_refusal(response->status());
         return pages_.answered(after_refusal);
     }

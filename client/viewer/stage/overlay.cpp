@@ -1,5 +1,6 @@
 #include "client/viewer/stage/overlay.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/palette.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/drawing/window_layout.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <span>
 #include <utility>
 
@@ -23,22 +23,6 @@ constexpr float edge = 14;         // between text and the window's edge
 constexpr float help_width = 1060; // of the help with the panels' keys beside those of the window
 constexpr std::chrono::seconds notice_shown{6};
 constexpr std::size_t notices_max = 4;
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-ImVec2 size_of(const std::string& text, const ImFont& font, float wrap_width = 0) {
-    return font.CalcTextSizeA(font.FontSize, 1e9f, wrap_width, text.data(), text.data() + text.size());
-}
-
-/// Writes with the upper left corner at a whole pixel; returns where the text ends.
-float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, const std::string& text,
-            float wrap_width = 0) {
-    place = {std::floor(place.x), std::floor(place.y)};
-    list.AddText(&font, font.FontSize, place, ink(colour), text.data(), text.data() + text.size(), wrap_width);
-    return place.x + size_of(text, font, wrap_width).x;
-}
 
 /// A rounded sheet with text, its upper edge at `top`, in the middle of `place`; returns its lower edge.
 float sheet(ImDrawList& list, const Gui& gui, Rectangle place, float top, Colour paper, const std::string& text) {
@@ -190,9 +174,9 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
 }
 
 void Overlay::build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui) {
-    char text[96];
-    std::snprintf(text, sizeof text, "organism %u\nhealth %.1f\nradius %.1f px", picture.organisms.id[organism],
-                  double{picture.organisms.health[organism]}, double{picture.organisms.radius_px[organism]});
+    const std::string text =
+        print("organism %u\nhealth %.1f\nradius %.1f px", picture.organisms.id[organism],
+              double{picture.organisms.health[organism]}, double{picture.organisms.radius_px[organism]});
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     const ImVec2 size = size_of(text, gui.label());
     const float scale = gui.scale();

@@ -1,5 +1,6 @@
 #include "client/viewer/stage/timeline.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/palette.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/past.h"
@@ -19,10 +20,6 @@ constexpr float line_height = 26, label_height = 13;
 constexpr float edge = 12, line_edge = 6; // from the window to the widgets, and on to the ends of the line
 constexpr float mark_room = 70;           // from mark to mark, at least
 
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
 evod::v1::RunMoment beginning_of(std::uint64_t generation) {
     evod::v1::RunMoment moment;
     moment.set_generation(generation);
@@ -33,12 +30,6 @@ evod::v1::RunMoment moment_of_tick(std::uint64_t tick) {
     evod::v1::RunMoment moment;
     moment.set_tick(tick);
     return moment;
-}
-
-void tell(const std::string& text) {
-    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
-        ImGui::SetTooltip("%s", text.c_str());
-    }
 }
 
 } // namespace
@@ -141,8 +132,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
         const float at = std::round(static_cast<float>(scale.x_of(begin->second)));
         list.AddLine({at, top - 3 * pixel}, {at, bottom}, ink(palette::text_quiet));
         const std::string text = std::to_string(generation);
-        list.AddText(&gui.label(), label_size, {at + 2 * pixel, corner.y - pixel}, ink(palette::text_quiet),
-                     text.c_str());
+        write(list, gui.label(), {at + 2 * pixel, corner.y - pixel}, palette::text_quiet, text);
     }
     list.AddRectFilled({x - 4 * pixel, top - 3 * pixel}, {x + 4 * pixel, bottom + 2 * pixel},
                        ink(held ? palette::focus : palette::text), 2 * pixel);
@@ -153,34 +143,34 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
     if (widgets::button("|<")) {
         watch.seek(beginning_of(recording.first_generation()));
     }
-    tell("to the beginning");
+    widgets::explain("to the beginning");
     ImGui::SameLine();
     if (widgets::button("<")) {
         watch.turn_generations(-1);
     }
-    tell("the generation before: [");
+    widgets::explain("the generation before: [");
     ImGui::SameLine();
     const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING;
     if (ImGui::Button(runs ? "Pause" : "Play", {ImGui::CalcTextSize("Pause").x + 20 * pixel, 0})) {
         watch.pause_or_resume();
     }
     widgets::mark(runs ? "Pause" : "Play");
-    tell("Space");
+    widgets::explain("Space");
     ImGui::SameLine();
     if (widgets::button(">")) {
         watch.turn_generations(1);
     }
-    tell("the next generation: ]");
+    widgets::explain("the next generation: ]");
     ImGui::SameLine();
     if (widgets::button(">|")) {
         watch.seek({});
     }
-    tell("to the last moment that is known");
+    widgets::explain("to the last moment that is known");
     ImGui::SameLine();
     if (widgets::button("-")) {
         watch.slower();
     }
-    tell("half as fast");
+    widgets::explain("half as fast");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(shown_speed(watch.control().speed()).c_str());
@@ -188,7 +178,7 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
     if (widgets::button("+")) {
         watch.faster();
     }
-    tell("twice as fast");
+    widgets::explain("twice as fast");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("generation");
@@ -199,8 +189,8 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
     } else if (!ImGui::IsItemActive()) {
         typed_generation_ = static_cast<int>(shown_generation_);
     }
-    tell(std::to_string(recording.first_generation()) + " to " + std::to_string(recording.last_generation()) +
-         "; Enter goes there");
+    widgets::explain(std::to_string(recording.first_generation()) + " to " +
+                     std::to_string(recording.last_generation()) + "; Enter goes there");
     ImGui::SameLine();
     build_fork(watch);
     if (watch.opened_past()) {
@@ -208,7 +198,7 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
         if (widgets::button("Present")) {
             watch.return_to_present();
         }
-        tell("back to the world that lives: P");
+        widgets::explain("back to the world that lives: P");
     }
 }
 
@@ -220,7 +210,7 @@ void Timeline::build_fork(Watch& watch) {
         ImGui::OpenPopup("fork");
     }
     ImGui::EndDisabled();
-    tell(may ? "a new world that begins with this moment" : "only the role admin may make worlds");
+    widgets::explain(may ? "a new world that begins with this moment" : "only the role admin may make worlds");
     if (ImGui::BeginPopup("fork")) {
         ImGui::TextUnformatted("A new world from the moment that is shown. Its name:");
         if (ImGui::IsWindowAppearing()) {

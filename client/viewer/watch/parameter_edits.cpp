@@ -3,10 +3,8 @@
 #include "client/viewer/watch/readout.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -52,9 +50,7 @@ std::string plain(std::string_view text) {
 }
 
 std::string number_text(double number) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.10g", number);
-    return text.data();
+    return print("%.10g", number);
 }
 
 constexpr std::string_view field_prefix = "set_parameters.";

@@ -1,5 +1,7 @@
 #include "client/viewer/watch/past.h"
 
+#include "client/viewer/text/numbers.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -46,8 +48,8 @@ std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t
         return last / step - (first - std::min<std::uint64_t>(first, 1)) / step;
     };
     std::uint64_t step = 1;
-    for (int next = 0; count(step) > count_max; ++next) {
-        step = next % 3 == 1 ? step / 2 * 5 : step * 2; // 1, 2, 5, 10, 20, 50, …
+    while (count(step) > count_max) {
+        step = static_cast<std::uint64_t>(nice_step(1.5 * static_cast<double>(step)));
     }
     for (std::uint64_t generation = (first + step - 1) / step * step; generation <= last; generation += step) {
         marked.push_back(generation);

@@ -4,39 +4,8 @@
 
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 namespace evod::viewer {
-
-namespace {
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[128];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
-
-} // namespace
-
-std::string with_separators(std::uint64_t number) {
-    std::string digits = std::to_string(number);
-    for (std::size_t end = digits.size(); end > 3; end -= 3) {
-        digits.insert(end - 3, ",");
-    }
-    return digits;
-}
-
-std::string shown_tenths(double number) {
-    return print("%.1f", number);
-}
-
-std::string shown_duration(double seconds) {
-    const double tenths = std::floor(seconds * 10 + 1e-6); // a time that has passed is never shown before it has
-    const auto minutes = static_cast<std::uint64_t>(tenths / 600);
-    const double rest = (tenths - 600 * static_cast<double>(minutes)) / 10;
-    return minutes == 0 ? print("%.1f s", rest) : with_separators(minutes) + print(":%04.1f", rest);
-}
 
 std::string shown_speed(const evod::v1::Speed& speed) {
     if (speed.max()) {
@@ -62,9 +31,13 @@ std::string shown_storage(const evod::v1::Storage& storage) {
 }
 
 const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage) {
+    return state == evod::v1::RUN_STATE_WAITING ? "waiting – Space runs" : state_word(state, storage);
+}
+
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage) {
     switch (state) {
     case evod::v1::RUN_STATE_WAITING:
-        return "waiting – Space runs";
+        return "waiting";
     case evod::v1::RUN_STATE_RUNNING:
         return link::worlds_wait(storage) ? "waits for the disk" : "running";
     case evod::v1::RUN_STATE_PAUSED:

@@ -3,20 +3,19 @@
 // Threads      none.
 #pragma once
 
+#include "client/viewer/text/numbers.h"
 #include "client/viewer/watch/run_control.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace evod::viewer {
 
-std::string with_separators(std::uint64_t number);     // 1234567 → "1,234,567"
-std::string shown_tenths(double number);               // 251.34 → "251.3"
-std::string shown_duration(double seconds);            // 75.25 → "1:15.2"
 std::string shown_speed(const evod::v1::Speed& speed); // "4×", "1/4×", "max"
 /// storage  as it stands: a world that runs may have to wait for it.
 const char* shown_state(evod::v1::RunState state, const evod::v1::Storage& storage);
+/// The same without the key that runs it.
+const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storage);
 
 /// What a person has to know of it: "Commands are refused: …", "Worlds wait for the disk: …"; empty while it keeps up.
 std::string shown_storage(const evod::v1::Storage& storage);

@@ -3,13 +3,13 @@
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/breeding/caption.h"
 #include "client/viewer/panels/breeding/drawing.h"
+#include "client/viewer/panels/breeding/selection_drawing.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace evod::viewer {
 
@@ -28,14 +28,8 @@ Sheet sheet_of(const Gui& gui, float height) {
     return sheet;
 }
 
-std::string shown_number(const std::optional<double>& number, std::string_view unit) {
-    if (!number) {
-        return "–";
-    }
-    char text[64];
-    std::snprintf(text, sizeof text, "%.4g%s%.*s", *number, unit.empty() ? "" : " ", static_cast<int>(unit.size()),
-                  unit.data());
-    return text;
+std::string shown(const std::optional<double>& number, std::string_view unit) {
+    return number ? with_unit(*number, unit) : "–";
 }
 
 bool pressed(ImGuiKey key) {
@@ -347,8 +341,8 @@ void BreedingPanel::build_stage(const Context& context) {
         widgets::say("black: the elite, dark: survivors, light: children");
         if (const evod::v1::Descendant* descendant = shown_->descendant(moment.index)) {
             widgets::say(
-                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or a "
-                "bound");
+                "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or "
+                "clamped");
             const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.control().told().gene_names());
             ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
@@ -386,8 +380,8 @@ void BreedingPanel::build_theory(const Gui& gui) {
     for (const Finding& finding : comparison_->findings) {
         ImGui::Separator();
         ImGui::TextWrapped("%.*s: expected %s, happened %s", static_cast<int>(finding.name.size()), finding.name.data(),
-                           shown_number(finding.expected, finding.unit).c_str(),
-                           shown_number(finding.happened, finding.unit).c_str());
+                           shown(finding.expected, finding.unit).c_str(),
+                           shown(finding.happened, finding.unit).c_str());
         if (const auto off = finding.deviation()) {
             ImGui::TextWrapped("%+.2f standard errors", *off);
         }

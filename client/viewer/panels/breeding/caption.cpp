@@ -1,21 +1,13 @@
 #include "client/viewer/panels/breeding/caption.h"
 
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/text/numbers.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 
 namespace evod::viewer {
 
 namespace {
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[192];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
 
 std::string counted(std::uint64_t count, const char* one, const char* many) {
     return with_separators(count) + " " + (count == 1 ? one : many);
@@ -50,7 +42,7 @@ std::string scaling_caption(const BreedingRecord& record) {
             record.number("tournament_size").value_or(0));
     }
     if (method == "random") {
-        return "Fitness by rank. Random selection does not look at it.";
+        return "Fitness by rank. Uniform random selection does not look at it.";
     }
     if (method == "truncation") {
         return "Fitness by rank. Truncation takes the best, in order, over and over.";

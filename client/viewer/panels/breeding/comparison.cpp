@@ -73,4 +73,27 @@ std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<con
     return made;
 }
 
+std::vector<PickColumn> pick_columns(const BreedingRecord& record, std::uint32_t index, std::size_t columns) {
+    const std::uint64_t count = record.pick_count();
+    columns = std::min<std::size_t>(columns, count);
+    std::vector<PickColumn> made;
+    for (std::size_t i = 0; i < columns; ++i) {
+        PickColumn column{.first = static_cast<std::uint32_t>(i * count / columns),
+                          .last = static_cast<std::uint32_t>((i + 1) * count / columns - 1)};
+        double ranks = 0, known = 0;
+        for (std::uint32_t pick = column.first; pick <= std::min(column.last, index); ++pick) {
+            const evod::v1::Pick* picked = record.pick(pick);
+            if (const auto* contender = picked != nullptr ? record.contender(picked->organism()) : nullptr) {
+                ranks += contender->rank();
+                ++known;
+            }
+        }
+        if (known > 0) {
+            column.rank = ranks / known;
+        }
+        made.push_back(column);
+    }
+    return made;
+}
+
 } // namespace evod::viewer

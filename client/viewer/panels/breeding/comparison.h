@@ -45,4 +45,13 @@ struct RankColumn {
 std::vector<RankColumn> rank_columns(const Comparison& comparison, std::span<const std::uint32_t> copies,
                                      double expected_share, std::size_t columns);
 
+/// Some picks side by side, drawn as one cell.
+struct PickColumn {
+    std::uint32_t first = 0, last = 0; // picks
+    std::optional<double> rank{};      // mean of those made so far; nullopt: none of them is, or is known
+};
+
+/// All picks in order as at most `columns` columns, those after pick `index` not made yet.
+std::vector<PickColumn> pick_columns(const BreedingRecord& record, std::uint32_t index, std::size_t columns);
+
 } // namespace evod::viewer

@@ -1,368 +1,13 @@
 #include "client/viewer/panels/breeding/drawing.h"
 
-#include "client/viewer/drawing/palette.h"
 #include "client/viewer/panels/breeding/family.h"
-#include "client/viewer/panels/breeding/tournament.h"
-#include "client/viewer/panels/breeding/wheel_layout.h"
+#include "client/viewer/text/numbers.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
+#include <string>
+#include <vector>
 
 namespace evod::viewer {
-
-namespace {
-
-ImU32 ink(Colour colour) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
-}
-
-Colour faint(Colour colour, std::uint8_t alpha) {
-    colour.alpha = alpha;
-    return colour;
-}
-
-/// Black or white, whichever can be read on it; what can be seen through is on light paper.
-Colour text_on(Colour paper) {
-    const double opaque = paper.alpha / 255.0;
-    const double light = (0.299 * paper.red + 0.587 * paper.green + 0.114 * paper.blue) * opaque + 240 * (1 - opaque);
-    return light > 140 ? palette::text : palette::note_text;
-}
-
-template <class... Arguments>
-std::string print(const char* format, Arguments... arguments) {
-    char text[160];
-    std::snprintf(text, sizeof text, format, arguments...);
-    return text;
-}
-
-ImVec2 size_of(const Sheet& sheet, const std::string& text) {
-    return sheet.font.CalcTextSizeA(sheet.font.FontSize, 1e9f, 0, text.data(), text.data() + text.size());
-}
-
-void write(const Sheet& sheet, ImVec2 place, Colour colour, const std::string& text) {
-    sheet.list.AddText(&sheet.font, sheet.font.FontSize, {std::floor(place.x), std::floor(place.y)}, ink(colour),
-                       text.data(), text.data() + text.size());
-}
-
-void write_centred(const Sheet& sheet, ImVec2 centre, Colour colour, const std::string& text) {
-    const ImVec2 size = size_of(sheet, text);
-    write(sheet, {centre.x - size.x / 2, centre.y - size.y / 2}, colour, text);
-}
-
-void write_to_the_left(const Sheet& sheet, ImVec2 right, Colour colour, const std::string& text) {
-    write(sheet, {right.x - size_of(sheet, text).x, right.y}, colour, text);
-}
-
-float line_height(const Sheet& sheet) {
-    return sheet.font.FontSize + 4;
-}
-
-bool pointed_at(ImVec2 corner, ImVec2 end) {
-    return ImGui::IsWindowHovered(ImGuiHoveredFlags_ChildWindows) && ImGui::IsMouseHoveringRect(corner, end);
-}
-
-std::string told(std::uint32_t organism, const evod::v1::Contender& contender) {
-    std::string text = print("organism %u\nrank %u, fitness %.5g", organism, contender.rank() + 1, contender.fitness());
-    if (contender.slot_end() > contender.slot_begin()) {
-        text += print("\nweight %.5g: %.3g %% of the wheel", contender.weight(),
-                      100 * (contender.slot_end() - contender.slot_begin()));
-    }
-    text += print("\nexpected copies %.3g, happened %u", contender.expected_copies(), contender.copies());
-    if (contender.has_migrant()) {
-        text += print("\ncame from island %u, organism %u there", contender.migrant().island(),
-                      contender.migrant().organism());
-    }
-    return text;
-}
-
-/// Bars of one number for each rank, neighbours as their mean where there are more ranks than pixels.
-template <class ValueOf, class OrganismOf>
-void draw_bars(const Sheet& sheet, const std::string& title, std::size_t count, ValueOf value_of,
-               OrganismOf organism_of, const BreedingRecord& record, std::span<const std::uint32_t> copies,
-               const evod::v1::Pick* current) {
-    write(sheet, sheet.corner, palette::text, title);
-    const float top = sheet.corner.y + 2 * line_height(sheet), bottom = sheet.end().y - 2;
-    if (count == 0 || bottom - top < 10 || sheet.size.x < 10) {
-        return;
-    }
-    double least = 0, most = 0;
-    for (std::size_t rank = 0; rank < count; ++rank) {
-        least = std::min(least, value_of(rank));
-        most = std::max(most, value_of(rank));
-    }
-    const double span = most > least ? most - least : 1;
-    const auto y_of = [&](double value) {
-        return bottom - static_cast<float>((value - least) / span) * (bottom - top);
-    };
-    const std::size_t columns = std::min(count, static_cast<std::size_t>(sheet.size.x / 2));
-    const float width = sheet.size.x / static_cast<float>(columns);
-    const float gap = width > 5 ? 1.f : 0.f;
-    for (std::size_t i = 0; i < columns; ++i) {
-        const std::size_t first = i * count / columns, end = (i + 1) * count / columns;
-        double mean = 0;
-        bool picked = false, picked_now = false;
-        for (std::size_t rank = first; rank < end; ++rank) {
-            mean += value_of(rank) / static_cast<double>(end - first);
-            picked = picked || (rank < copies.size() && copies[rank] > 0);
-            picked_now = picked_now || (current != nullptr && organism_of(rank) == current->organism());
-        }
-        const float left = sheet.corner.x + static_cast<float>(i) * width;
-        const ImVec2 a{left, std::min(y_of(mean), y_of(0))}, b{left + width - gap, std::max(y_of(mean), y_of(0)) + 1};
-        sheet.list.AddRectFilled(a, b, ink(rank_colour(static_cast<double>(first), static_cast<std::uint32_t>(count))));
-        const float middle = left + (width - gap) / 2;
-        if (picked_now) {
-            sheet.list.AddTriangleFilled({middle - 6, a.y - 12}, {middle + 6, a.y - 12}, {middle, a.y - 2},
-                                         ink(palette::glass_current));
-        } else if (picked) {
-            sheet.list.AddCircleFilled({middle, a.y - 5}, 2.5f, ink(palette::text_quiet));
-        }
-        if (end - first == 1 && pointed_at({left, top - 12}, {left + width, bottom})) {
-            if (const auto* contender = record.contender(organism_of(first))) {
-                ImGui::SetTooltip("%s", told(organism_of(first), *contender).c_str());
-            }
-        }
-    }
-    sheet.list.AddLine({sheet.corner.x, y_of(0)}, {sheet.end().x, y_of(0)}, ink(palette::text_quiet));
-    write_to_the_left(sheet, {sheet.end().x, sheet.corner.y}, palette::text_quiet,
-                      print("%.5g (rank 1) to %.5g (rank %zu)", value_of(0), value_of(count - 1), count));
-}
-
-float angle_of(double turns) {
-    return static_cast<float>((turns - 0.25) * 2 * std::numbers::pi); // the first slot begins at the top
-}
-
-ImVec2 on_circle(ImVec2 centre, float radius, double turns) {
-    return {centre.x + radius * std::cos(angle_of(turns)), centre.y + radius * std::sin(angle_of(turns))};
-}
-
-void stroke_arc(const Sheet& sheet, ImVec2 centre, float radius, double begin, double end, Colour colour,
-                float thickness) {
-    const int segments = std::max(2, static_cast<int>((end - begin) * 180));
-    sheet.list.PathArcTo(centre, radius, angle_of(begin), angle_of(end), segments);
-    sheet.list.PathStroke(ink(colour), 0, thickness);
-}
-
-} // namespace
-
-// ---- selection -------------------------------------------------------------------------------------------------
-
-void draw_ranking(const Sheet& sheet, const BreedingRecord& record, const Comparison& comparison,
-                  std::span<const std::uint32_t> copies, const evod::v1::Pick* current) {
-    const std::size_t count = comparison.organisms.size();
-    const auto organism_of = [&](std::size_t rank) { return comparison.organisms[rank]; };
-    const auto fitness_of = [&](std::size_t rank) { return comparison.fitness[rank]; };
-    const auto weight_of = [&](std::size_t rank) { return record.contender(organism_of(rank))->weight(); };
-    const std::string method = record.choice("selection"), scaling = record.choice("fitness_scaling");
-    const bool scaled = (method == "roulette" || method == "stochastic_universal") && scaling != "none";
-    Sheet upper = sheet;
-    if (scaled) {
-        upper.size.y = sheet.size.y / 2 - 6;
-        Sheet lower = sheet;
-        lower.corner.y += sheet.size.y / 2 + 6;
-        lower.size.y = sheet.size.y / 2 - 6;
-        draw_bars(lower, "Weight", count, weight_of, organism_of, record, {}, nullptr);
-    }
-    draw_bars(upper, "Fitness", count, fitness_of, organism_of, record, copies, current);
-}
-
-void draw_wheel(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index) {
-    const evod::v1::Breeding& breeding = record.breeding();
-    const float outer = std::min(sheet.size.x, sheet.size.y) / 2 - 26;
-    if (outer < 30) {
-        return;
-    }
-    const ImVec2 centre{sheet.corner.x + sheet.size.x / 2, sheet.corner.y + sheet.size.y / 2};
-    const float inner = outer * 0.6f, middle = (outer + inner) / 2, thickness = outer - inner;
-    const double circumference = 2 * std::numbers::pi * outer;
-    stroke_arc(sheet, centre, middle, 0, 1, palette::strip_edge, thickness); // whoever is not known
-    const evod::v1::Pick* pick = record.pick(index);
-    for (const Arc& arc : wheel_arcs(breeding.contenders(), circumference)) {
-        stroke_arc(sheet, centre, middle, arc.begin, arc.end, rank_colour(arc.rank, breeding.contender_count()),
-                   thickness);
-        if ((arc.end - arc.begin) * circumference > 4) {
-            sheet.list.AddLine(on_circle(centre, inner, arc.begin), on_circle(centre, outer, arc.begin),
-                               ink(palette::background));
-            if (arc.first == arc.last && (arc.end - arc.begin) * circumference > 26) {
-                const Colour paper = rank_colour(arc.rank, breeding.contender_count());
-                write_centred(sheet, on_circle(centre, middle, (arc.begin + arc.end) / 2), text_on(paper),
-                              std::to_string(arc.first));
-            }
-        }
-    }
-    const evod::v1::Contender* chosen = pick != nullptr ? record.contender(pick->organism()) : nullptr;
-    if (chosen != nullptr && chosen->slot_end() > chosen->slot_begin()) {
-        for (const float radius : {inner, outer}) {
-            stroke_arc(sheet, centre, radius, chosen->slot_begin(), chosen->slot_end(), palette::glass_current, 3);
-        }
-        for (const double side : {chosen->slot_begin(), chosen->slot_end()}) {
-            sheet.list.AddLine(on_circle(centre, inner, side), on_circle(centre, outer, side),
-                               ink(palette::glass_current), 2);
-        }
-    }
-    // One spin sets all pointers of universal sampling; roulette spins for each anew.
-    const bool all_at_once = record.choice("selection") == "stochastic_universal";
-    const auto ticks = all_at_once ? static_cast<std::uint32_t>(breeding.picks_size()) : index;
-    for (std::uint32_t i = 0; i < ticks && record.pick(i) != nullptr; ++i) {
-        const double turns = record.pick(i)->turns();
-        sheet.list.AddLine(on_circle(centre, outer + 2, turns), on_circle(centre, outer + 9, turns),
-                           ink(i < index ? palette::text : faint(palette::text_quiet, 130)), 1.5f);
-    }
-    if (pick != nullptr && pick->has_turns()) {
-        const double turns = pick->turns(), half = 7 / circumference;
-        sheet.list.AddTriangleFilled(on_circle(centre, outer + 1, turns), on_circle(centre, outer + 18, turns - half),
-                                     on_circle(centre, outer + 18, turns + half), ink(palette::glass_current));
-        sheet.list.AddLine(on_circle(centre, inner, turns), on_circle(centre, outer, turns),
-                           ink(palette::glass_current), 1.5f);
-    }
-    if (chosen != nullptr) {
-        const float line = line_height(sheet);
-        write_centred(sheet, {centre.x, centre.y - line}, palette::text, print("organism %u", pick->organism()));
-        write_centred(sheet, centre, palette::text,
-                      print("rank %u of %u", chosen->rank() + 1, breeding.contender_count()));
-        write_centred(sheet, {centre.x, centre.y + line}, palette::text,
-                      print("%.3g %% of the wheel", 100 * (chosen->slot_end() - chosen->slot_begin())));
-    }
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const float x = mouse.x - centre.x, y = mouse.y - centre.y, radius = std::hypot(x, y);
-    if (radius >= inner && radius <= outer && pointed_at(sheet.corner, sheet.end())) {
-        const double turns = std::atan2(y, x) / (2 * std::numbers::pi) + 0.25;
-        if (const auto* slot = slot_at(breeding.contenders(), turns < 0 ? turns + 1 : turns)) {
-            for (int i = 0; i < breeding.contenders_size(); ++i) {
-                if (&breeding.contenders(i) == slot) {
-                    ImGui::SetTooltip("%s", told(static_cast<std::uint32_t>(i), *slot).c_str());
-                }
-            }
-        }
-    }
-}
-
-void draw_tournament(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index) {
-    const std::vector<Contestant> contestants = contestants_of(record, index);
-    if (contestants.empty()) {
-        return;
-    }
-    double least = 0, most = 0;
-    for (const Contestant& contestant : contestants) {
-        if (const auto* contender = record.contender(contestant.organism)) {
-            least = std::min(least, contender->fitness());
-            most = std::max(most, contender->fitness());
-        }
-    }
-    const double span = most > least ? most - least : 1;
-    const float row_height = line_height(sheet) + 4;
-    const auto rows = std::max<std::size_t>(1, static_cast<std::size_t>(sheet.size.y / row_height));
-    const std::size_t columns = (contestants.size() + rows - 1) / rows;
-    const float width = sheet.size.x / static_cast<float>(columns),
-                height = columns > 1 ? row_height : 1.4f * row_height;
-    const float label_width = 4.4f * sheet.font.FontSize, bar_width = width - 9.7f * sheet.font.FontSize;
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const Contestant& contestant = contestants[i];
-        const ImVec2 corner{sheet.corner.x + static_cast<float>(i / rows) * width,
-                            sheet.corner.y + static_cast<float>(i % rows) * height};
-        write(sheet, {corner.x, corner.y + 2}, palette::text, print("%u", contestant.organism));
-        const auto* contender = record.contender(contestant.organism);
-        if (contender == nullptr) {
-            continue;
-        }
-        const auto length = static_cast<float>((contender->fitness() - least) / span) * std::max(bar_width, 4.f);
-        const ImVec2 begin{corner.x + label_width, corner.y + 2}, end{begin.x + length + 1, begin.y + height - 6};
-        sheet.list.AddRectFilled(begin, end, ink(rank_colour(contender->rank(), record.breeding().contender_count())));
-        if (contestant.won) {
-            sheet.list.AddRect({begin.x - 2, begin.y - 2}, {end.x + 2, end.y + 2},
-                               ink(contestant.picked_now ? palette::glass_current : palette::text), 0, 0,
-                               contestant.picked_now ? 3.f : 1.5f);
-        }
-        write(sheet, {end.x + 6, begin.y}, contestant.won ? palette::text : palette::text_quiet,
-              print("%.4g%s", contender->fitness(), contestant.won ? " won" : ""));
-        if (pointed_at(corner, {corner.x + width, corner.y + height})) {
-            ImGui::SetTooltip("%s", told(contestant.organism, *contender).c_str());
-        }
-    }
-}
-
-void draw_picks(const Sheet& sheet, const BreedingRecord& record, std::uint32_t index) {
-    const std::uint32_t count = record.pick_count();
-    const float cell = std::min(sheet.size.y, sheet.size.x / static_cast<float>(std::max(count, 1u)));
-    if (cell < 1) {
-        return;
-    }
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const ImVec2 corner{sheet.corner.x + static_cast<float>(i) * cell, sheet.corner.y};
-        const ImVec2 end{corner.x + cell - (cell > 4 ? 1.f : 0.f), sheet.end().y};
-        const evod::v1::Pick* pick = i <= index ? record.pick(i) : nullptr;
-        const auto* contender = pick != nullptr ? record.contender(pick->organism()) : nullptr;
-        sheet.list.AddRectFilled(corner, end,
-                                 ink(contender == nullptr
-                                         ? faint(palette::strip_edge, 90)
-                                         : rank_colour(contender->rank(), record.breeding().contender_count())));
-        if (i == index) {
-            sheet.list.AddRect({corner.x - 1, corner.y - 2}, {end.x + 1, end.y + 2}, ink(palette::glass_current), 0, 0,
-                               2);
-        }
-    }
-}
-
-void draw_copies(const Sheet& sheet, const Comparison& comparison, std::span<const std::uint32_t> copies,
-                 double expected_share) {
-    const float line = line_height(sheet);
-    const float height = sheet.size.y - 3 * line;
-    if (height < 60 || sheet.size.x < 60) {
-        return;
-    }
-    const auto most_columns = static_cast<std::size_t>(sheet.size.x / 3);
-    const std::vector<RankColumn> columns = rank_columns(comparison, copies, expected_share, most_columns);
-    double most = 1;
-    for (const RankColumn& column : columns) {
-        most = std::max({most, column.copies, column.expected});
-    }
-    const float top = sheet.corner.y + line, bottom = top + height * 0.62f;
-    const float width = sheet.size.x / static_cast<float>(columns.size()), gap = width > 5 ? 1.f : 0.f;
-    const auto y_of = [&](double value) { return bottom - static_cast<float>(value / most) * (bottom - top); };
-    write(sheet, sheet.corner, palette::text, "Copies by rank");
-    write_to_the_left(sheet, {sheet.end().x, sheet.corner.y}, palette::text_quiet, print("up to %.4g", most));
-
-    // Deviations are of all the picks: the axis goes to four standard errors, and further ones lie on its edge.
-    constexpr double deviation_max = 4;
-    const float lower_top = bottom + 2 * line, lower_bottom = sheet.end().y, zero = (lower_top + lower_bottom) / 2;
-    const auto deviation_y = [&](double deviation) {
-        return zero - static_cast<float>(std::clamp(deviation, -deviation_max, deviation_max) / deviation_max) *
-                          (lower_bottom - lower_top) / 2;
-    };
-    sheet.list.AddRectFilled({sheet.corner.x, deviation_y(2)}, {sheet.end().x, deviation_y(-2)},
-                             ink(faint(palette::text_quiet, 36)));
-    sheet.list.AddLine({sheet.corner.x, zero}, {sheet.end().x, zero}, ink(palette::text_quiet));
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-        const RankColumn& column = columns[i];
-        const float left = sheet.corner.x + static_cast<float>(i) * width, right = left + width - gap;
-        sheet.list.AddRectFilled({left, y_of(column.copies)}, {right, bottom},
-                                 ink(rank_colour(static_cast<double>(column.first),
-                                                 static_cast<std::uint32_t>(comparison.organisms.size()))));
-        sheet.list.AddLine({left, y_of(column.expected)}, {left + width, y_of(column.expected)},
-                           ink(palette::glass_current), 2);
-        sheet.list.AddRectFilled({left, deviation_y(std::max(column.deviation, 0.0))},
-                                 {right, deviation_y(std::min(column.deviation, 0.0)) + 1},
-                                 ink(std::abs(column.deviation) > 2 ? palette::glass_current : palette::text_quiet));
-        if (pointed_at({left, top}, {left + width, lower_bottom})) {
-            const std::string ranks = column.first == column.last
-                                          ? print("rank %zu: organism %u, fitness %.5g", column.first + 1,
-                                                  comparison.organisms[column.first], comparison.fitness[column.first])
-                                          : print("ranks %zu to %zu", column.first + 1, column.last + 1);
-            ImGui::SetTooltip("%s\ncopies %.0f, expected %.3g\nin the end %+.2f standard errors", ranks.c_str(),
-                              column.copies, column.expected, column.deviation);
-        }
-    }
-    sheet.list.AddLine({sheet.corner.x, bottom}, {sheet.end().x, bottom}, ink(palette::text_quiet));
-    write(sheet, {sheet.corner.x, bottom + 2}, palette::text_quiet, "rank 1");
-    write_to_the_left(sheet, {sheet.end().x, bottom + 2}, palette::text_quiet,
-                      print("rank %zu", comparison.organisms.size()));
-    write(sheet, {sheet.corner.x, lower_top - line}, palette::text, "Deviation in standard errors, all picks");
-    write_to_the_left(sheet, {sheet.end().x, deviation_y(2) - line}, palette::text_quiet, "+2");
-    write_to_the_left(sheet, {sheet.end().x, deviation_y(-2)}, palette::text_quiet, "−2");
-}
-
-// ---- the next generation ---------------------------------------------------------------------------------------
 
 void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const std::uint32_t* current) {
     const evod::v1::Breeding& breeding = record.breeding();
@@ -400,16 +45,16 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
     }
     const float label_width = std::min(8 * sheet.font.FontSize, sheet.size.x / 4);
     const float cell = (sheet.size.x - label_width) / static_cast<float>(count);
-    const float line = line_height(sheet), bar = line + 6;
+    const float line = sheet.line_height(), bar = line + 6;
     const auto left_of = [&](std::size_t gene) {
         return sheet.corner.x + label_width + static_cast<float>(gene) * cell;
     };
     const auto middle_of = [&](std::size_t gene) { return left_of(gene) + cell / 2; };
     float y = sheet.corner.y;
-    const auto label = [&](const std::string& text) { write(sheet, {sheet.corner.x, y + 3}, palette::text, text); };
+    const auto label = [&](const std::string& text) { sheet.write({sheet.corner.x, y + 3}, palette::text, text); };
     const auto gene_bar = [&](std::size_t gene, Colour colour, float value) {
         sheet.list.AddRectFilled({left_of(gene), y}, {left_of(gene) + cell - 2, y + bar}, ink(colour));
-        write_centred(sheet, {middle_of(gene) - 1, y + bar / 2}, text_on(colour), print("%.4g", double{value}));
+        sheet.write_centred({middle_of(gene) - 1, y + bar / 2}, text_on(colour), print("%.4g", double{value}));
     };
     const auto parent_colour = [](bool second) { return second ? palette::second_parent : palette::first_parent; };
     const bool alone = descendant.second_genes().empty() || descendant.kind() != evod::v1::DESCENDANT_KIND_CHILD;
@@ -419,9 +64,9 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
                                                                                     : "gene " + std::to_string(gene);
         // Two words one above the other: cells are narrow.
         const std::size_t cut = name.find('_');
-        write_centred(sheet, {middle_of(gene), y + line / 2}, palette::text_quiet, name.substr(0, cut));
+        sheet.write_centred({middle_of(gene), y + line / 2}, palette::text_quiet, name.substr(0, cut));
         if (cut != std::string::npos) {
-            write_centred(sheet, {middle_of(gene), y + 1.5f * line}, palette::text_quiet, name.substr(cut + 1));
+            sheet.write_centred({middle_of(gene), y + 1.5f * line}, palette::text_quiet, name.substr(cut + 1));
         }
     }
     y += 2 * line + 4;
@@ -455,7 +100,7 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
         y += 4;
     }
 
-    // ---- rearranging
+    // ---- permutation
     if (descendant.has_rearrangement()) {
         const float from_y = y, to_y = y + 34;
         label(descendant.rearrangement().method());
@@ -481,10 +126,10 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
             float& row = next_y[change.gene];
             const bool bound = change.kind == evod::v1::MUTATION_KIND_CLAMP;
             const Colour colour = bound ? palette::stopped : palette::glass_mutated;
-            write_centred(sheet, {middle_of(change.gene), row + line / 2}, colour, shown_delta(change.delta()));
-            write_centred(sheet, {middle_of(change.gene), row + 1.5f * line}, colour, shown_mutation(change.kind));
-            write_centred(sheet, {middle_of(change.gene), row + 2.5f * line}, colour,
-                          print("to %.4g", double{change.after}));
+            sheet.write_centred({middle_of(change.gene), row + line / 2}, colour, shown_delta(change.delta()));
+            sheet.write_centred({middle_of(change.gene), row + 1.5f * line}, colour, shown_mutation(change.kind));
+            sheet.write_centred({middle_of(change.gene), row + 2.5f * line}, colour,
+                                print("to %.4g", double{change.after}));
             if (bound) {
                 sheet.list.AddRect({left_of(change.gene), row - 1}, {left_of(change.gene) + cell - 2, row + 3 * line},
                                    ink(colour));

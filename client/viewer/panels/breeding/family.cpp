@@ -1,7 +1,8 @@
 #include "client/viewer/panels/breeding/family.h"
 
+#include "client/viewer/text/numbers.h"
+
 #include <cmath>
-#include <cstdio>
 
 namespace evod::viewer {
 
@@ -57,16 +58,14 @@ const char* shown_mutation(evod::v1::MutationKind kind) {
     case evod::v1::MUTATION_KIND_BIT_FLIP:
         return "bit flip";
     case evod::v1::MUTATION_KIND_CLAMP:
-        return "bound";
+        return "clamped";
     default:
         return "mutation";
     }
 }
 
 std::string shown_delta(double delta) {
-    char text[48];
-    std::snprintf(text, sizeof text, "%s%.4g", delta < 0 ? "−" : "+", std::abs(delta));
-    return text;
+    return print("%s%.4g", delta < 0 ? "−" : "+", std::abs(delta));
 }
 
 } // namespace evod::viewer

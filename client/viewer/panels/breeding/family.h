@@ -34,7 +34,7 @@ struct GeneMove {
 struct Family {
     std::vector<std::uint32_t> cuts;  // g: between gene g - 1 and gene g the child changes from one parent to the other
     std::vector<GeneOrigin> crossed;  // after the crossover
-    std::vector<GeneMove> moves;      // of the rearranging mutation; genes that stayed are not among them
+    std::vector<GeneMove> moves;      // of the permutation mutation; genes that stayed are not among them
     std::vector<GeneOrigin> arranged; // after it
     std::vector<GeneChange> changes;  // in the order in which they happened
     std::vector<float> genes;         // after them, worked out here
@@ -43,7 +43,7 @@ struct Family {
 /// A descendant of malformed lists has a family without genes.
 Family family_of(const evod::v1::Descendant& descendant);
 
-/// "creep", "reset", "bit flip", "bound".
+/// "creep", "reset", "bit flip", "clamped".
 const char* shown_mutation(evod::v1::MutationKind kind);
 /// "+7.31", "−0.4": with the sign that it has, and as many digits as can be told apart.
 std::string shown_delta(double delta);

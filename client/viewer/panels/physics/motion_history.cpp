@@ -1,8 +1,6 @@
 #include "client/viewer/panels/physics/motion_history.h"
 
-#include "client/viewer/watch/readout.h"
-
-#include <cstdio>
+#include "client/viewer/text/numbers.h"
 
 namespace evod::viewer {
 namespace {
@@ -10,20 +8,14 @@ namespace {
 // Of its radius, what a body may move in a tick before that is worth a word, and what it moves with advice followed.
 constexpr double close_share = 0.5;
 
-std::string number(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 /// What would bring the fastest body down to half its radius a tick.
 std::string advice(const evod::v1::Motion& motion) {
     const double share = motion.fastest_step_share();
     if (share <= close_share) { // it is over for now
-        return "Halve tick_s, to " + number("%.3g", motion.tick_s() / 2) + ", or lower max_speed_px_s.";
+        return "Halve tick_s, to " + print("%.3g", motion.tick_s() / 2) + ", or lower max_speed_px_s.";
     }
-    return "Set tick_s to " + number("%.3g", motion.tick_s() * close_share / share) +
-           " or less, or max_speed_px_s to " + number("%.3g", motion.fastest_px_s() * close_share / share) + ".";
+    return "Set tick_s to " + print("%.3g", motion.tick_s() * close_share / share) + " or less, or max_speed_px_s to " +
+           print("%.3g", motion.fastest_px_s() * close_share / share) + ".";
 }
 
 } // namespace
@@ -44,7 +36,7 @@ void MotionHistory::add(const evod::v1::Motion& motion) {
 
 TickVerdict judge_tick(const evod::v1::Motion& motion) {
     const std::string fastest =
-        "the fastest body moves " + number("%.2g", motion.fastest_step_share()) + " of its radius in a tick";
+        "the fastest body moves " + print("%.2g", motion.fastest_step_share()) + " of its radius in a tick";
     if (motion.fastest_step_share() >= 1 || motion.too_fast_count() > 0) {
         std::string sentence = "The tick is too long: " + fastest;
         if (motion.too_fast_count() > 0) {

@@ -25,10 +25,10 @@ class MotionHistory {
     const evod::v1::Motion& last() const { return motions_.back(); }
     /// One number of each, oldest first.
     template <class Of>
-    std::vector<float> curve(Of&& of) const {
-        std::vector<float> curve;
+    std::vector<double> curve(Of&& of) const {
+        std::vector<double> curve;
         for (const evod::v1::Motion& motion : motions_) {
-            curve.push_back(static_cast<float>(of(motion)));
+            curve.push_back(of(motion));
         }
         return curve;
     }

@@ -1,6 +1,7 @@
 #include "client/viewer/panels/physics/physics_panel.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/widgets.h"
+#include "client/viewer/panels/plots/plot.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
@@ -8,7 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <span>
+#include <utility>
 
 namespace evod::viewer {
 namespace {
@@ -17,56 +18,15 @@ constexpr std::chrono::milliseconds ask_every{250}, patience{5000};
 constexpr double demo_s = 10; // of the motion that is shown
 constexpr std::size_t table_rows = 8;
 
-ImVec4 ink(Colour colour) {
-    return {colour.red / 255.f, colour.green / 255.f, colour.blue / 255.f, colour.alpha / 255.f};
-}
-
-struct Curve {
-    Colour colour;
-    std::vector<float> values; // evenly spaced
-};
-
-/// Lines over the width of the panel; what is beyond low or high is cut off.
-void draw_curves(const char* name, std::span<const Curve> curves, float low, float high, float height_pixels) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 50.f), height_pixels};
-    const ImVec2 other{corner.x + size.x, corner.y + size.y};
-    ImGui::Dummy(size);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, other, ImGui::GetColorU32(ink(palette::strip)));
-    list.PushClipRect(corner, other, true);
-    std::vector<ImVec2> points;
-    for (const Curve& curve : curves) {
-        points.clear();
-        for (std::size_t i = 0; i < curve.values.size(); ++i) {
-            const float along =
-                curve.values.size() == 1 ? 1 : static_cast<float>(i) / static_cast<float>(curve.values.size() - 1);
-            // A little beyond the edges at most: far-away corners cost a line its place.
-            const float share = std::clamp((curve.values[i] - low) / std::max(high - low, 1e-9f), -1.f, 2.f);
-            points.push_back({corner.x + along * size.x, other.y - share * size.y});
-        }
-        list.AddPolyline(points.data(), static_cast<int>(points.size()), ImGui::GetColorU32(ink(curve.colour)), 0,
-                         1.5f);
-    }
-    list.AddText({corner.x + 4, corner.y + 2}, ImGui::GetColorU32(ink(palette::text_quiet)), name);
-    list.PopClipRect();
-    list.AddRect(corner, other, ImGui::GetColorU32(ink(palette::strip_edge)));
-}
-
-/// A measure over time, from 0 up, with its newest value.
+/// A measure over time, from 0 up, with its newest value in `title`.
 template <class Of>
-void draw_measure(const char* name, const MotionHistory& history, Of&& of) {
-    const Curve curves[] = {{palette::organism, history.curve(of)}};
-    const float most = std::max(*std::ranges::max_element(curves[0].values), 1e-6f);
-    char text[128];
-    std::snprintf(text, sizeof text, name, of(history.last()));
-    draw_curves(text, curves, 0, most * 1.6f, 52);
-}
-
-void coloured(Colour colour, const std::string& text) {
-    ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::PopStyleColor();
+void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
+    const std::vector<double> tick =
+        history.curve([](const evod::v1::Motion& motion) { return double(motion.tick()); });
+    const std::vector<double> measure = history.curve(of);
+    Plot plot{.title = std::move(title)};
+    plot.series.push_back({.colour = palette::organism, .x = tick, .y = measure});
+    curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
 }
 
 } // namespace
@@ -115,7 +75,7 @@ void PhysicsPanel::ask(Context& context) {
 
 void PhysicsPanel::build_motion() {
     if (!refusal_.empty()) {
-        coloured(palette::warning, refusal_);
+        widgets::say(refusal_, palette::warning);
     }
     if (history_.empty()) {
         ImGui::TextUnformatted("…");
@@ -123,19 +83,22 @@ void PhysicsPanel::build_motion() {
     }
     const evod::v1::Motion& now = history_.last();
     const TickVerdict verdict = judge_tick(now);
-    coloured(verdict.level == TickVerdict::Level::Good    ? palette::running
-             : verdict.level == TickVerdict::Level::Close ? palette::stopped
-                                                          : palette::warning,
-             verdict.sentence);
+    widgets::say(verdict.sentence, verdict.level == TickVerdict::Level::Good    ? palette::running
+                                   : verdict.level == TickVerdict::Level::Close ? palette::stopped
+                                                                                : palette::warning);
     ImGui::Text("%s bodies, %s pairs touch; tick of %.4g s", with_separators(now.body_count()).c_str(),
                 with_separators(now.touching_count()).c_str(), now.tick_s());
     using Motion = evod::v1::Motion;
-    draw_measure("kinetic energy %.4g kg px²/s²", history_, [](const Motion& m) { return m.kinetic_energy(); });
-    draw_measure("momentum %.4g kg px/s", history_,
+    const double momentum = std::hypot(now.momentum_x(), now.momentum_y());
+    draw_measure("kinetic energy " + with_unit(now.kinetic_energy(), "kg px²/s²"), history_,
+                 [](const Motion& m) { return m.kinetic_energy(); });
+    draw_measure("momentum " + with_unit(momentum, "kg px/s"), history_,
                  [](const Motion& m) { return std::hypot(m.momentum_x(), m.momentum_y()); });
-    draw_measure("deepest overlap %.3g px", history_, [](const Motion& m) { return m.deepest_overlap_px(); });
-    draw_measure("fastest body %.4g px/s", history_, [](const Motion& m) { return m.fastest_px_s(); });
-    draw_measure("its way in a tick, of its radius: %.2g", history_,
+    draw_measure("deepest overlap " + with_unit(now.deepest_overlap_px(), "px"), history_,
+                 [](const Motion& m) { return m.deepest_overlap_px(); });
+    draw_measure("fastest body " + with_unit(now.fastest_px_s(), "px/s"), history_,
+                 [](const Motion& m) { return m.fastest_px_s(); });
+    draw_measure("its step in a tick, of its radius: " + shown_number(now.fastest_step_share()), history_,
                  [](const Motion& m) { return m.fastest_step_share(); });
     const double step_px = now.fastest_px_s() * now.tick_s();
     ImGui::TextWrapped("The fastest moves %.3g px in a tick; contacts are looked for in strips of %.4g px. The deepest "
@@ -145,13 +108,33 @@ void PhysicsPanel::build_motion() {
                        with_separators(now.too_fast_count()).c_str(), with_separators(now.speed_limit_count()).c_str());
 }
 
+void PhysicsPanel::take_curves(const TimeStepDemo& demo) {
+    using Row = TimeStepDemo::Row;
+    const auto curve = [&](const char* name, Colour colour, TimeStepDemo::State Row::*state) {
+        Curve made{name, colour, {}, {}};
+        const double energy = demo.energy(rows_.front().exact);
+        for (const Row& row : rows_) {
+            made.x_px.push_back((row.*state).x_px);
+            made.energy.push_back(demo.energy(row.*state) / energy);
+        }
+        return made;
+    };
+    t_s_.clear();
+    for (const Row& row : rows_) {
+        t_s_.push_back(row.t_s);
+    }
+    curves_ = {curve("explicit Euler", palette::poison, &Row::explicit_euler),
+               curve("symplectic Euler", palette::running, &Row::symplectic_euler),
+               curve("exact solution", palette::text, &Row::exact)};
+}
+
 void PhysicsPanel::build_demo() {
     bool changed = rows_.empty();
     if (ImGui::RadioButton("a spring", spring_)) {
         changed = spring_ = true;
     }
     ImGui::SameLine();
-    if (ImGui::RadioButton("a body that slows down", !spring_)) {
+    if (ImGui::RadioButton("damped motion", !spring_)) {
         spring_ = false;
         changed = true;
     }
@@ -166,33 +149,23 @@ void PhysicsPanel::build_demo() {
                                     : TimeStepDemo::System{0, rate, {0, 100}}};
     if (changed) {
         rows_ = demo.rows(dt, static_cast<std::size_t>(demo_s / dt));
+        take_curves(demo);
     }
-
-    constexpr Colour exact_colour = palette::text, symplectic_colour = palette::running,
-                     explicit_colour = palette::poison;
-    const auto curve = [&](Colour colour, TimeStepDemo::State TimeStepDemo::Row::*state, auto of) {
-        Curve made{colour, {}};
-        for (const TimeStepDemo::Row& row : rows_) {
-            made.values.push_back(static_cast<float>(of(row.*state)));
+    Plot x{.title = "x in 10 s, px"}, energy{.title = "energy, of that at the start"};
+    for (const Curve& curve : curves_) {
+        x.series.push_back({.colour = curve.colour, .x = t_s_, .y = curve.x_px});
+        energy.series.push_back({.colour = curve.colour, .x = t_s_, .y = curve.energy});
+    }
+    const double reach = spring_ ? 200 : 150 / rate;
+    const float height = 7 * ImGui::GetFontSize();
+    curve_widget(x, {spring_ ? -reach : 0, reach}, height);
+    curve_widget(energy, {0, 3}, height);
+    for (std::size_t i = curves_.size(); i-- > 0;) {
+        widgets::say(curves_[i].name, curves_[i].colour);
+        if (i > 0) {
+            ImGui::SameLine();
         }
-        return made;
-    };
-    const auto draw = [&](const char* name, float low, float high, auto of) {
-        const Curve curves[] = {curve(explicit_colour, &TimeStepDemo::Row::explicit_euler, of),
-                                curve(symplectic_colour, &TimeStepDemo::Row::symplectic_euler, of),
-                                curve(exact_colour, &TimeStepDemo::Row::exact, of)};
-        draw_curves(name, curves, low, high, 90);
-    };
-    using State = TimeStepDemo::State;
-    const float reach = spring_ ? 200 : 150 / rate_per_s_;
-    draw("x in 10 s, px", spring_ ? -reach : 0, reach, [](const State& state) { return state.x_px; });
-    const double energy = demo.energy(rows_.front().exact);
-    draw("energy, of that at the start", 0, 3, [&](const State& state) { return demo.energy(state) / energy; });
-    coloured(exact_colour, "the truth");
-    ImGui::SameLine();
-    coloured(symplectic_colour, "symplectic Euler");
-    ImGui::SameLine();
-    coloured(explicit_colour, "explicit Euler");
+    }
 
     if (ImGui::BeginTable("steps", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV)) {
         for (const char* name : {"t, s", "x, px"}) {
@@ -226,7 +199,7 @@ void PhysicsPanel::build_demo() {
                                           : "keeps it only while ω·dt is below 2, so not here");
     } else {
         ImGui::TextWrapped(
-            "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the truth is e^(−c·dt): "
+            "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the exact solution keeps e^(−c·dt): "
             "from 1 on the body turns round, from 2 on it gets faster. With symplectic and explicit Euler a "
             "world's damping keeps e^(−c·dt) itself, whatever the tick.",
             rate * dt);

@@ -1,5 +1,5 @@
 // Physics panel: energy, momentum, overlaps and speeds of the bodies on the island over time, whether the tick is short
-// enough for them, and a motion whose truth is known, stepped with a tick of any length.
+// enough for them, and a motion with a known exact solution, stepped with a tick of any length.
 //
 // Threads      none; used by the thread that draws.
 #pragma once
@@ -24,6 +24,7 @@ class PhysicsPanel : public Panel {
     void ask(Context& context);
     void build_motion();
     void build_demo();
+    void take_curves(const TimeStepDemo& demo);
 
     // Of which island the history is, and what has been asked.
     std::string world_;
@@ -35,9 +36,16 @@ class PhysicsPanel : public Panel {
 
     // The demonstration, as it was last worked out.
     bool spring_ = true;
-    float rate_per_s_ = 2; // ω of the spring, c of what slows down
+    float rate_per_s_ = 2; // ω of the spring, c of damped motion
     float tick_ms_ = 100;
     std::vector<TimeStepDemo::Row> rows_;
+    struct Curve {
+        const char* name;
+        Colour colour;
+        std::vector<double> x_px, energy; // by row; energy as a share of that at the start
+    };
+    std::vector<double> t_s_;   // by row
+    std::vector<Curve> curves_; // the first at the back
 };
 
 } // namespace evod::viewer

@@ -1,7 +1,7 @@
-// Time step demo: a motion whose truth is known, stepped as a world's bodies are, so that anyone can see what the
-// length of a tick does.
+// Time step demo: a motion with a known exact solution, stepped as a world's bodies are, so that anyone can see what
+// the length of a tick does.
 //
-// The motion is x'' = −ω²x − c·v: a spring (c = 0), a body that slows down by itself (ω = 0), or both. A step first
+// The motion is x'' = −ω²x − c·v: a spring (c = 0), damped motion (ω = 0), or both. A step first
 // works out v' = v + (−ω²x − c·v)·dt; then
 //
 //   symplectic Euler  x' = x + v'·dt    a spring's energy goes up and down but stays, while ω·dt < 2
@@ -36,7 +36,7 @@ class TimeStepDemo {
 
     explicit TimeStepDemo(const System& system) : system_{system} {}
 
-    /// The truth at t >= 0.
+    /// The exact solution at t >= 0.
     State exact(double t_s) const;
     State step(State from, double dt_s, Method method) const;
     /// Of a kilogram, kg px²/s².
@@ -47,7 +47,7 @@ class TimeStepDemo {
 
     /// What a spring's energy is multiplied with by explicit Euler in one step.
     double explicit_growth(double dt_s) const;
-    /// Whether symplectic Euler stays near the truth for ever.
+    /// Whether symplectic Euler stays near the exact solution for ever.
     bool symplectic_is_stable(double dt_s) const;
 
   private:

@@ -1,34 +1,12 @@
 #include "client/viewer/panels/plots/layout.h"
 
-#include "client/viewer/watch/readout.h"
+#include "client/viewer/text/numbers.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace evod::viewer {
-
-namespace {
-
-/// "-1234.5" → "−1,234.5".
-std::string with_signs(std::string text) {
-    const bool negative = text.starts_with('-');
-    const std::size_t begin = negative ? 1 : 0;
-    const std::size_t end = std::min(text.find_first_not_of("0123456789", begin), text.size());
-    for (std::size_t at = end; at > begin + 3; at -= 3) {
-        text.insert(at - 3, ",");
-    }
-    return negative ? "−" + text.substr(1) : text;
-}
-
-std::string printed(const char* format, int precision, double number) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, precision, number);
-    return text;
-}
-
-} // namespace
 
 std::optional<Range> range_of(std::span<const double> numbers) {
     std::optional<Range> range;
@@ -58,47 +36,24 @@ Ticks ticks_in(Range range, int count_max) {
     if (!(rough > 0) || !std::isfinite(rough)) {
         return ticks;
     }
-    const double power = std::pow(10, std::floor(std::log10(rough)));
-    for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0}) {
-        ticks.step = factor * power;
+    for (ticks.step = nice_step(rough / 2);; ticks.step = nice_step(1.5 * ticks.step)) {
         const double first = std::ceil(range.min / ticks.step - 1e-9), last = std::floor(range.max / ticks.step + 1e-9);
-        if (last - first + 1 > count_max) {
-            continue;
+        if (last - first + 1 <= count_max) {
+            for (double number = first; number <= last; ++number) {
+                ticks.at.push_back(number == 0 ? 0 : number * ticks.step);
+            }
+            return ticks;
         }
-        for (double number = first; number <= last; ++number) {
-            ticks.at.push_back(number == 0 ? 0 : number * ticks.step);
-        }
-        break;
     }
-    return ticks;
 }
 
 std::string tick_label(double tick, double step) {
     const double size = std::max(std::abs(tick), step);
     if (size >= 1e9 || size < 1e-5) {
-        return with_signs(printed("%.*g", 6, tick));
+        return with_separators(print("%.6g", tick));
     }
     const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-    return with_signs(printed("%.*f", std::min(decimals, 12), tick));
-}
-
-std::string shown_number(double number) {
-    if (!std::isfinite(number)) {
-        return "–";
-    }
-    const double size = std::abs(number);
-    if (size != 0 && (size >= 1e12 || size < 1e-4)) {
-        return with_signs(printed("%.*g", 6, number));
-    }
-    const int digits = size >= 1 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
-    std::string text = printed("%.*f", std::max(0, 6 - digits), number);
-    if (text.find('.') != std::string::npos) {
-        text.erase(text.find_last_not_of('0') + 1);
-        if (text.back() == '.') {
-            text.pop_back();
-        }
-    }
-    return with_signs(text == "-0" ? "0" : text);
+    return with_separators(print("%.*f", std::min(decimals, 12), tick));
 }
 
 Range moved(Range shown, double by, Range whole) {

@@ -36,9 +36,6 @@ Ticks ticks_in(Range range, int count_max);
 /// With as many decimals as the step needs: "1,500", "0.25", "1.5e+20".
 std::string tick_label(double tick, double step);
 
-/// A number for a person: six digits and no more, "1,234.5", "0.0123".
-std::string shown_number(double number);
-
 /// Zooms so that the point at `share` of the way stays where it is; factor > 1 shows less. Neither leaves `whole`.
 Range zoomed(Range shown, double share, double factor, Range whole, double width_min);
 /// Moves by so much, and not out of `whole`.

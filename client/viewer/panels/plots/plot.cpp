@@ -1,6 +1,8 @@
 #include "client/viewer/panels/plots/plot.h"
 
+#include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/offscreen.h"
+#include "client/viewer/text/numbers.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
@@ -17,14 +19,10 @@ constexpr float gap = 6; // between letters and what they stand beside
 constexpr float tick_pixels = 4;
 constexpr float line_pixels = 1.6f;
 constexpr float dash_pixels = 6, dash_gap_pixels = 4;
-constexpr unsigned dense_alpha = 110;
+constexpr std::uint8_t dense_alpha = 110;
 constexpr double y_room = 0.04; // of the height, above and below
 constexpr double zoom_of_one_notch = 1.25;
 constexpr double shown_min = 4; // generations, or as much of another x
-
-ImU32 ink(Colour colour, unsigned alpha = 255) {
-    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha * alpha / 255);
-}
 
 struct Box {
     float left, top, right, bottom;
@@ -38,6 +36,12 @@ class Drawing {
         lay_out(box);
     }
 
+    /// Without axes: the lines fill the box, from y.min to y.max.
+    Drawing(ImDrawList& list, ImFont& font, const Plot& plot, Range x, Range y, Box box)
+        : list_{list}, font_{font}, plot_{plot}, x_{x}, y_{y}, area_{box} {
+        group(columns());
+    }
+
     /// Where the data are.
     const Box& area() const { return area_; }
     double x_at(float pixels) const { return x_.min + (pixels - area_.left) / columns() * x_.width(); }
@@ -45,13 +49,14 @@ class Drawing {
     void draw() {
         list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
         draw_axes();
-        list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
-        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
-            draw(i);
-        }
-        list_.PopClipRect();
-        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
+        draw_series();
         draw_legend();
+    }
+
+    void draw_bare() {
+        list_.AddRectFilled({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::plot_background));
+        draw_series();
+        write(area_.left + gap / 2, area_.top + gap / 2, palette::text_quiet, plot_.title);
     }
 
     /// A line through the numbers that are nearest to the x, and which they are. Empty if there are none.
@@ -68,7 +73,7 @@ class Drawing {
             return lines;
         }
         const float pixels = column(*found);
-        list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(palette::text_quiet, 150));
+        list_.AddLine({pixels, area_.top}, {pixels, area_.bottom}, ink(faint(palette::text_quiet, 150)));
         lines.push_back(plot_.x_label + " " + shown_number(*found));
         for (const Series& series : plot_.series) {
             const auto index = nearest(series.x, *found);
@@ -87,11 +92,9 @@ class Drawing {
     }
 
   private:
-    float width_of(const std::string& text) const {
-        return font_.CalcTextSizeA(font_.FontSize, 1e9f, 0, text.c_str()).x;
-    }
+    float width_of(const std::string& text) const { return size_of(text, font_).x; }
     void write(float x, float y, Colour colour, const std::string& text) {
-        list_.AddText(&font_, font_.FontSize, {std::round(x), std::round(y)}, ink(colour), text.c_str());
+        evod::viewer::write(list_, font_, {x, y}, colour, text);
     }
 
     double columns() const { return std::max(area_.right - area_.left, 1.0f); }
@@ -101,6 +104,12 @@ class Drawing {
     float row(double y) const {
         const double share = std::clamp((y - y_.min) / y_.width(), -1.0, 2.0);
         return area_.bottom - static_cast<float>(share * (area_.bottom - area_.top));
+    }
+
+    void group(double columns) {
+        for (const Series& series : plot_.series) {
+            groups_.push_back(groups_of(series.x, x_, static_cast<std::size_t>(columns)));
+        }
     }
 
     /// Groups of every series, the tops of stacks, the range of y, and the area that letters leave.
@@ -129,15 +138,16 @@ class Drawing {
         label_left_ = box.left;
 
         std::optional<Range> y;
-        const auto columns_now = static_cast<std::size_t>(std::max(box.right - box.left, 1.0f));
-        for (const Series& series : plot_.series) {
-            groups_.push_back(groups_of(series.x, x_, columns_now));
-            if (groups_.back().empty()) {
+        group(std::max(box.right - box.left, 1.0f));
+        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            const Series& series = plot_.series[i];
+            const std::vector<Group>& groups = groups_[i];
+            if (groups.empty()) {
                 continue;
             }
-            const std::size_t begin = groups_.back().front().begin, end = groups_.back().back().end;
+            const std::size_t begin = groups.front().begin, end = groups.back().end;
             if (series.kind == Series::Kind::Stack) {
-                take_stack(series, groups_.back());
+                take_stack(series, groups);
                 y = joined(y, range_of(tops_));
                 continue;
             }
@@ -217,6 +227,15 @@ class Drawing {
         }
     }
 
+    void draw_series() {
+        list_.PushClipRect({area_.left, area_.top}, {area_.right, area_.bottom}, true);
+        for (std::size_t i = 0; i < plot_.series.size(); ++i) {
+            draw(i);
+        }
+        list_.PopClipRect();
+        list_.AddRect({area_.left, area_.top}, {area_.right, area_.bottom}, ink(palette::strip_edge));
+    }
+
     void draw(std::size_t index) {
         const Series& series = plot_.series[index];
         switch (series.kind) {
@@ -244,8 +263,8 @@ class Drawing {
             } else if (series.kind == Series::Kind::Dashes && !dense) {
                 draw_dashes(points, ink(series.colour));
             } else if (series.kind == Series::Kind::Dashes) {
-                list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour, dense_alpha), 0,
-                                  1);
+                list_.AddPolyline(points.data(), static_cast<int>(points.size()),
+                                  ink(faint(series.colour, dense_alpha)), 0, 1);
             } else {
                 list_.AddPolyline(points.data(), static_cast<int>(points.size()), ink(series.colour), 0, line_pixels);
             }
@@ -385,6 +404,14 @@ void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_
         const Box& area = drawing.area();
         view.x = moved(*view.x, -io.MouseDelta.x / (area.right - area.left) * view.x->width(), whole);
     }
+}
+
+void curve_widget(const Plot& plot, Range y, float height_pixels) {
+    const ImVec2 place = ImGui::GetCursorScreenPos();
+    const ImVec2 size{std::max(ImGui::GetContentRegionAvail().x, 40.0f), height_pixels};
+    ImGui::Dummy(size);
+    const Box box{place.x, place.y, place.x + size.x, place.y + size.y};
+    Drawing{*ImGui::GetWindowDrawList(), *ImGui::GetFont(), plot, whole_x(plot), y, box}.draw_bare();
 }
 
 sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels) {

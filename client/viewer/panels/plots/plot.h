@@ -28,19 +28,19 @@ struct Series {
         Bars,   // on the axis
     };
     Kind kind = Kind::Line;
-    std::string name; // in the legend
+    std::string name{}; // in the legend
     Colour colour{};
-    std::span<const double> x; // rising
-    std::span<const double> y; // as many; what is not finite is left out
+    std::span<const double> x{}; // rising
+    std::span<const double> y{}; // as many; what is not finite is left out
     std::span<const double> low{};
     double bar_width = 1; // of stacks and bars, in the units of x
 };
 
 struct Plot {
-    std::string title;            // of a picture; in a window its place tells what it is
-    std::string x_label, y_label; // y_label with its unit
-    std::vector<Series> series;   // the first at the back
-    bool from_zero = false;       // the y axis begins at 0, if nothing is below it
+    std::string title{};              // of a picture and of curves; else its place tells what it is
+    std::string x_label{}, y_label{}; // y_label with its unit
+    std::vector<Series> series{};     // the first at the back
+    bool from_zero = false;           // the y axis begins at 0, if nothing is below it
 };
 
 /// What of the x axis is shown.
@@ -55,8 +55,11 @@ Range whole_x(const Plot& plot);
 /// under the mouse is told. Several plots may share a view.
 void plot_widget(const char* id, const Plot& plot, PlotView& view, float height_pixels);
 
-/// The same as a picture, with its title. Between Gui::begin() and Gui::draw(); throws std::runtime_error if a picture
-/// of this size cannot be drawn.
+/// The lines alone, as wide as the window, with the title in a corner; what is beyond `y` is cut off.
+void curve_widget(const Plot& plot, Range y, float height_pixels);
+
+/// The same as plot_widget as a picture, with its title. Between Gui::begin() and Gui::draw(); throws
+/// std::runtime_error if a picture of this size cannot be drawn.
 sf::Image picture_of(const Plot& plot, const PlotView& view, unsigned width_pixels, unsigned height_pixels);
 
 } // namespace evod::viewer

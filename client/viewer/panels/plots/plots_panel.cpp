@@ -1,15 +1,13 @@
 #include "client/viewer/panels/plots/plots_panel.h"
 
-#include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/png.h"
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/watch/readout.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 namespace evod::viewer {
@@ -34,14 +32,6 @@ constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},
                         {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors},
                         {"Deaths", Quantity::Deaths}};
-
-void say(const std::string& text, Colour colour = palette::text_quiet) {
-    ImGui::PushStyleColor(ImGuiCol_Text, IM_COL32(colour.red, colour.green, colour.blue, colour.alpha));
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
 
 /// CSV files of the working folder, by name.
 std::vector<std::string> csv_files() {
@@ -229,10 +219,10 @@ void PlotsPanel::build(Context& context) {
     build_choices();
     build_comparison(context);
     if (!own_->trouble.empty()) {
-        say(own_->trouble, palette::warning);
+        widgets::say(own_->trouble, palette::warning);
     }
     if (other_world_ && !other_world_->trouble.empty()) {
-        say(other_name_ + ": " + other_world_->trouble, palette::warning);
+        widgets::say(other_name_ + ": " + other_world_->trouble, palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -272,9 +262,9 @@ void PlotsPanel::build_choices() {
     }
     ImGui::SameLine();
     const HistoryTable& table = own_->history.table();
-    say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
-                      : with_separators(table.column(std::nullopt, "generation").size()) + " generations, up to " +
-                            with_separators(table.last_generation()));
+    widgets::say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
+                               : with_separators(table.column(std::nullopt, "generation").size()) +
+                                     " generations, up to " + with_separators(table.last_generation()));
 }
 
 void PlotsPanel::compare_with_file(const std::string& path) {
@@ -360,13 +350,13 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     ImGui::SameLine();
     const Population& population = population_->whole;
     if (!population_->trouble.empty()) {
-        say(population_->trouble, palette::warning);
+        widgets::say(population_->trouble, palette::warning);
     } else if (!population.whole()) {
-        say("…");
+        widgets::say("…");
     } else {
-        say("generation " + with_separators(population.generation()) + ", island " +
-            std::to_string(island_.value_or(context.watch.island())) +
-            (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
+        widgets::say("generation " + with_separators(population.generation()) + ", island " +
+                     std::to_string(island_.value_or(context.watch.island())) +
+                     (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -414,11 +404,14 @@ std::string PlotsPanel::file_name(const std::string& what) const {
 
 void PlotsPanel::save_csv() {
     const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
-    std::ofstream file{path, std::ios::binary};
-    const std::string text = own_->history.table().to_csv();
-    file.write(text.data(), static_cast<std::streamsize>(text.size()));
-    told_trouble_ = !file.flush();
-    told_ = told_trouble_ ? "Could not write " + path + ": " + std::strerror(errno) : "Saved " + path;
+    told_trouble_ = false;
+    try {
+        write_file(path, own_->history.table().to_csv());
+        told_ = "Saved " + path;
+    } catch (const std::runtime_error& error) {
+        told_ = error.what();
+        told_trouble_ = true;
+    }
 }
 
 void PlotsPanel::save_png() {
@@ -430,11 +423,7 @@ void PlotsPanel::save_png() {
         const auto pixels = [this](std::size_t i) {
             return static_cast<unsigned>(std::clamp(picture_pixels_[i], 200, picture_pixels_max));
         };
-        errno = 0;
-        if (!picture_of(plot, view, pixels(0), pixels(1)).saveToFile(path)) {
-            throw std::runtime_error{"Could not write " + path + (errno != 0 ? ": " : "") +
-                                     (errno != 0 ? std::strerror(errno) : "")};
-        }
+        write_file(path, png_of(picture_of(plot, view, pixels(0), pixels(1))));
         return path;
     };
     try {
@@ -469,7 +458,7 @@ void PlotsPanel::build_export() {
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
     ImGui::DragInt2("pixels", picture_pixels_.data(), 10, 200, picture_pixels_max);
     if (!told_.empty()) {
-        say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
+        widgets::say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
     }
 }
 

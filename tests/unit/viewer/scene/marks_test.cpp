@@ -36,18 +36,8 @@ struct MarksTest : testing::Test {
     const Rectangle everything{0, 0, 1000, 1000};
 };
 
-TEST(RoundUp, ToOneTwoOrFiveTimesAPowerOfTen) {
-    EXPECT_EQ(round_up(0), 1);
-    EXPECT_EQ(round_up(1), 1);
-    EXPECT_EQ(round_up(1.01), 2);
-    EXPECT_EQ(round_up(3), 5);
-    EXPECT_EQ(round_up(5.1), 10);
-    EXPECT_EQ(round_up(1000), 1000);
-    EXPECT_NEAR(round_up(0.03), 0.05, 1e-12);
-}
-
 TEST_F(MarksTest, HealthGoesFromNothingToTheMostRoundedUp) {
-    const Scale scale = health_scale(organisms, ramp);
+    const ColourScale scale = health_scale(organisms, ramp);
     EXPECT_EQ(scale.low, 0);
     EXPECT_EQ(scale.high, 200);
     std::vector<Colour> colours;
@@ -62,12 +52,12 @@ TEST_F(MarksTest, HealthGoesFromNothingToTheMostRoundedUp) {
 
 TEST_F(MarksTest, AGeneGoesFromItsLeastToItsGreatest) {
     std::vector<Colour> colours;
-    const Scale scale = gene_scale(population, 1, ramp);
+    const ColourScale scale = gene_scale(population, 1, ramp);
     EXPECT_EQ(scale.low, 100);
     EXPECT_EQ(scale.high, 102);
     put_gene_colours(organisms, population, 1, scale, colours);
     EXPECT_THAT(colours, ElementsAre(palette::at(ramp, 0), palette::at(ramp, 1), palette::unknown));
-    const Scale all_equal{ramp, 5, 5};
+    const ColourScale all_equal{ramp, 5, 5};
     EXPECT_EQ(all_equal(5), palette::at(ramp, 0.5));
 }
 
@@ -210,7 +200,7 @@ TEST(Density, CellsAreOfAFewPixelsAtAnyZoom) {
 
 TEST(Density, SquaresAreColouredByHowManyAreInThem) {
     const DensityGrid grid{.left_px = 100, .top_px = 0, .cell_px = 10, .columns = 2, .rows = 2, .counts = {0, 7, 3, 0}};
-    const Scale scale = density_scale(std::span{&grid, 1}, ramp);
+    const ColourScale scale = density_scale(std::span{&grid, 1}, ramp);
     EXPECT_EQ(scale.high, 10);
     std::vector<Shape> shapes;
     std::vector<Colour> colours;

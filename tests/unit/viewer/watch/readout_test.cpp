@@ -7,18 +7,6 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Readout, WritesNumbersAndTimesAsPeopleReadThem) {
-    EXPECT_EQ(with_separators(0), "0");
-    EXPECT_EQ(with_separators(999), "999");
-    EXPECT_EQ(with_separators(1000), "1,000");
-    EXPECT_EQ(with_separators(1234567), "1,234,567");
-    EXPECT_EQ(shown_duration(0), "0.0 s");
-    EXPECT_EQ(shown_duration(12.39), "12.3 s");
-    EXPECT_EQ(shown_duration(59.99), "59.9 s");
-    EXPECT_EQ(shown_duration(60), "1:00.0");
-    EXPECT_EQ(shown_duration(3675.25), "61:15.2");
-}
-
 TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
     evod::v1::Storage storage;
     EXPECT_EQ(shown_storage(storage), "");
@@ -31,6 +19,9 @@ TEST(Readout, SaysWhatTheDiskMeansForTheWorld) {
     EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk, commands are refused: it is full");
     EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_RUNNING, storage), "waits for the disk");
     EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_PAUSED, storage), "paused");
+    EXPECT_STREQ(shown_state(evod::v1::RUN_STATE_WAITING, storage), "waiting – Space runs");
+    EXPECT_STREQ(state_word(evod::v1::RUN_STATE_WAITING, storage), "waiting");
     storage.set_state(evod::v1::STORAGE_STATE_BEHIND);
     EXPECT_EQ(shown_storage(storage), "Worlds wait for the disk: it is full");
 }

@@ -45,6 +45,35 @@ TEST(CopiesAfter, CountsThePicksSoFarByRank) {
     EXPECT_THAT(copies_after(record, 99), ElementsAre(2, 1, 1, 0));
 }
 
+TEST(PickColumns, ShowEveryPickHoweverManyThereAre) {
+    const BreedingRecord record = record_of(made_up::wheel());
+    for (const std::size_t most : {1u, 2u, 3u, 4u, 50u}) {
+        const auto columns = pick_columns(record, 3, most);
+        ASSERT_EQ(columns.size(), std::min<std::size_t>(most, 4));
+        std::uint32_t next = 0;
+        for (const PickColumn& column : columns) {
+            EXPECT_EQ(column.first, next);
+            EXPECT_TRUE(column.rank);
+            next = column.last + 1;
+        }
+        EXPECT_EQ(next, 4u);
+    }
+    EXPECT_TRUE(pick_columns(record, 3, 0).empty());
+}
+
+TEST(PickColumns, AreTheMeanRankOfThosePickedSoFar) {
+    const BreedingRecord record = record_of(made_up::wheel());
+    const auto rank_of = [&](std::uint32_t pick) -> double {
+        return record.contender(record.pick(pick)->organism())->rank();
+    };
+    const auto done = pick_columns(record, 3, 2);
+    EXPECT_EQ(done[0].rank, (rank_of(0) + rank_of(1)) / 2);
+    EXPECT_EQ(done[1].rank, (rank_of(2) + rank_of(3)) / 2);
+    const auto begun = pick_columns(record, 0, 2);
+    EXPECT_EQ(begun[0].rank, rank_of(0));
+    EXPECT_EQ(begun[1].rank, std::nullopt);
+}
+
 TEST(RankColumns, AddUpToTheWhole) {
     const auto comparison = compare(record_of(made_up::wheel()));
     for (const std::size_t most : {1u, 2u, 3u, 4u, 50u}) {

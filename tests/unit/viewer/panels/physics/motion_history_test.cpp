@@ -16,7 +16,7 @@ evod::v1::Motion at(std::uint64_t tick, double energy = 0) {
     return motion;
 }
 
-std::vector<float> energies(const MotionHistory& history) {
+std::vector<double> energies(const MotionHistory& history) {
     return history.curve([](const evod::v1::Motion& motion) { return motion.kinetic_energy(); });
 }
 

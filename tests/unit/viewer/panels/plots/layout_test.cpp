@@ -40,16 +40,6 @@ TEST(Ticks, HaveTheDecimalsThatTheyNeed) {
     EXPECT_EQ(tick_label(2e20, 1e20), "2e+20");
 }
 
-TEST(ShownNumber, HasSixDigits) {
-    EXPECT_EQ(shown_number(1234.5), "1,234.5");
-    EXPECT_EQ(shown_number(0.0123), "0.0123");
-    EXPECT_EQ(shown_number(-7), "−7");
-    EXPECT_EQ(shown_number(1'000'000), "1,000,000");
-    EXPECT_EQ(shown_number(-1e-9), "−1e-09");
-    EXPECT_EQ(shown_number(0), "0");
-    EXPECT_EQ(shown_number(none), "–");
-}
-
 TEST(Ranges, HaveRoomEvenForOneNumber) {
     EXPECT_EQ(with_room({0, 10}, 0.1), (Range{-1, 11}));
     EXPECT_GT(with_room({5, 5}, 0.1).width(), 0);

@@ -1,0 +1,32 @@
+// Ink: colours and letters on a draw list of Dear ImGui.
+//
+// Threads      none; used by the thread that draws.
+#pragma once
+
+#include "client/viewer/drawing/palette.h"
+
+#include <imgui.h>
+
+#include <string_view>
+
+namespace evod::viewer {
+
+constexpr ImU32 ink(Colour colour) {
+    return IM_COL32(colour.red, colour.green, colour.blue, colour.alpha);
+}
+
+constexpr Colour faint(Colour colour, std::uint8_t alpha) {
+    colour.alpha = alpha;
+    return colour;
+}
+
+/// wrap_width  pixels; 0: lines end where the text says
+ImVec2 size_of(std::string_view text, const ImFont& font, float wrap_width = 0);
+
+/// Writes with the upper left corner at a whole pixel, which keeps letters sharp; returns where the text ends.
+float write(ImDrawList& list, const ImFont& font, ImVec2 place, Colour colour, std::string_view text,
+            float wrap_width = 0);
+void write_centred(ImDrawList& list, const ImFont& font, ImVec2 centre, Colour colour, std::string_view text);
+void write_to_the_left(ImDrawList& list, const ImFont& font, ImVec2 right, Colour colour, std::string_view text);
+
+} // namespace evod::viewer

@@ -1,0 +1,82 @@
+#include "client/viewer/text/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace evod::viewer {
+
+std::string print(const char* format, ...) {
+    std::va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    std::string text(static_cast<std::size_t>(std::max(std::vsnprintf(nullptr, 0, format, arguments), 0)), '\0');
+    std::vsnprintf(text.data(), text.size() + 1, format, again);
+    va_end(again);
+    va_end(arguments);
+    return text;
+}
+
+std::string with_separators(std::uint64_t number) {
+    return with_separators(std::to_string(number));
+}
+
+std::string with_separators(std::string printed) {
+    const bool negative = printed.starts_with('-');
+    const std::size_t begin = negative ? 1 : 0;
+    const std::size_t end = std::min(printed.find_first_not_of("0123456789", begin), printed.size());
+    for (std::size_t at = end; at > begin + 3; at -= 3) {
+        printed.insert(at - 3, ",");
+    }
+    return negative ? "−" + printed.substr(1) : printed;
+}
+
+std::string shown_number(double number) {
+    if (!std::isfinite(number)) {
+        return "–";
+    }
+    const double size = std::abs(number);
+    if (size != 0 && (size >= 1e12 || size < 1e-4)) {
+        return with_separators(print("%.6g", number));
+    }
+    const int digits = size >= 1 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
+    std::string text = print("%.*f", std::max(0, 6 - digits), number);
+    if (text.find('.') != std::string::npos) {
+        text.erase(text.find_last_not_of('0') + 1);
+        if (text.back() == '.') {
+            text.pop_back();
+        }
+    }
+    return with_separators(text == "-0" ? "0" : std::move(text));
+}
+
+std::string with_unit(double number, std::string_view unit) {
+    return shown_number(number) + (unit.empty() ? "" : " ") + std::string{unit};
+}
+
+std::string shown_tenths(double number) {
+    return print("%.1f", number);
+}
+
+std::string shown_duration(double seconds) {
+    const double tenths = std::floor(seconds * 10 + 1e-6); // a time that has passed is never shown before it has
+    const auto minutes = static_cast<std::uint64_t>(tenths / 600);
+    const double rest = (tenths - 600 * static_cast<double>(minutes)) / 10;
+    return minutes == 0 ? print("%.1f s", rest) : with_separators(minutes) + print(":%04.1f", rest);
+}
+
+double nice_step(double least) {
+    if (!(least > 0)) {
+        return 1;
+    }
+    const double ten = std::pow(10, std::floor(std::log10(least) + 1e-9));
+    for (const double factor : {1.0, 2.0, 5.0}) {
+        if (least <= factor * ten * (1 + 1e-9)) {
+            return factor * ten;
+        }
+    }
+    return 10 * ten;
+}
+
+} // namespace evod::viewer

@@ -1,0 +1,65 @@
+#include "client/viewer/text/numbers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace evod::viewer {
+namespace {
+
+TEST(Print, IsNeverCutOff) {
+    EXPECT_EQ(print("%d of %s", 3, "four"), "3 of four");
+    EXPECT_EQ(print("%500d", 7).size(), 500);
+    EXPECT_EQ(print("%s", ""), "");
+}
+
+TEST(Numbers, AreWrittenAsPeopleReadThem) {
+    EXPECT_EQ(with_separators(0), "0");
+    EXPECT_EQ(with_separators(999), "999");
+    EXPECT_EQ(with_separators(1000), "1,000");
+    EXPECT_EQ(with_separators(1234567), "1,234,567");
+    EXPECT_EQ(with_separators("-1234.5678"), "−1,234.5678");
+    EXPECT_EQ(with_separators("1e+20"), "1e+20");
+}
+
+TEST(Numbers, HaveSixDigits) {
+    EXPECT_EQ(shown_number(1234.5), "1,234.5");
+    EXPECT_EQ(shown_number(0.0123), "0.0123");
+    EXPECT_EQ(shown_number(-7), "−7");
+    EXPECT_EQ(shown_number(1'000'000), "1,000,000");
+    EXPECT_EQ(shown_number(-1e-9), "−1e-09");
+    EXPECT_EQ(shown_number(0), "0");
+    EXPECT_EQ(shown_number(std::numeric_limits<double>::quiet_NaN()), "–");
+    EXPECT_EQ(with_unit(12.5, "px"), "12.5 px");
+    EXPECT_EQ(with_unit(3, ""), "3");
+}
+
+TEST(Durations, HaveMinutesAndTenthsOfSeconds) {
+    EXPECT_EQ(shown_duration(0), "0.0 s");
+    EXPECT_EQ(shown_duration(12.39), "12.3 s");
+    EXPECT_EQ(shown_duration(59.99), "59.9 s");
+    EXPECT_EQ(shown_duration(60), "1:00.0");
+    EXPECT_EQ(shown_duration(3675.25), "61:15.2");
+}
+
+TEST(NiceSteps, AreOneTwoOrFiveTimesAPowerOfTen) {
+    EXPECT_EQ(nice_step(0), 1);
+    EXPECT_EQ(nice_step(1), 1);
+    EXPECT_EQ(nice_step(1.01), 2);
+    EXPECT_EQ(nice_step(3), 5);
+    EXPECT_EQ(nice_step(5.1), 10);
+    EXPECT_EQ(nice_step(1000), 1000);
+    EXPECT_NEAR(nice_step(0.03), 0.05, 1e-12);
+}
+
+TEST(NiceSteps, FollowEachOther) {
+    for (const double power : {1e-9, 1.0, 1e15, 1e18}) {
+        EXPECT_DOUBLE_EQ(nice_step(1.5 * power), 2 * power);
+        EXPECT_DOUBLE_EQ(nice_step(1.5 * 2 * power), 5 * power);
+        EXPECT_DOUBLE_EQ(nice_step(1.5 * 5 * power), 10 * power);
+    }
+}
+
+} // namespace
+} // namespace evod::viewer
