@@ -58,7 +58,8 @@ class Recorder {
                   << last_tick_ << '\n';
         if (missed_ticks_ > 0) {
             std::cerr << "evoview: " << missed_ticks_ << " ticks in between were not shown: "
-                      << (steps(leader()) ? "somebody else ran the world meanwhile" : "a viewer cannot step the world")
+                      << (leader().may_command() ? "somebody else ran the world meanwhile"
+                                                 : "a viewer cannot step the world")
                       << '\n';
         }
     }
@@ -66,12 +67,6 @@ class Recorder {
   private:
     /// The world that says when it is enough.
     Watch& leader() { return panes_[0].watch; }
-
-    static bool steps(const Watch& watch) {
-        const auto status = watch.connection_status();
-        const evod::v1::Role role = status.welcome ? status.welcome->role() : evod::v1::ROLE_UNSPECIFIED;
-        return role == evod::v1::ROLE_CONTROLLER || role == evod::v1::ROLE_ADMIN || watch.opened_past();
-    }
 
     void record_all() {
         const evod::v1::SnapshotFrame& first = leader().picture()->about;
@@ -110,7 +105,7 @@ class Recorder {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             Watch& watch = panes_[i].watch;
             run_ids_.push_back(watch.picture()->about.run_id());
-            if (steps(watch) && !is_over(watch)) {
+            if (watch.may_command() && !is_over(watch)) {
                 step(watch, watch.picture()->about.tick(), i);
             }
         }
@@ -124,20 +119,20 @@ class Recorder {
             Watch& watch = panes_[i].watch;
             const std::uint64_t tick = watch.picture()->about.tick();
             std::uint64_t target = tick + wanted_.every_ticks;
-            if (watch.recording() != nullptr && steps(watch)) {
+            if (watch.recording() != nullptr && watch.may_command()) {
                 target = std::min(target, watch.recording()->last_tick());
             }
             if (is_over(watch) || target <= tick) {
                 if (i == 0) {
                     return false;
                 }
-            } else if (steps(watch)) {
+            } else if (watch.may_command()) {
                 step(watch, target, i);
             } else if (i == 0) {
                 targets_[i] = target;
             }
         }
-        return wait_until([&] { return all_arrived(); }, steps(leader()));
+        return wait_until([&] { return all_arrived(); }, leader().may_command());
     }
 
     /// A tick that is over already only stops the world; where, is told by the answer.
@@ -207,7 +202,7 @@ class Recorder {
     void give_back() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             Watch& watch = panes_[i].watch;
-            if (steps(watch) && watch.recording() == nullptr) {
+            if (watch.may_command() && watch.recording() == nullptr) {
                 evod::v1::Request request;
                 request.mutable_release_lease()->set_world(watch.control().world());
                 watch.ask(std::move(request), [](const auto&) {}); // without a lease there is nothing to give back

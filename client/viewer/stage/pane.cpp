@@ -106,8 +106,7 @@ void Panes::toggle_beside() {
         return;
     }
     const Watch& shown = focused().watch;
-    const bool present = shown.opened_past();
-    wanted_.world = !shown.forked().empty() ? shown.forked() : present ? shown.recording()->past_of() : shown.world();
+    wanted_.world = !shown.forked().empty() ? shown.forked() : shown.present().value_or(shown.world());
     wanted_.island = shown.island();
     wanted_.all_islands = shown.all_islands();
     const bool same = wanted_.world == shown.world();

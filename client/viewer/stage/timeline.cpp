@@ -203,8 +203,7 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
 }
 
 void Timeline::build_fork(Watch& watch) {
-    const auto status = watch.connection_status();
-    const bool may = status.welcome && status.welcome->role() == evod::v1::ROLE_ADMIN;
+    const bool may = watch.may_create();
     ImGui::BeginDisabled(!may);
     if (widgets::button("Fork …")) {
         ImGui::OpenPopup("fork");

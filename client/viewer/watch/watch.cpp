@@ -3,6 +3,7 @@
 #include "client/viewer/watch/readout.h"
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 namespace evod::viewer {
@@ -18,9 +19,15 @@ link::Options as_evoview(link::Options options) {
     return options;
 }
 
+std::uint64_t next_place_number() {
+    static std::atomic<std::uint64_t> numbers{0};
+    return ++numbers;
+}
+
 } // namespace
 
-Watch::Watch(Wanted wanted) : wanted_{std::move(wanted)}, connection_{as_evoview(wanted_.connection)} {
+Watch::Watch(Wanted wanted)
+    : wanted_{std::move(wanted)}, connection_{as_evoview(wanted_.connection)}, place_number_{next_place_number()} {
     events_ = connection_.subscribe(evod::v1::SubscribeEvents{}); // of all worlds: one that is missing may be made
     subscribe();
     if (wanted_.past_generation) {
@@ -61,7 +68,11 @@ void Watch::subscribe_overview() {
 
 void Watch::look_at(std::string world, std::uint32_t island) {
     if (world != wanted_.world) {
+        if (world != present_) {
+            forked_.clear();
+        }
         control_.forget();
+        gene_names_.clear();
         last_generation_.clear();
         unanswered_.clear(); // what they would tell is of the other world
         recording_.reset();
@@ -75,6 +86,7 @@ void Watch::look_at(std::string world, std::uint32_t island) {
     }
     wanted_.world = std::move(world);
     wanted_.island = island;
+    place_number_ = next_place_number();
     selected_.reset();
     pictures_view_.reset();
     subscribe_overview();
@@ -112,6 +124,7 @@ void Watch::choose_island(std::uint32_t island) {
     }
     if (wanted_.all_islands) {
         wanted_.island = island;
+        place_number_ = next_place_number();
         selected_.reset();
     } else {
         look_at(wanted_.world, island);
@@ -176,7 +189,7 @@ void Watch::return_to_present() {
 }
 
 void Watch::seek(evod::v1::RunMoment to) {
-    if (recording_) {
+    if (recording_ && is_allowed()) {
         send_seek(seeks_.ask(std::move(to)));
     }
 }
@@ -217,6 +230,10 @@ void Watch::turn_generations(int by) {
 }
 
 void Watch::fork(const std::string& name) {
+    if (!may_create()) {
+        notices_.push_back("Only the role admin may make worlds");
+        return;
+    }
     evod::v1::Request request;
     request.mutable_fork_world()->set_world(this->name());
     request.mutable_fork_world()->set_name(name);
@@ -263,28 +280,65 @@ bool Watch::is_over() {
     return over;
 }
 
+bool Watch::is_allowed() {
+    if (!may_command()) {
+        notices_.emplace_back(why_only_watching());
+    }
+    return may_command();
+}
+
+/// Sends what the wish comes to. The wish is not asked for before: what it says is taken as done.
+template <class Wish>
+void Watch::command(Wish wish) {
+    if (is_allowed()) {
+        send(wish());
+    }
+}
+
 void Watch::pause_or_resume() {
     if (!is_over()) {
-        send(control_.pause_or_resume());
+        command([this] { return control_.pause_or_resume(); });
     }
 }
 
 void Watch::step(std::uint64_t ticks) {
     if (!is_over()) {
-        send(control_.step(ticks));
+        command([&] { return control_.step(ticks); });
     }
 }
 
 void Watch::run_generations(std::uint64_t generations) {
     if (!is_over()) {
-        send(control_.run_generations(generations));
+        command([&] { return control_.run_generations(generations); });
     }
 }
 
+void Watch::faster() {
+    command([this] { return control_.faster(); });
+}
+
+void Watch::slower() {
+    command([this] { return control_.slower(); });
+}
+
+void Watch::real_time() {
+    command([this] { return control_.real_time(); });
+}
+
+void Watch::max_speed() {
+    command([this] { return control_.max_speed(); });
+}
+
+void Watch::at_factor(double factor) {
+    command([&] { return control_.at_factor(factor); });
+}
+
+void Watch::reset(std::optional<std::uint64_t> seed) {
+    command([&] { return control_.reset(seed); });
+}
+
 std::string_view Watch::why_only_watching() const {
-    return role_ == evod::v1::ROLE_VIEWER && !opened_past()
-               ? "You came as a viewer, who sees everything and changes nothing"
-               : "";
+    return may_command() ? "" : "You came as a viewer, who sees everything and changes nothing";
 }
 
 // ---- what comes ------------------------------------------------------------------------------------------------
@@ -319,6 +373,7 @@ bool Watch::update(link::WorldView::Clock::time_point now) {
     for (auto& picture : pictures) {
         if (control_.known() && picture->about.run_id() != control_.run_id()) {
             ask_state(); // another run has another generation before
+            gene_names_.clear();
         }
         control_.see(picture->about);
         views_[picture->about.island()].add(std::move(picture), now);
@@ -358,6 +413,7 @@ void Watch::take_command_answer(const link::Result<evod::v1::Response>& response
 
 void Watch::see(const evod::v1::WorldInfo& world) {
     control_.see(world);
+    gene_names_.assign(world.gene_names().begin(), world.gene_names().end());
     recording_.reset();
     if (world.has_recording()) {
         recording_ = world.recording();
@@ -398,6 +454,8 @@ void Watch::take_event(const evod::v1::Event& event) {
         }
     } else if (event.event_case() == Kind::kEventsDropped) {
         ask_state();
+    } else if (event.event_case() == Kind::kWorldDeleted && event.world() == forked_) {
+        forked_.clear();
     } else if (event.event_case() == Kind::kWorldCreated && refusal()) {
         look_at(wanted_.world, wanted_.island); // perhaps the one that was missing
     }

@@ -43,18 +43,23 @@ class Watch {
     /// Takes in pictures, events and answers. True if there is a new picture.
     bool update(link::WorldView::Clock::time_point now);
 
-    // Commands.
+    // Commands. Who may not give them sends nothing, and is told why by a notice.
     void pause_or_resume();
     void step(std::uint64_t ticks);
-    void faster() { send(control_.faster()); }
-    void slower() { send(control_.slower()); }
-    void real_time() { send(control_.real_time()); }
-    void max_speed() { send(control_.max_speed()); }
-    void at_factor(double factor) { send(control_.at_factor(factor)); }
+    void faster();
+    void slower();
+    void real_time();
+    void max_speed();
+    void at_factor(double factor);
     void run_generations(std::uint64_t generations);
-    void reset(std::optional<std::uint64_t> seed) { send(control_.reset(seed)); }
-    /// Why this session may not change the world; empty if it may.
+    void reset(std::optional<std::uint64_t> seed);
+    /// Whether this session may run what it looks at; as long as nobody has said no, it may. Its own look at the past
+    /// everybody may.
+    bool may_command() const { return role_ != evod::v1::ROLE_VIEWER || opened_past(); }
+    /// Why not, in a sentence without a full stop; empty if it may.
     std::string_view why_only_watching() const;
+    /// Whether it may make worlds.
+    bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
 
     // For panels.
     using Answer = std::function<void(const link::Result<evod::v1::Response>&)>;
@@ -73,6 +78,9 @@ class Watch {
     void show_all_islands(bool all);
     void next_world();
     void look_at(std::string world, std::uint32_t island);
+    /// Another number, which no other watch has, whenever something else is looked at: another world, its past or its
+    /// present again, another island. What was asked about a place says nothing of the next.
+    std::uint64_t place_number() const { return place_number_; }
 
     /// The organism that panels tell of and the camera may follow: an id of the generation that runs.
     void select(std::optional<std::uint32_t> organism) { selected_ = organism; }
@@ -89,12 +97,14 @@ class Watch {
     const evod::v1::Recording* recording() const { return recording_ ? &*recording_ : nullptr; }
     /// Whether the past is one that return_to_present() leaves.
     bool opened_past() const { return present_.has_value(); }
+    /// The world that return_to_present() leads to; nullopt: no past was opened.
+    const std::optional<std::string>& present() const { return present_; }
     /// Where a seek is going to; null if none is under way.
     const evod::v1::RunMoment* sought() const { return seeks_.target(); }
 
     /// A new world from the moment that is shown.
     void fork(const std::string& name);
-    /// The newest fork made here; empty: none.
+    /// The newest fork made of what is shown, of its past or of its present; empty: none that is still there.
     const std::string& forked() const { return forked_; }
 
     // What is known.
@@ -108,6 +118,8 @@ class Watch {
     /// How many there are where on all of the island, now and then, while a view is set; else null.
     const std::shared_ptr<const wire::Picture>& overview() const { return overview_picture_; }
     const RunControl& control() const { return control_; }
+    /// Of the run that is shown, in the order of genes everywhere; empty while nobody has told.
+    const std::vector<std::string>& gene_names() const { return gene_names_; }
     /// Of the generation before, on this island; null in the first.
     const evod::v1::GenerationStatistics* last_generation() const;
     const std::string& world() const { return wanted_.world; } // empty: the server's choice
@@ -135,6 +147,9 @@ class Watch {
     void subscribe();
     void subscribe_overview();
     void send(std::optional<evod::v1::Request> request);
+    bool is_allowed();
+    template <class Wish>
+    void command(Wish wish);
     void ask_state();
     void see(const evod::v1::WorldInfo& world);
     void send_seek(std::optional<evod::v1::RunMoment> to);
@@ -155,6 +170,8 @@ class Watch {
     std::optional<evod::v1::View> pictures_view_;
     std::map<std::uint32_t, link::WorldView> views_; // by island
     RunControl control_;
+    std::vector<std::string> gene_names_;
+    std::uint64_t place_number_;
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
     evod::v1::Storage storage_;
     std::vector<Unanswered> unanswered_;

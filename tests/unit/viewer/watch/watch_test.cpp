@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
 #include <thread>
 
 namespace evod::viewer {
@@ -33,8 +34,13 @@ struct WatchTest : testing::Test {
     }
 
     /// Welcomes the viewer and answers its subscriptions, the pictures as number 7; its question comes next.
-    link::FakeSession begin(Watch&) {
-        link::FakeSession session = server.accept_and_welcome();
+    link::FakeSession begin(Watch&, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
+        link::FakeSession session = server.accept();
+        EXPECT_TRUE(session.read().has_hello());
+        evod::v1::ServerMessage welcome;
+        welcome.mutable_welcome()->set_protocol_version(1);
+        welcome.mutable_welcome()->set_role(role);
+        session.send(welcome);
         const auto events = session.read_request();
         EXPECT_TRUE(events.has_subscribe_events());
         session.answer_subscription(events, 6);
@@ -134,6 +140,67 @@ TEST_F(WatchTest, ARefusedCommandIsToldAndTheStateIsAskedFor) {
     answer_statistics(session, session.read_request());
     until(watch, [&] { return watch.all_answered(); });
     EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_RUNNING);
+}
+
+TEST_F(WatchTest, AViewersCommandsAreNotSentAndTheReasonIsTold) {
+    Watch watch{wanted()};
+    auto session = begin(watch, evod::v1::ROLE_VIEWER);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    until(watch, [&] { return watch.all_answered(); });
+    EXPECT_FALSE(watch.may_command());
+    EXPECT_FALSE(watch.may_create());
+    watch.pause_or_resume();
+    watch.step(1);
+    watch.faster();
+    watch.slower();
+    watch.real_time();
+    watch.max_speed();
+    watch.at_factor(2);
+    watch.run_generations(1);
+    watch.reset(std::nullopt);
+    EXPECT_TRUE(watch.all_answered()) << "nothing was sent";
+    EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_RUNNING) << "and nothing is taken as done";
+    EXPECT_THAT(watch.take_notices(), testing::AllOf(testing::SizeIs(9), testing::Each(watch.why_only_watching())));
+    watch.fork("other");
+    EXPECT_TRUE(watch.all_answered());
+    EXPECT_THAT(watch.take_notices(), ElementsAre("Only the role admin may make worlds"));
+}
+
+TEST_F(WatchTest, EveryPlaceHasANumberThatNoOtherHas) {
+    Watch watch{wanted()}, beside{wanted()};
+    std::set<std::uint64_t> numbers{watch.place_number(), beside.place_number()};
+    const auto add = [&] { numbers.insert(watch.place_number()); };
+    watch.choose_island(2);
+    add();
+    watch.choose_island(2);
+    add(); // the same
+    watch.look_at("default", 2);
+    add();
+    watch.show_all_islands(true);
+    add();
+    watch.choose_island(0);
+    add();
+    EXPECT_EQ(numbers.size(), 6u);
+}
+
+TEST_F(WatchTest, KnowsTheGenesOfTheRunThatIsShown) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    until(watch, [&] { return session.unread_bytes() > 0; });
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(session.read_request().request_id());
+    auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
+    world = info("default", evod::v1::RUN_STATE_RUNNING);
+    world.add_gene_names("impulse");
+    session.send(message);
+    until(watch, [&] { return watch.all_answered(); });
+    EXPECT_THAT(watch.gene_names(), ElementsAre("impulse"));
+    watch.look_at("default", 2);
+    EXPECT_THAT(watch.gene_names(), ElementsAre("impulse")) << "of any of its islands";
+    watch.look_at("other", 0);
+    EXPECT_THAT(watch.gene_names(), ElementsAre());
 }
 
 TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
@@ -336,8 +403,8 @@ struct PastTest : WatchTest {
         }
     }
     /// Watches the past, with pictures as subscription 9.
-    link::FakeSession look_back(Watch& watch) {
-        auto session = begin(watch);
+    link::FakeSession look_back(Watch& watch, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
+        auto session = begin(watch, role);
         send_picture(session, 7, 1, 850);
         until(watch, [&] { return watch.picture() != nullptr; });
         answer_statistics(session, session.read_request());
@@ -438,6 +505,35 @@ TEST_F(PastTest, AForkIsMadeFromWhatIsShown) {
     EXPECT_FALSE(fork.fork_world().has_at_generation());
     answer_with(session, fork, info("other", evod::v1::RUN_STATE_WAITING));
     until(watch, [&] { return watch.forked() == "other"; });
+    watch.return_to_present();
+    EXPECT_EQ(watch.forked(), "other") << "still beside it";
+    watch.look_at("elsewhere", 0);
+    EXPECT_EQ(watch.forked(), "");
+}
+
+TEST_F(PastTest, AForkThatIsDeletedIsForgotten) {
+    Watch watch{wanted()};
+    auto session = look_back(watch);
+    watch.fork("other");
+    answer_with(session, next(session), info("other", evod::v1::RUN_STATE_WAITING));
+    until(watch, [&] { return watch.forked() == "other"; });
+    evod::v1::ServerMessage deleted;
+    deleted.mutable_event()->set_world("other");
+    deleted.mutable_event()->mutable_world_deleted()->set_by("somebody");
+    session.send(deleted);
+    until(watch, [&] { return watch.forked().empty(); });
+}
+
+TEST_F(PastTest, AViewerMayRunItsOwnLookAtThePast) {
+    Watch watch{wanted()};
+    auto session = look_back(watch, evod::v1::ROLE_VIEWER);
+    EXPECT_TRUE(watch.may_command());
+    evod::v1::RunMoment moment;
+    moment.set_tick(200);
+    watch.seek(moment);
+    EXPECT_EQ(next(session).seek().to().tick(), 200u);
+    watch.return_to_present();
+    EXPECT_FALSE(watch.may_command());
 }
 
 } // namespace
