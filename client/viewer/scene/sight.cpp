@@ -1,7 +1,5 @@
 #include "client/viewer/scene/sight.h"
 
-#include "client/viewer/watch/readout.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -9,10 +7,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr std::chrono::milliseconds poll{250};     // of what changes all the time
-constexpr std::chrono::seconds after_refusal{2};   // until it is asked again
-constexpr std::chrono::seconds given_up_after{15}; // longer than any answer takes
-constexpr double dots_radius_pixels = 2;           // smaller than this, nobody's own size is seen
+constexpr double dots_radius_pixels = 2; // smaller than this, nobody's own size is seen
 
 } // namespace
 
@@ -62,122 +57,64 @@ void Sight::stream(Watch& watch, const Camera& camera, Clock::time_point now) {
 
 // ---- questions -------------------------------------------------------------------------------------------------
 
-bool Sight::Question::due(Clock::time_point now) const {
-    return pending ? now - asked > given_up_after : now >= next;
-}
-
-void Sight::Question::ask(Clock::time_point now) {
-    pending = true;
-    asked = now;
-}
-
-void Sight::Question::answered(Clock::duration until_next) {
-    pending = false;
-    next = Clock::now() + until_next;
-}
-
-/// `handler` hears the answer, unless another place is looked at by then.
-void Sight::ask(Watch& watch, evod::v1::Request request, Question& question, Watch::Answer handler) {
-    question.ask(Clock::now());
-    watch.ask(std::move(request), [here = std::weak_ptr{here_}, handler = std::move(handler)](const auto& response) {
-        if (!here.expired()) {
-            handler(response);
-        }
-    });
-}
-
-void Sight::ask_names(Watch& watch) {
-    evod::v1::Request request;
-    request.mutable_get_statistics()->set_world(watch.world());
-    ask(watch, std::move(request), names_, [this](const link::Result<evod::v1::Response>& response) {
-        names_.answered(after_refusal);
-        if (response && response->statistics().world().run_id() == place_.run_id) {
-            const auto& names = response->statistics().world().gene_names();
-            gene_names_.assign(names.begin(), names.end());
-        }
-    });
-}
-
-void Sight::ask_page(Watch& watch) {
-    evod::v1::Request request;
-    request.mutable_get_population()->set_world(watch.world());
-    request.mutable_get_population()->set_island(watch.island());
-    request.mutable_get_population()->set_first_organism(coming_.next());
-    watch.ask(std::move(request),
-              [this, &watch, here = std::weak_ptr{here_}](const link::Result<evod::v1::Response>& response) {
-                  if (!here.expired()) {
-                      take_page(watch, response);
-                  }
-              });
-}
-
-void Sight::take_page(Watch& watch, const link::Result<evod::v1::Response>& response) {
-    if (!response || !response->has_population()) {
-        refused_ = response && response->status().code() == evod::v1::CODE_UNIMPLEMENTED;
-        trouble_ = !response  ? response.error().what
-                   : refused_ ? "This server does not tell of genes, lineages and forces; a newer one does"
-                              : shown_refusal(response->status());
-        return pages_.answered(after_refusal);
-    }
-    const evod::v1::Population& page = response->population();
-    if (coming_.next() > 0 && page.generation() != coming_.generation()) { // it ended in between
-        coming_ = Population{gene_names_.size()};
-        return ask_page(watch);
-    }
-    if (const auto wrong = coming_.add(page)) {
-        trouble_ = "The server's answer cannot be read: " + *wrong;
-        return pages_.answered(after_refusal);
-    }
-    if (!coming_.whole()) {
-        return ask_page(watch);
-    }
-    trouble_.clear();
-    population_ = std::move(coming_);
-    family_colours_.see(*population_);
-    if (story_) {
-        story_->take(*population_);
-    }
-    // A large one takes its time, of which most is left to pictures.
-    pages_.answered(std::max<Clock::duration>(poll, 4 * (Clock::now() - pages_.asked)));
-}
-
-void Sight::ask_organism(Watch& watch) {
-    organism_tick_ = tick_;
-    evod::v1::Request request;
-    request.mutable_get_organism()->set_world(watch.world());
-    request.mutable_get_organism()->set_island(watch.island());
-    request.mutable_get_organism()->set_organism(story_->id());
-    ask(watch, std::move(request), organism_, [this](const link::Result<evod::v1::Response>& response) {
-        organism_.answered(poll);
-        if (response && response->has_organism() && story_) {
-            story_->take(response->organism());
-        }
-    });
+PopulationInquiry::Of Sight::population_of(const Watch& watch) const {
+    return {watch.world(), place_.run_id, watch.island(), gene_names_.size()};
 }
 
 bool Sight::needs_population() const {
     const bool current_needed =
         shown.colour_by == ColourBy::Gene || shown.colour_by == ColourBy::Lineage || shown.radii || shown.forces ||
         (story_ && (story_->waits_for_children() || (!story_->ended() && story_->ranges().empty())));
-    if (!current_needed || refused_ || gene_names_.empty()) {
+    if (!current_needed || population_.is_unknown() || gene_names_.empty()) {
         return false;
     }
-    return !population_ || !current() || (shown.forces && population_tick_ != tick_);
+    return population() == nullptr || (shown.forces && population_tick_ != tick_);
+}
+
+void Sight::take_population() {
+    const Population* whole = population_.whole();
+    if (whole == nullptr) {
+        return;
+    }
+    if (taken_count_ != population_.whole_count()) {
+        taken_count_ = population_.whole_count();
+        family_colours_.see(*whole);
+    }
+    if (story_) {
+        story_->take(*whole);
+    }
+}
+
+void Sight::ask_organism(Watch& watch, Clock::time_point now) {
+    organism_tick_ = tick_;
+    evod::v1::Request request;
+    request.mutable_get_organism()->set_world(watch.world());
+    request.mutable_get_organism()->set_island(watch.island());
+    request.mutable_get_organism()->set_organism(story_->id());
+    organism_.ask(watch, std::move(request), now, [this](const evod::v1::Response* response) {
+        if (response != nullptr && story_) {
+            story_->take(response->organism());
+        }
+    });
 }
 
 // ---- what is seen ----------------------------------------------------------------------------------------------
 
+void Sight::forget() {
+    Sight fresh;
+    fresh.shown = shown;
+    *this = std::move(fresh);
+}
+
 void Sight::see(Watch& watch, const std::shared_ptr<const wire::Picture>& picture) {
     const auto& about = picture->about;
-    if (const Place place{about.run_id(), about.island()}; place != place_) {
-        if (!place_.run_id.empty()) {
+    if (place_.run_id != about.run_id()) {
+        if (!place_.run_id.empty()) { // it was reset
             watch.select(std::nullopt);
             watch.set_view(std::nullopt);
+            forget();
         }
-        Sight fresh;
-        fresh.shown = shown;
-        *this = std::move(fresh);
-        place_ = place;
+        place_ = {watch.place_number(), about.run_id()};
     }
     seen_ = picture;
     generation_ = about.generation();
@@ -192,6 +129,10 @@ void Sight::see(Watch& watch, const std::shared_ptr<const wire::Picture>& pictur
 }
 
 void Sight::update(Watch& watch, const Camera& camera, Clock::time_point now) {
+    if (place_.number != watch.place_number()) {
+        forget();
+        place_.number = watch.place_number();
+    }
     const auto& picture = watch.view().latest();
     if (!picture) {
         return;
@@ -199,26 +140,22 @@ void Sight::update(Watch& watch, const Camera& camera, Clock::time_point now) {
     if (picture != seen_) {
         see(watch, picture);
     }
+    if (gene_names_ != watch.gene_names()) {
+        gene_names_ = watch.gene_names();
+    }
     if (const auto selected = watch.selected(); selected && (!story_ || story_->id() != *selected || story_->ended())) {
         story_.emplace(*selected, generation_);
         story_->see(*picture);
-        organism_ = {};
+        organism_.forget();
         organism_tick_ = ~std::uint64_t{0};
     }
-    if (story_ && population_) {
-        story_->take(*population_);
-    }
-    if (gene_names_.empty() && names_.due(now)) {
-        ask_names(watch);
-    }
-    if (needs_population() && pages_.due(now)) {
+    take_population();
+    if (population_.update(watch, population_of(watch), needs_population(), now)) {
         population_tick_ = tick_;
-        pages_.ask(Clock::now());
-        coming_ = Population{gene_names_.size()};
-        ask_page(watch);
     }
-    if (story_ && !story_->ended() && !story_->dead() && organism_tick_ != tick_ && organism_.due(now)) {
-        ask_organism(watch);
+    const bool alive = story_ && !story_->ended() && !story_->dead();
+    if (organism_.due(watch, now) && alive && organism_tick_ != tick_) {
+        ask_organism(watch, now);
     }
     stream(watch, camera, now);
 }

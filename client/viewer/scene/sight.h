@@ -7,7 +7,7 @@
 
 #include "client/viewer/scene/marks.h"
 #include "client/viewer/watch/organism_story.h"
-#include "client/viewer/watch/population.h"
+#include "client/viewer/watch/population_inquiry.h"
 #include "client/viewer/watch/watch.h"
 
 #include <chrono>
@@ -68,9 +68,12 @@ class Sight {
     // What is known.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
     /// Of the generation and island that the picture shows; null while it is not known.
-    const Population* population() const { return population_ && current() ? &*population_ : nullptr; }
+    const Population* population() const {
+        const Population* whole = population_.whole();
+        return whole != nullptr && whole->generation() == generation_ ? whole : nullptr;
+    }
     /// Why it is not known; empty if it is, or comes.
-    const std::string& trouble() const { return trouble_; }
+    std::string trouble() const { return population_.trouble(); }
     const FamilyColours& family_colours() const { return family_colours_; }
     const Trails& trails() const { return trails_; }
     /// Of the organism that was selected last, also when its generation is over; null: none was.
@@ -81,45 +84,31 @@ class Sight {
     }
 
   private:
+    static constexpr std::chrono::milliseconds poll{250}; // of what changes all the time
+
     /// What is looked at; with another one everything is forgotten.
     struct Place {
-        std::string run_id;
-        std::uint32_t island = 0;
+        std::uint64_t number = 0; // of the watch
+        std::string run_id;       // empty before the first picture
         friend bool operator==(const Place&, const Place&) = default;
     };
-    /// Something that is asked for now and then.
-    struct Question {
-        bool pending = false;
-        Clock::time_point asked{}, next{};
-
-        /// Whether it may be asked. One that is not answered for long never will be.
-        bool due(Clock::time_point now) const;
-        void ask(Clock::time_point now);
-        void answered(Clock::duration until_next);
-    };
-
-    bool current() const { return population_->generation() == generation_; }
+    PopulationInquiry::Of population_of(const Watch& watch) const;
     bool needs_population() const;
+    void forget();
     void see(Watch& watch, const std::shared_ptr<const wire::Picture>& picture);
-    void ask(Watch& watch, evod::v1::Request request, Question& question, Watch::Answer handler);
-    void ask_names(Watch& watch);
-    void ask_page(Watch& watch);
-    void take_page(Watch& watch, const link::Result<evod::v1::Response>& response);
-    void ask_organism(Watch& watch);
+    void take_population();
+    void ask_organism(Watch& watch, Clock::time_point now);
     void stream(Watch& watch, const Camera& camera, Clock::time_point now);
 
     Place place_;
-    std::uint64_t generation_ = 0, tick_ = 0;             // of the picture
-    std::shared_ptr<const wire::Picture> seen_;           // the last picture that was taken in
-    std::shared_ptr<int> here_ = std::make_shared<int>(); // answers to what was asked of another place find it gone
+    std::uint64_t generation_ = 0, tick_ = 0;   // of the picture
+    std::shared_ptr<const wire::Picture> seen_; // the last picture that was taken in
 
     std::vector<std::string> gene_names_;
-    std::optional<Population> population_; // whole
-    Population coming_;
-    Question names_, pages_, organism_;
+    PopulationInquiry population_{poll};
+    Inquiry organism_{poll};
+    std::uint64_t taken_count_ = 0;                         // of whole populations
     std::uint64_t population_tick_ = 0, organism_tick_ = 0; // of the picture that was shown as they were asked for
-    std::string trouble_;
-    bool refused_ = false; // by a server that does not know the question
     FamilyColours family_colours_;
     Trails trails_;
     std::optional<OrganismStory> story_;

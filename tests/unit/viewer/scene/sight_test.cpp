@@ -82,7 +82,7 @@ struct SightTest : testing::Test {
         for (std::uint32_t id : {6u, 7u}) { // events, pictures
             session->answer_subscription(session->read_request(), id);
         }
-        session->answer(next_request()); // how things stand
+        answer_state("default");
     }
 
     /// Updates until the condition holds; fails if it does not within some seconds.
@@ -102,13 +102,13 @@ struct SightTest : testing::Test {
         return session->read_request();
     }
     void show(std::uint64_t generation, std::uint64_t tick, const std::string& run_id = "a",
-              std::uint32_t subscription_id = 7, std::uint32_t born = 3) {
+              std::uint32_t subscription_id = 7, std::uint32_t born = 3, const std::string& world = "default") {
         const std::array<std::uint32_t, 3> ids{0, 1, 2};
         const std::array<std::int32_t, 3> x{100 << 12, 200 << 12, 300 << 12};
         const std::array<float, 3> radius{10, 10, 10}, health{50, 60, 70};
         evod::v1::SnapshotFrame frame;
         wire::encode({.width_px = 1000, .height_px = 1000, .organisms = {ids, x, x, radius, health}}, frame);
-        frame.set_world("default");
+        frame.set_world(world);
         frame.set_run_id(run_id);
         frame.set_subscription_id(subscription_id);
         frame.set_island(1);
@@ -121,17 +121,35 @@ struct SightTest : testing::Test {
         session->send(frame);
         until([&] { return watch->picture() && watch->picture()->about.tick() == tick; });
     }
-    void answer_names(const std::string& run_id = "a") {
+    /// Answers how things stand.
+    void answer_state(const std::string& world) {
         const auto request = next_request();
-        ASSERT_TRUE(request.has_get_statistics());
+        ASSERT_TRUE(request.has_get_statistics()) << request.DebugString();
         evod::v1::ServerMessage message;
         message.mutable_response()->set_request_id(request.request_id());
-        auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
-        world.set_run_id(run_id);
-        world.add_gene_names("impulse");
-        world.add_gene_names("food_radius");
+        auto& told = *message.mutable_response()->mutable_statistics()->mutable_world();
+        told.set_name(world);
+        told.set_run_id("a");
+        told.set_state(evod::v1::RUN_STATE_RUNNING);
+        told.add_gene_names("impulse");
+        told.add_gene_names("food_radius");
         session->send(message);
-        until([&] { return sight.gene_names().size() == 2; });
+        until([&] { return watch->all_answered() && watch->gene_names().size() == 2; });
+    }
+    /// Another place with the same run, of which pictures come as subscription 8.
+    void look_at_the_past() {
+        watch->look_at("default@3", 1);
+        for (bool subscribed = false; !subscribed;) {
+            const auto request = next_request();
+            subscribed = request.subscribe_snapshots().world() == "default@3";
+            if (subscribed) {
+                EXPECT_FALSE(request.subscribe_snapshots().has_view());
+            }
+            if (request.has_subscribe_snapshots()) {
+                session->answer_subscription(request, subscribed ? 8 : 10);
+            }
+        }
+        answer_state("default@3");
     }
     evod::v1::Request answer_page(std::uint32_t count, std::uint64_t generation) {
         const auto request = next_request();
@@ -154,7 +172,6 @@ struct SightTest : testing::Test {
 
 TEST_F(SightTest, APopulationIsAskedForOnceAGenerationInPagesAndOnlyIfItIsNeeded) {
     show(4, 100);
-    answer_names();
     sight.shown.colour_by = ColourBy::Gene;
     EXPECT_EQ(answer_page(2, 4).get_population().first_organism(), 0u);
     EXPECT_EQ(sight.population(), nullptr);
@@ -171,7 +188,6 @@ TEST_F(SightTest, APopulationIsAskedForOnceAGenerationInPagesAndOnlyIfItIsNeeded
 
 TEST_F(SightTest, APopulationOfWhichTheGenerationEndsBetweenPagesIsBegunAnew) {
     show(4, 100);
-    answer_names();
     sight.shown.colour_by = ColourBy::Lineage;
     answer_page(2, 4);
     answer_page(1, 5);
@@ -182,7 +198,6 @@ TEST_F(SightTest, APopulationOfWhichTheGenerationEndsBetweenPagesIsBegunAnew) {
 
 TEST_F(SightTest, ForcesAreAskedForAgainWhileTheWorldGoesOn) {
     show(4, 100);
-    answer_names();
     sight.shown.forces = true;
     answer_page(3, 4);
     until([&] { return sight.population() != nullptr; });
@@ -193,7 +208,6 @@ TEST_F(SightTest, ForcesAreAskedForAgainWhileTheWorldGoesOn) {
 
 TEST_F(SightTest, AServerThatDoesNotKnowTheQuestionIsAskedOnce) {
     show(4, 100);
-    answer_names();
     sight.shown.radii = true;
     session->refuse(next_request().request_id(), evod::v1::CODE_UNIMPLEMENTED, "what?");
     until([&] { return !sight.trouble().empty(); });
@@ -205,7 +219,6 @@ TEST_F(SightTest, AServerThatDoesNotKnowTheQuestionIsAskedOnce) {
 
 TEST_F(SightTest, AnAnswerThatCannotBeReadIsTold) {
     show(4, 100);
-    answer_names();
     sight.shown.radii = true;
     const auto request = next_request();
     evod::v1::ServerMessage message;
@@ -219,7 +232,6 @@ TEST_F(SightTest, AnAnswerThatCannotBeReadIsTold) {
 
 TEST_F(SightTest, TheSelectedOneIsAskedForAndIsNobodyAnyMoreWhenItsGenerationIsOver) {
     show(4, 100);
-    answer_names();
     watch->select(2);
     bool asked_population = false, asked_organism = false;
     while (!asked_population || !asked_organism) {
@@ -278,7 +290,6 @@ TEST_F(SightTest, FollowingKeepsTheSelectedOneInTheMiddleUntilAHandMovesThePictu
 
 TEST_F(SightTest, AnotherRunIsKnownNothingOf) {
     show(4, 100);
-    answer_names();
     sight.shown.colour_by = ColourBy::Gene;
     watch->select(2);
     until([&] { return sight.story() != nullptr; });
@@ -289,9 +300,38 @@ TEST_F(SightTest, AnotherRunIsKnownNothingOf) {
     EXPECT_EQ(sight.shown.colour_by, ColourBy::Gene) << "the switches stay";
 }
 
+TEST_F(SightTest, WhatWasAskedOfThePresentIsNotWaitedForInThePast) {
+    show(4, 100);
+    sight.shown.radii = true;
+    const auto unanswered = next_request();
+    EXPECT_EQ(unanswered.get_population().world(), "default");
+    look_at_the_past();
+    show(4, 100, "a", 8, 3, "default@3");
+    const auto request = answer_page(3, 4);
+    EXPECT_EQ(request.get_population().world(), "default@3");
+    until([&] { return sight.population() != nullptr; });
+}
+
+TEST_F(SightTest, AlsoThePastOfALargeIslandIsStreamedInPart) {
+    show(4, 100, "a", 7, Sight::streamed_in_part_min);
+    const auto view_asked = [&](const std::string& world) {
+        for (;;) {
+            const auto request = next_request();
+            if (request.has_subscribe_snapshots() && request.subscribe_snapshots().view().has_region()) {
+                EXPECT_EQ(request.subscribe_snapshots().world(), world);
+                return session->answer_subscription(request, 9);
+            }
+            request.has_subscribe_snapshots() ? session->answer_subscription(request, 10) : session->answer(request);
+        }
+    };
+    view_asked("default");
+    look_at_the_past();
+    show(4, 101, "a", 8, Sight::streamed_in_part_min, "default@3");
+    view_asked("default@3");
+}
+
 TEST_F(SightTest, SmallIslandsAreShownWholeAndOfLargeOnesWhatIsSeen) {
     show(4, 100);
-    answer_names();
     EXPECT_EQ(session->unread_bytes(), 0u);
     show(4, 101, "a", 7, Sight::streamed_in_part_min);
     std::optional<evod::v1::View> seen, overview;
