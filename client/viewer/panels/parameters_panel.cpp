@@ -69,34 +69,38 @@ std::span<const Panel::Key> ParametersPanel::keys() const {
 
 void ParametersPanel::build(Context& context) {
     Watch& watch = context.watch;
-    follow(watch, context.shown_anew);
+    follow(context);
+    std::string_view why = watch.why_only_watching();
+    if (watch.recording() != nullptr) {
+        why = "This world shows the past, which stays as it was.";
+    }
+    const bool may = why.empty();
+    apply_ = apply_ && may;
     if (apply_ && !edits_.busy()) {
         apply_ = false;
-        send(watch, edits_.apply(watch.name()));
+        send(context, edits_.apply(watch.name()));
     }
-    if (!problem_.empty()) {
-        widgets::say(problem_, palette::warning);
+    for (const Inquiry* inquiry : {&registry_inquiry_, &values_inquiry_}) {
+        if (!inquiry->trouble().empty()) {
+            widgets::say(inquiry->trouble(), palette::warning);
+        }
     }
     if (!edits_.known()) {
         widgets::say("Asking the server for its parameters …");
         return;
     }
-    std::string_view why = watch.why_only_watching();
-    if (watch.recording() != nullptr) {
-        why = "This world shows the past, which stays as it was.";
-    }
     const float scale = context.gui.scale();
     if (!why.empty()) {
         widgets::say(why, palette::stopped);
     }
-    ImGui::BeginDisabled(!why.empty());
-    build_head(watch, scale);
+    ImGui::BeginDisabled(!may);
+    build_head(context, may);
     ImGui::EndDisabled();
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search: name, unit or meaning", search_.data(), search_.size());
     widgets::mark("Search");
     ImGui::BeginChild("rows");
-    ImGui::BeginDisabled(!why.empty());
+    ImGui::BeginDisabled(!may);
     build_rows(scale);
     ImGui::EndDisabled();
     ImGui::EndChild();
@@ -104,17 +108,24 @@ void ParametersPanel::build(Context& context) {
 
 // ---- the server ------------------------------------------------------------------------------------------------
 
-void ParametersPanel::follow(Watch& watch, bool shown_anew) {
+void ParametersPanel::follow(const Context& context) {
     using Kind = evod::v1::Event::EventCase;
-    if (watch.world() != world_ || watch.control().run_id() != run_id_) { // what was asked before may stay unanswered
+    const Watch& watch = context.watch;
+    if (watch.world() != world_ || watch.control().run_id() != run_id_) {
         world_ = watch.world();
         run_id_ = watch.control().run_id();
         edits_.forget();
-        ++run_number_;
-        asked_ = apply_ = false;
+        values_inquiry_.forget();
+        ++transaction_;
+        apply_ = false;
         stale_ = true;
     }
-    stale_ = stale_ || shown_anew;
+    const std::uint64_t connected_count = watch.connection_status().connected_count;
+    // What has changed meanwhile nobody has told.
+    stale_ =
+        stale_ || context.shown_anew || watch.place_number() != place_number_ || connected_count != connected_count_;
+    place_number_ = watch.place_number();
+    connected_count_ = connected_count;
     for (const evod::v1::Event& event : watch.events()) {
         if (event.event_case() == Kind::kEventsDropped) {
             stale_ = true;
@@ -126,57 +137,61 @@ void ParametersPanel::follow(Watch& watch, bool shown_anew) {
             stale_ = stale_ || edits_.has_pending(); // it holds now
         }
     }
-    if (stale_ && !asked_) {
-        ask(watch);
+    if (edits_.busy() && context.now - sent_ > Inquiry::patience) { // no answer will come any more
+        ++transaction_;
+        stale_ = edits_.answered(nullptr);
     }
+    ask(context);
 }
 
-void ParametersPanel::ask(Watch& watch) {
-    stale_ = false;
-    asked_ = true;
-    if (edits_.registry().empty()) {
-        evod::v1::Request describe;
-        describe.mutable_describe();
-        watch.ask(std::move(describe), [this](const auto& response) {
-            if (response && response->has_description()) {
-                const auto& registry = response->description().parameters();
-                edits_.describe({registry.begin(), registry.end()});
-                groups_ = group(edits_.registry());
+void ParametersPanel::ask(const Context& context) {
+    if (registry_inquiry_.due(context.watch, context.now) && edits_.registry().empty()) {
+        evod::v1::Request request;
+        request.mutable_describe();
+        registry_inquiry_.ask(context.watch, std::move(request), context.now,
+                              [this](const evod::v1::Response* response) {
+                                  if (response != nullptr) {
+                                      const auto& registry = response->description().parameters();
+                                      edits_.describe({registry.begin(), registry.end()});
+                                      groups_ = group(edits_.registry());
+                                      stale_ = true;
+                                  }
+                              });
+    }
+    const bool wanted = stale_ || values_inquiry_.under_way(); // for too long, if it is due
+    if (values_inquiry_.due(context.watch, context.now) && wanted && !edits_.registry().empty()) {
+        stale_ = false;
+        evod::v1::Request request;
+        request.mutable_get_parameters()->set_world(context.watch.world());
+        values_inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+            if (response != nullptr) {
+                edits_.see(response->parameters());
+            } else {
+                stale_ = true;
             }
         });
     }
-    evod::v1::Request request;
-    request.mutable_get_parameters()->set_world(watch.world());
-    watch.ask(std::move(request), [this, run_number = run_number_](const auto& response) {
-        if (run_number != run_number_) {
-            return;
-        }
-        asked_ = false;
-        problem_ = !response                    ? response.error().what
-                   : !link::accepted(*response) ? shown_refusal(response->status())
-                                                : "";
-        if (problem_.empty()) {
-            edits_.see(response->parameters());
-        }
-    });
 }
 
-void ParametersPanel::send(Watch& watch, std::optional<evod::v1::Request> request) {
+void ParametersPanel::send(const Context& context, std::optional<evod::v1::Request> request) {
     if (request) {
-        watch.ask(*std::move(request), [this, run_number = run_number_](const auto& response) {
-            if (run_number != run_number_) {
-                return;
+        sent_ = context.now;
+        context.watch.ask(*std::move(request), [this, transaction = ++transaction_](const auto& response) {
+            if (transaction == transaction_) {
+                stale_ = edits_.answered(response ? &*response : nullptr) || stale_;
             }
-            stale_ = edits_.answered(response ? &*response : nullptr) || stale_;
         });
     }
 }
 
 // ---- what is drawn ---------------------------------------------------------------------------------------------
 
-void ParametersPanel::build_head(Watch& watch, float scale) {
+void ParametersPanel::build_head(const Context& context, bool may) {
+    const Watch& watch = context.watch;
+    const float scale = context.gui.scale();
     const ImGuiIO& io = ImGui::GetIO();
-    const bool keys = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !io.WantTextInput && io.KeyCtrl;
+    const bool keys =
+        may && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !io.WantTextInput && io.KeyCtrl;
     const bool undo_key = keys && ImGui::IsKeyPressed(sf::Keyboard::Z, false) && !io.KeyShift;
     const bool redo_key = keys && (ImGui::IsKeyPressed(sf::Keyboard::Y, false) ||
                                    (ImGui::IsKeyPressed(sf::Keyboard::Z, false) && io.KeyShift));
@@ -194,14 +209,14 @@ void ParametersPanel::build_head(Watch& watch, float scale) {
     ImGui::SameLine(0, 20 * scale);
     ImGui::BeginDisabled(!edits_.can_undo());
     if (widgets::button("Undo") || (undo_key && edits_.can_undo())) {
-        send(watch, edits_.undo(watch.name()));
+        send(context, edits_.undo(watch.name()));
     }
     widgets::explain("Ctrl+Z: the values before your last change, but for what others have changed since.");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!edits_.can_redo());
     if (widgets::button("Redo") || (redo_key && edits_.can_redo())) {
-        send(watch, edits_.redo(watch.name()));
+        send(context, edits_.redo(watch.name()));
     }
     widgets::explain("Ctrl+Shift+Z");
     ImGui::EndDisabled();

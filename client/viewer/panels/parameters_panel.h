@@ -7,6 +7,7 @@
 #pragma once
 
 #include "client/viewer/panels/panel.h"
+#include "client/viewer/watch/inquiry.h"
 #include "client/viewer/watch/parameter_edits.h"
 
 #include <array>
@@ -23,11 +24,11 @@ class ParametersPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    void follow(Watch& watch, bool shown_anew);
-    void ask(Watch& watch);
-    void send(Watch& watch, std::optional<evod::v1::Request> request);
+    void follow(const Context& context);
+    void ask(const Context& context);
+    void send(const Context& context, std::optional<evod::v1::Request> request);
 
-    void build_head(Watch& watch, float scale);
+    void build_head(const Context& context, bool may);
     void build_rows(float scale);
     void build_row(std::size_t i);
     void build_field(std::size_t i);
@@ -40,10 +41,12 @@ class ParametersPanel : public Panel {
     std::vector<ParameterGroup> groups_;
     std::string world_;  // by the name that was asked for
     std::string run_id_; // that the undo stack is of
-    std::string problem_;
-    unsigned run_number_ = 0; // counts the runs and worlds that were shown: answers about another are late
-    bool asked_ = false;      // for the set, and no answer has come
-    bool stale_ = true;
+    std::uint64_t place_number_ = 0, connected_count_ = 0;
+    Inquiry registry_inquiry_;                  // until it is known
+    Inquiry values_inquiry_;                    // when they may have changed
+    bool stale_ = true;                         // the values
+    std::uint64_t transaction_ = 0;             // number of the last: an answer to another is late
+    link::WorldView::Clock::time_point sent_{}; // the last; it is never sent twice
     std::array<char, 64> search_{};
     bool apply_on_release_ = false;
     bool apply_ = false; // as soon as no transaction is under way

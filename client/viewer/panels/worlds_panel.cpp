@@ -11,61 +11,65 @@ namespace evod::viewer {
 
 namespace {
 
-// Ticks rise all the time; nobody reads them faster.
-constexpr std::chrono::seconds ask_again{1};
-
 void cell(const std::string& text) {
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(text.c_str());
+}
+
+/// Null: there are none of this island.
+template <class Statistics>
+const Statistics* of_island(const google::protobuf::RepeatedPtrField<Statistics>& all, std::uint32_t island) {
+    const auto found = std::ranges::find(all, island, &Statistics::island);
+    return found == all.end() ? nullptr : &*found;
 }
 
 } // namespace
 
 void WorldsPanel::build(Context& context) {
     Watch& watch = context.watch;
-    if (watch.world() != world_) { // what was asked before will not be answered
-        world_ = watch.world();
+    if (watch.place_number() != place_number_) {
+        place_number_ = watch.place_number();
         statistics_.Clear();
-        unanswered_count_ = 0;
-        stale_ = true;
+    }
+    if (context.shown_anew) {
+        look_again();
     }
     hear(watch);
-    stale_ = stale_ || context.shown_anew;
-    if (unanswered_count_ == 0 && (stale_ || context.now - asked_ >= ask_again)) {
-        ask(watch, context.now);
-    }
-    if (!problem_.empty()) {
-        widgets::say(problem_, palette::warning);
+    ask(watch, context.now);
+    if (!list_inquiry_.trouble().empty()) {
+        widgets::say(list_inquiry_.trouble(), palette::warning);
     }
     build_worlds(watch);
     build_islands(watch);
 }
 
-void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
-    asked_ = now;
-    stale_ = false;
-    evod::v1::Request worlds, statistics;
-    worlds.mutable_list_worlds();
-    statistics.mutable_get_statistics()->set_world(watch.world());
-    unanswered_count_ = 2;
-    watch.ask(std::move(worlds), [this](const auto& response) {
-        --unanswered_count_;
-        problem_ = !response                    ? response.error().what
-                   : !link::accepted(*response) ? shown_refusal(response->status())
-                                                : "";
-        if (problem_.empty()) {
-            worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
-        }
-    });
-    watch.ask(std::move(statistics), [this](const auto& response) {
-        --unanswered_count_;
-        if (response && response->has_statistics()) {
-            statistics_ = response->statistics();
-        } // a world that is not there has no islands; that it is not, stands above
-    });
+void WorldsPanel::look_again() {
+    list_inquiry_.hurry();
+    statistics_inquiry_.hurry();
 }
 
-void WorldsPanel::hear(Watch& watch) {
+void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
+    if (list_inquiry_.due(watch, now)) {
+        evod::v1::Request request;
+        request.mutable_list_worlds();
+        list_inquiry_.ask(watch, std::move(request), now, [this](const evod::v1::Response* response) {
+            if (response != nullptr) {
+                worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+            }
+        });
+    }
+    if (statistics_inquiry_.due(watch, now)) {
+        evod::v1::Request request;
+        request.mutable_get_statistics()->set_world(watch.world());
+        statistics_inquiry_.ask(watch, std::move(request), now, [this](const evod::v1::Response* response) {
+            if (response != nullptr) {
+                statistics_ = response->statistics();
+            } // a world that is not there has no islands; that it is not, the list tells
+        });
+    }
+}
+
+void WorldsPanel::hear(const Watch& watch) {
     using Kind = evod::v1::Event::EventCase;
     for (const evod::v1::Event& event : watch.events()) {
         switch (event.event_case()) {
@@ -75,7 +79,7 @@ void WorldsPanel::hear(Watch& watch) {
         case Kind::kWorldReset:
         case Kind::kWorldDeleted:
         case Kind::kEventsDropped:
-            stale_ = true;
+            look_again();
             break;
         default: // a world that runs is looked at anew all the time
             break;
@@ -147,23 +151,23 @@ void WorldsPanel::build_islands(Watch& watch) {
             }
             widgets::mark(name);
             // Absent where the fitness is a function of the chromosome alone, and in the first generation.
-            if (i < statistics_.live_size()) {
-                const evod::v1::LiveStatistics& live = statistics_.live(i);
-                cell(with_separators(live.alive_count()) + " of " + with_separators(live.organism_count()));
-                cell(shown_tenths(live.health_mean()));
+            const auto island = static_cast<std::uint32_t>(i);
+            if (const auto* live = of_island(statistics_.live(), island)) {
+                cell(with_separators(live->alive_count()) + " of " + with_separators(live->organism_count()));
+                cell(shown_tenths(live->health_mean()));
             } else {
                 ImGui::TableNextColumn();
                 ImGui::TableNextColumn();
             }
             ImGui::TableNextColumn();
-            if (i < statistics_.last_size()) {
-                ImGui::TextUnformatted(shown_tenths(statistics_.last(i).fitness_best()).c_str());
+            if (const auto* last = of_island(statistics_.last(), island)) {
+                ImGui::TextUnformatted(shown_tenths(last->fitness_best()).c_str());
             }
         }
     }
     ImGui::EndTable();
-    if (chosen && *chosen != watch.island()) {
-        watch.look_at(watch.world(), *chosen);
+    if (chosen) {
+        watch.choose_island(*chosen);
     }
 }
 

@@ -4,8 +4,10 @@
 #pragma once
 
 #include "client/viewer/panels/panel.h"
+#include "client/viewer/watch/inquiry.h"
 
-#include <optional>
+#include <chrono>
+#include <cstdint>
 #include <vector>
 
 namespace evod::viewer {
@@ -19,18 +21,20 @@ class WorldsPanel : public Panel {
   private:
     using Clock = link::WorldView::Clock;
 
+    // Ticks rise all the time; nobody reads them faster.
+    static constexpr std::chrono::seconds ask_again{1};
+
     void ask(Watch& watch, Clock::time_point now);
-    void hear(Watch& watch);
+    void hear(const Watch& watch);
+    void look_again();
     void build_worlds(Watch& watch);
     void build_islands(Watch& watch);
 
     std::vector<evod::v1::WorldInfo> worlds_;
-    evod::v1::Statistics statistics_; // of the world that is looked at
-    std::string world_;               // that it was of
-    std::string problem_;
-    unsigned unanswered_count_ = 0;
-    bool stale_ = true;
-    Clock::time_point asked_{};
+    evod::v1::Statistics statistics_; // of the place that is looked at
+    std::uint64_t place_number_ = 0;  // that they are of
+    Inquiry list_inquiry_{ask_again};
+    Inquiry statistics_inquiry_{ask_again};
 };
 
 } // namespace evod::viewer

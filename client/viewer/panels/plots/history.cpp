@@ -19,12 +19,12 @@ void History::see_run(const std::string& world, const std::string& run_id) {
 
 void History::see_run(const evod::v1::WorldInfo& world) {
     see_run(world.name(), world.run_id());
-    set_gene_names(world);
+    set_gene_names({world.gene_names().begin(), world.gene_names().end()});
 }
 
-void History::set_gene_names(const evod::v1::WorldInfo& world) {
-    if (world.gene_names_size() > 0) {
-        table_.set_gene_names({world.gene_names().begin(), world.gene_names().end()});
+void History::set_gene_names(const std::vector<std::string>& names) {
+    if (!names.empty() && names != table_.gene_names()) {
+        table_.set_gene_names(names);
     }
 }
 

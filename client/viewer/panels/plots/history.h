@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace evod::viewer {
 
@@ -42,10 +43,13 @@ class History {
     /// The answer to a question, or null if there was none or a refusal: then it will be asked again.
     void take(std::uint64_t number, const evod::v1::History* answer);
 
+    /// Whether a question is unanswered.
+    bool waits() const { return asked_ != answered_; }
     /// There will be no answer.
     void give_up();
 
-    void set_gene_names(const evod::v1::WorldInfo& world);
+    /// Of the run; none: nothing is told.
+    void set_gene_names(const std::vector<std::string>& names);
 
     const std::string& world() const { return world_; }
     const std::string& run_id() const { return run_id_; }

@@ -14,12 +14,6 @@ namespace evod::viewer {
 
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto ask_again = 100ms;          // after an answer: a world may breed faster than anybody looks
-constexpr auto ask_after_refusal = 2s;     // and after a refusal
-constexpr auto give_up_after = 15s;        // longer than the link waits for an answer
-constexpr auto look_at_population = 1s;    // who lives
 constexpr float plot_height_min = 120;     // pixels
 constexpr int picture_pixels_max = 10'000; // of either side of a file
 
@@ -74,104 +68,49 @@ std::vector<float> gene_of(const Population& population, std::size_t gene, bool 
 
 // ---- what is known ---------------------------------------------------------------------------------------------
 
-template <class Tracked, class Take>
-void PlotsPanel::ask(Context& context, const std::shared_ptr<Tracked>& tracked, evod::v1::Request request, Take take) {
-    tracked->under_way = true;
-    tracked->asked = context.now;
-    context.watch.ask(std::move(request), [weak = std::weak_ptr{tracked}, asked = context.now,
-                                           take](const link::Result<evod::v1::Response>& response) {
-        const auto shared = weak.lock();
-        if (!shared || shared->asked != asked) {
-            return; // given up
-        }
-        const bool good = response && link::accepted(*response);
-        shared->under_way = false;
-        shared->not_before = Clock::now() + (good ? Clock::duration{ask_again} : Clock::duration{ask_after_refusal});
-        shared->trouble = good ? "" : response ? shown_refusal(response->status()) : response.error().what;
-        take(*shared, good ? &*response : nullptr);
-    });
-}
-
-void PlotsPanel::ask_history(Context& context, const std::shared_ptr<TrackedHistory>& tracked) {
-    if (tracked->under_way && context.now - tracked->asked > give_up_after) {
-        tracked->under_way = false;
-        tracked->history.give_up();
-    }
-    if (tracked->under_way || context.now < tracked->not_before) {
+void PlotsPanel::ask_history(const Context& context, TrackedHistory& tracked) {
+    if (!tracked.inquiry.due(context.watch, context.now)) {
         return;
     }
-    if (auto question = tracked->history.question()) {
-        ask(context, tracked, std::move(question->request),
-            [number = question->number](TrackedHistory& asked, const evod::v1::Response* response) {
-                asked.history.take(number, response != nullptr ? &response->history() : nullptr);
-            });
+    if (tracked.history.waits()) { // for what was forgotten
+        tracked.history.give_up();
+    }
+    if (auto question = tracked.history.question()) {
+        tracked.inquiry.ask(context.watch, std::move(question->request), context.now,
+                            [&tracked, number = question->number](const evod::v1::Response* response) {
+                                tracked.history.take(number, response != nullptr ? &response->history() : nullptr);
+                            });
     }
 }
 
-void PlotsPanel::ask_worlds(Context& context) {
-    if (worlds_->under_way && context.now - worlds_->asked <= give_up_after) {
+void PlotsPanel::ask_worlds(const Context& context) {
+    if (!worlds_inquiry_.due(context.watch, context.now) || !(worlds_stale_ || worlds_inquiry_.under_way())) {
         return;
     }
+    worlds_stale_ = false;
     evod::v1::Request request;
     request.mutable_list_worlds();
-    ask(context, worlds_, std::move(request), [](Worlds& worlds, const evod::v1::Response* response) {
+    worlds_inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
         if (response != nullptr) {
-            worlds.list.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+            worlds_.assign(response->worlds().worlds().begin(), response->worlds().worlds().end());
+        } else {
+            worlds_stale_ = true;
         }
     });
-}
-
-void PlotsPanel::ask_population(Context& context, std::uint32_t island) {
-    const History& history = own_->history;
-    const std::string of = history.world() + " " + history.run_id() + " " + std::to_string(island);
-    if (of != population_of_) {
-        population_ = std::make_shared<TrackedPopulation>();
-        population_of_ = of;
-    }
-    TrackedPopulation& population = *population_;
-    const Population nobody{history.table().gene_names().size()};
-    if (population.under_way && context.now - population.asked > give_up_after) {
-        population.under_way = false;
-        population.coming = nobody;
-    }
-    if (population.under_way || context.now < population.not_before || history.run_id().empty()) {
-        return;
-    }
-    if (population.coming.next() == 0) {
-        population.coming = nobody;
-    }
-    evod::v1::Request request;
-    request.mutable_get_population()->set_world(history.world());
-    request.mutable_get_population()->set_island(island);
-    request.mutable_get_population()->set_first_organism(population.coming.next());
-    ask(context, population_, std::move(request),
-        [nobody](TrackedPopulation& asked, const evod::v1::Response* response) {
-            const auto trouble = response != nullptr ? asked.coming.add(response->population()) : std::nullopt;
-            if (response == nullptr || trouble) { // from the beginning: another generation may have begun meanwhile
-                asked.coming = nobody;
-            } else if (asked.coming.whole()) {
-                asked.whole = std::exchange(asked.coming, nobody);
-                asked.taken = asked.asked;
-                asked.not_before = Clock::now() + look_at_population;
-            } else {
-                asked.not_before = {};
-            }
-        });
 }
 
 void PlotsPanel::listen(Context& context) {
     Watch& watch = context.watch;
     const int frame = ImGui::GetFrameCount();
     const std::uint64_t connected_count = watch.connection_status().connected_count;
-    const bool may_have_missed = heard_ != &watch || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
-    heard_ = &watch;
+    const bool may_have_missed =
+        heard_place_ != watch.place_number() || frame > heard_in_frame_ + 1 || connected_count != connected_count_;
+    heard_place_ = watch.place_number();
     heard_in_frame_ = frame;
     connected_count_ = connected_count;
-    if (may_have_missed) {
-        ask_worlds(context);
-    }
-    for (const auto& tracked : {own_, other_world_}) {
-        if (!tracked) {
+    worlds_stale_ = worlds_stale_ || may_have_missed;
+    for (TrackedHistory* tracked : {&own_, other_world_.get()}) {
+        if (tracked == nullptr) {
             continue;
         }
         History& history = tracked->history;
@@ -183,32 +122,26 @@ void PlotsPanel::listen(Context& context) {
         }
     }
     if (watch.control().known()) {
-        own_->history.see_run(watch.control().world(), watch.control().run_id());
+        own_.history.see_run(watch.control().world(), watch.control().run_id());
     }
     const wire::Picture* picture = watch.picture();
-    if (picture != nullptr && picture->about.run_id() == own_->history.run_id() && picture->about.generation() > 0) {
-        own_->history.see_ended(picture->about.generation() - 1);
+    if (picture != nullptr && picture->about.run_id() == own_.history.run_id() && picture->about.generation() > 0) {
+        own_.history.see_ended(picture->about.generation() - 1);
     }
-    for (const evod::v1::WorldInfo& world : worlds_->list) {
-        if (world.name() == own_->history.world() && own_->history.table().gene_names().empty()) {
-            own_->history.set_gene_names(world);
-        }
-    }
+    own_.history.set_gene_names(watch.gene_names());
     for (const evod::v1::Event& event : watch.events()) {
-        if (event.has_world_created() || event.has_world_deleted() || event.has_world_reset() ||
-            event.has_events_dropped()) {
-            ask_worlds(context);
-            break;
-        }
+        worlds_stale_ = worlds_stale_ || event.has_world_created() || event.has_world_deleted() ||
+                        event.has_world_reset() || event.has_events_dropped();
     }
+    ask_worlds(context);
     ask_history(context, own_);
     if (other_world_) {
-        ask_history(context, other_world_);
+        ask_history(context, *other_world_);
     }
 }
 
 Subject PlotsPanel::subject() const {
-    const History& history = own_->history;
+    const History& history = own_.history;
     return {history.table(), island_, history.world().empty() ? "this world" : history.world()};
 }
 
@@ -217,12 +150,12 @@ Subject PlotsPanel::subject() const {
 void PlotsPanel::build(Context& context) {
     listen(context);
     build_choices();
-    build_comparison(context);
-    if (!own_->trouble.empty()) {
-        widgets::say(own_->trouble, palette::warning);
+    build_comparison();
+    if (!own_.inquiry.trouble().empty()) {
+        widgets::say(own_.inquiry.trouble(), palette::warning);
     }
-    if (other_world_ && !other_world_->trouble.empty()) {
-        widgets::say(other_name_ + ": " + other_world_->trouble, palette::warning);
+    if (other_world_ && !other_world_->inquiry.trouble().empty()) {
+        widgets::say(other_name_ + ": " + other_world_->inquiry.trouble(), palette::warning);
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
@@ -237,7 +170,7 @@ void PlotsPanel::build(Context& context) {
 }
 
 void PlotsPanel::build_choices() {
-    const std::uint32_t count = own_->history.table().island_count();
+    const std::uint32_t count = own_.history.table().island_count();
     if (island_ && *island_ >= std::max(count, 1u)) {
         island_.reset();
     }
@@ -261,8 +194,8 @@ void PlotsPanel::build_choices() {
         view_ = histogram_view_ = {};
     }
     ImGui::SameLine();
-    const HistoryTable& table = own_->history.table();
-    widgets::say(table.empty() ? own_->history.complete() ? "No generation has ended yet" : "…"
+    const HistoryTable& table = own_.history.table();
+    widgets::say(table.empty() ? own_.history.complete() ? "No generation has ended yet" : "…"
                                : with_separators(table.column(std::nullopt, "generation").size()) +
                                      " generations, up to " + with_separators(table.last_generation()));
 }
@@ -285,25 +218,25 @@ void PlotsPanel::compare_with_file(const std::string& path) {
     other_name_ = std::filesystem::path{path}.stem().string();
 }
 
-void PlotsPanel::build_comparison(Context& context) {
+void PlotsPanel::build_comparison() {
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
     const bool compares = other_world_ || file_;
     if (ImGui::BeginCombo("compare", compares ? other_name_.c_str() : "with nothing")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
-            ask_worlds(context);
+            worlds_stale_ = true;
         }
         if (ImGui::Selectable("with nothing", !compares)) {
             other_world_.reset();
             file_.reset();
         }
-        for (const evod::v1::WorldInfo& world : worlds_->list) {
-            if (world.name() == own_->history.world()) {
+        for (const evod::v1::WorldInfo& world : worlds_) {
+            if (world.name() == own_.history.world()) {
                 continue;
             }
             if (ImGui::Selectable(("world " + world.name()).c_str(),
                                   other_world_ && world.name() == other_world_->history.world())) {
-                other_world_ = std::make_shared<TrackedHistory>();
+                other_world_ = std::make_unique<TrackedHistory>();
                 other_world_->history.see_run(world);
                 file_.reset();
                 other_name_ = world.name();
@@ -348,21 +281,21 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
     ImGui::Checkbox("only the living", &only_the_living_);
     ImGui::SameLine();
-    const Population& population = population_->whole;
-    if (!population_->trouble.empty()) {
-        widgets::say(population_->trouble, palette::warning);
-    } else if (!population.whole()) {
+    const Population* population = population_.whole();
+    if (const std::string trouble = population_.trouble(); !trouble.empty()) {
+        widgets::say(trouble, palette::warning);
+    } else if (population == nullptr) {
         widgets::say("…");
     } else {
-        widgets::say("generation " + with_separators(population.generation()) + ", island " +
+        widgets::say("generation " + with_separators(population->generation()) + ", island " +
                      std::to_string(island_.value_or(context.watch.island())) +
-                     (only_the_living_ && !anybody_lives(population) ? ": nobody lives, so everyone" : ""));
+                     (only_the_living_ && !anybody_lives(*population) ? ": nobody lives, so everyone" : ""));
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
 
 void PlotsPanel::build_genes(Context& context) {
-    const auto& names = own_->history.table().gene_names();
+    const auto& names = own_.history.table().gene_names();
     if (std::ranges::find(names, gene_) == names.end()) {
         gene_.clear();
     }
@@ -382,14 +315,18 @@ void PlotsPanel::build_genes(Context& context) {
     if (gene_.empty()) {
         return;
     }
-    ask_population(context, island_.value_or(context.watch.island()));
-    const Population& population = population_->whole;
-    const HistogramOf of{gene_, population_->taken, only_the_living_};
+    const History& history = own_.history;
+    const PopulationInquiry::Of whose{history.world(), history.run_id(), island_.value_or(context.watch.island()),
+                                      names.size()};
+    population_.update(context.watch, whose, !history.run_id().empty(), context.now);
+    const HistogramOf of{gene_, whose, population_.whole_count(), only_the_living_};
     if (of == histogram_of_) { // populations may be large
         return;
     }
     histogram_of_ = of;
     const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
+    static const Population nobody;
+    const Population& population = population_.whole() != nullptr ? *population_.whole() : nobody;
     histogram_ = histogram_of(gene_, gene_of(population, index, only_the_living_ && anybody_lives(population)));
 }
 
@@ -397,7 +334,7 @@ void PlotsPanel::build_genes(Context& context) {
 
 /// "evoview-default-3f2a9c01-fitness-generation-120": what is there, and of which run.
 std::string PlotsPanel::file_name(const std::string& what) const {
-    const History& history = own_->history;
+    const History& history = own_.history;
     return "evoview-" + history.world() + "-" + history.run_id().substr(0, 8) + "-" + what + "-generation-" +
            std::to_string(history.table().last_generation());
 }
@@ -406,7 +343,7 @@ void PlotsPanel::save_csv() {
     const std::string path = std::filesystem::absolute(file_name("history") + ".csv").string();
     told_trouble_ = false;
     try {
-        write_file(path, own_->history.table().to_csv());
+        write_file(path, own_.history.table().to_csv());
         told_ = "Saved " + path;
     } catch (const std::runtime_error& error) {
         told_ = error.what();
@@ -417,8 +354,8 @@ void PlotsPanel::save_csv() {
 void PlotsPanel::save_png() {
     const auto save = [this](const Figure& figure, const PlotView& view, const std::string& what) {
         Plot plot = figure.plot;
-        plot.title += " – " + own_->history.world() + (island_ ? ", island " + std::to_string(*island_) : "") +
-                      ", run " + own_->history.run_id().substr(0, 8);
+        plot.title += " – " + own_.history.world() + (island_ ? ", island " + std::to_string(*island_) : "") +
+                      ", run " + own_.history.run_id().substr(0, 8);
         const std::string path = std::filesystem::absolute(file_name(what) + ".png").string();
         const auto pixels = [this](std::size_t i) {
             return static_cast<unsigned>(std::clamp(picture_pixels_[i], 200, picture_pixels_max));

@@ -6,7 +6,7 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/plots/figures.h"
 #include "client/viewer/panels/plots/history.h"
-#include "client/viewer/watch/population.h"
+#include "client/viewer/watch/population_inquiry.h"
 
 #include <array>
 #include <memory>
@@ -22,32 +22,20 @@ class PlotsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    using Clock = link::WorldView::Clock;
+    static constexpr std::chrono::milliseconds ask_again{100};   // a world may breed faster than anybody looks
+    static constexpr std::chrono::seconds look_at_population{1}; // who lives
 
-    /// Something that is asked for again and again; questions outlive a panel, and what is shown of them.
-    struct Inquiry {
-        bool under_way = false;
-        Clock::time_point not_before{}; // the next question
-        Clock::time_point asked{};
-        std::string trouble; // why the last one was refused
-    };
-    struct TrackedHistory : Inquiry {
+    struct TrackedHistory {
         History history;
-    };
-    struct TrackedPopulation : Inquiry {
-        Population coming, whole;  // whole: the last that is
-        Clock::time_point taken{}; // the whole one
+        Inquiry inquiry{ask_again};
     };
 
     void listen(Context& context);
-    void ask_history(Context& context, const std::shared_ptr<TrackedHistory>& tracked);
-    void ask_worlds(Context& context);
-    void ask_population(Context& context, std::uint32_t island);
-    template <class Tracked, class Take>
-    void ask(Context& context, const std::shared_ptr<Tracked>& tracked, evod::v1::Request request, Take take);
+    void ask_history(const Context& context, TrackedHistory& tracked);
+    void ask_worlds(const Context& context);
 
     void build_choices();
-    void build_comparison(Context& context);
+    void build_comparison();
     void build_quantity(Context& context, Quantity quantity);
     void build_genes(Context& context);
     void build_export();
@@ -58,21 +46,19 @@ class PlotsPanel : public Panel {
     void save_png();
     Subject subject() const;
 
-    std::shared_ptr<TrackedHistory> own_ = std::make_shared<TrackedHistory>();
-    std::shared_ptr<TrackedHistory> other_world_; // null: another world is not compared
+    TrackedHistory own_;
+    std::unique_ptr<TrackedHistory> other_world_; // null: another world is not compared
     std::optional<HistoryTable> file_;            // an earlier run that is compared
     std::string other_name_;                      // of what is compared
-    std::shared_ptr<TrackedPopulation> population_ = std::make_shared<TrackedPopulation>();
-    std::string population_of_; // world, run and island
+    PopulationInquiry population_{look_at_population};
 
-    struct Worlds : Inquiry {
-        std::vector<evod::v1::WorldInfo> list;
-    };
-    std::shared_ptr<Worlds> worlds_ = std::make_shared<Worlds>();
+    std::vector<evod::v1::WorldInfo> worlds_;
+    Inquiry worlds_inquiry_;
+    bool worlds_stale_ = true;
     std::vector<std::string> files_; // CSV files of the working folder
 
-    const Watch* heard_ = nullptr; // whose events were heard
-    int heard_in_frame_ = -1;      // of Dear ImGui
+    std::uint64_t heard_place_ = 0; // of which events were heard
+    int heard_in_frame_ = -1;       // of Dear ImGui
     std::uint64_t connected_count_ = 0;
 
     Quantity quantity_ = Quantity::Fitness;
@@ -83,7 +69,8 @@ class PlotsPanel : public Panel {
     Figure figure_, histogram_;
     struct HistogramOf {
         std::string gene;
-        Clock::time_point taken{};
+        PopulationInquiry::Of of;
+        std::uint64_t whole_count = 0;
         bool only_the_living = false;
         bool operator==(const HistogramOf&) const = default;
     } histogram_of_;
