@@ -32,6 +32,15 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
     return number ? with_unit(*number, unit) : "–";
 }
 
+/// The past stays as it was, and who only watches holds nothing.
+bool may_hold(const Watch& watch) {
+    return watch.may_command() && watch.recording() == nullptr;
+}
+
+GenerationHold::Run run_of(const Watch& watch) {
+    return {watch.control().world(), watch.control().run_id()};
+}
+
 bool pressed(ImGuiKey key) {
     return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
 }
@@ -55,13 +64,14 @@ void BreedingPanel::build(Context& context) {
         return;
     }
     choose(context);
-    ask(context.watch);
+    ask(context);
     hold_world(context.watch);
     build_generation(context);
     if (!error_.empty()) {
         ImGui::TextWrapped("%s", error_.c_str());
         if (widgets::button("Ask again")) {
             error_.clear();
+            inquiry_.hurry();
         }
     }
     if (!shown_) {
@@ -99,7 +109,8 @@ void BreedingPanel::choose(const Context& context) {
     BreedingRecord::Key key{picture.world(), picture.run_id(), picture.island(), 0};
     newest_ = picture.generation() - std::min<std::uint64_t>(picture.generation(), 1);
     const auto is_of = [&](const std::optional<BreedingRecord>& record) {
-        return record && record->key().run_id == key.run_id && record->key().island == key.island;
+        return record && record->key().world == key.world && record->key().run_id == key.run_id &&
+               record->key().island == key.island;
     };
     if (!is_of(shown_)) {
         shown_.reset();
@@ -126,51 +137,44 @@ void BreedingPanel::choose(const Context& context) {
     const auto& looked_at = coming_ ? coming_ : shown_;
     if (!looked_at || looked_at->key() != key) {
         coming_.emplace(key);
-        asking_ = false;
+        inquiry_.forget();
         error_.clear();
         next_look_ = context.now + shown_min;
     }
 }
 
-void BreedingPanel::ask(Watch& watch) {
-    if (asked_ != &watch) {
-        asked_ = &watch; // another pane; the one that was asked may be closed
-        asking_ = false;
-    }
+void BreedingPanel::ask(const Context& context) {
     auto& record = coming_ ? coming_ : shown_;
-    if (!record || asking_ || !error_.empty()) {
+    if (!inquiry_.due(context.watch, context.now) || !record || !error_.empty()) {
         return;
     }
     if (auto wanted = record->wanted(coming_ ? Moment{} : stepper_.moment())) {
-        asking_ = true;
         evod::v1::Request request;
         *request.mutable_get_breeding() = std::move(*wanted);
-        watch.ask(std::move(request),
-                  [this, question = ++question_](const auto& response) { take(question, response); });
+        inquiry_.ask(context.watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+            if (response != nullptr) {
+                take(response->breeding());
+            } else {
+                error_ = inquiry_.trouble();
+            }
+        });
     }
 }
 
-void BreedingPanel::take(unsigned question, const link::Result<evod::v1::Response>& response) {
-    auto& record = coming_ ? coming_ : shown_;
-    if (!asking_ || question != question_ || !record) {
-        return; // another is looked at by now
-    }
-    asking_ = false;
-    if (!response) {
-        error_ = response.error().what;
-    } else if (!link::accepted(*response)) {
-        error_ = shown_refusal(response->status());
-    } else {
-        record->add(response->breeding());
-        if (coming_ && coming_->known()) {
+void BreedingPanel::take(const evod::v1::Breeding& breeding) {
+    if (coming_) {
+        coming_->add(breeding);
+        if (coming_->known()) {
             show_coming();
-        } else if (coming_) {
+        } else {
             error_ = "The server answered with something else than the breeding of generation " +
-                     with_separators(record->key().generation);
+                     with_separators(coming_->key().generation);
         }
-        if (shown_ && !comparison_) {
-            comparison_ = compare(*shown_);
-        }
+    } else if (shown_) {
+        shown_->add(breeding);
+    }
+    if (shown_ && !comparison_) {
+        comparison_ = compare(*shown_);
     }
 }
 
@@ -187,7 +191,10 @@ void BreedingPanel::show_coming() {
 }
 
 void BreedingPanel::hold_world(Watch& watch) {
-    switch (hold_.update(watch.control().run_id(), watch.control().state(), watch.control().stepping())) {
+    if (!may_hold(watch)) {
+        hold_.let_go();
+    }
+    switch (hold_.update(run_of(watch), watch.control().state(), watch.control().stepping())) {
     case GenerationHold::Ask::Nothing:
         break;
     case GenerationHold::Ask::RunOneGeneration:
@@ -221,11 +228,11 @@ void BreedingPanel::build_generation(const Context& context) {
     ImGui::Checkbox("play each", &play_each_);
     widgets::mark("play each");
     widgets::explain("Begins to play when another breeding is shown");
-    if (context.watch.why_only_watching().empty() && !context.watch.control().told().has_recording()) {
+    if (may_hold(context.watch)) {
         ImGui::SameLine();
         bool held = hold_.on();
         if (ImGui::Checkbox("hold the world", &held)) {
-            hold_.set(held);
+            held ? hold_.hold(run_of(context.watch)) : hold_.let_go();
         }
         widgets::mark("hold the world");
         widgets::explain(
@@ -343,7 +350,7 @@ void BreedingPanel::build_stage(const Context& context) {
             widgets::say(
                 "blue: the first parent's, orange: the second's, dashed: cuts, framed: changed by a mutation or "
                 "clamped");
-            const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.control().told().gene_names());
+            const float used = draw_family(sheet_of(gui, 1), *descendant, context.watch.gene_names());
             ImGui::Dummy({1, used}); // what is beyond the panel can be scrolled to
         }
         break;

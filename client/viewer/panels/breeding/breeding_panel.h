@@ -10,6 +10,7 @@
 #include "client/viewer/panels/breeding/generation_hold.h"
 #include "client/viewer/panels/breeding/stepper.h"
 #include "client/viewer/panels/panel.h"
+#include "client/viewer/watch/inquiry.h"
 
 #include <optional>
 #include <string>
@@ -28,8 +29,8 @@ class BreedingPanel : public Panel {
     using Time = link::WorldView::Clock::time_point;
 
     void choose(const Context& context);
-    void ask(Watch& watch);
-    void take(unsigned question, const link::Result<evod::v1::Response>& response);
+    void ask(const Context& context);
+    void take(const evod::v1::Breeding& breeding);
     void show_coming();
     void hold_world(Watch& watch);
 
@@ -43,9 +44,7 @@ class BreedingPanel : public Panel {
     std::optional<Comparison> comparison_;         // of what is shown; nullopt until all of it is known
     Stepper stepper_;
     std::string error_; // why there is no more to be shown
-    bool asking_ = false;
-    unsigned question_ = 0; // number of the last: what others are answered with is too late
-    const Watch* asked_ = nullptr;
+    Inquiry inquiry_;
 
     std::uint64_t newest_ = 0; // generation that was bred from; 0: none yet
     std::uint64_t chosen_ = 0;

@@ -37,7 +37,7 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
 }
 
 float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
-                  const google::protobuf::RepeatedPtrField<std::string>& gene_names) {
+                  const std::vector<std::string>& gene_names) {
     const Family family = family_of(descendant);
     const std::size_t count = family.genes.size();
     if (count == 0) {
@@ -60,8 +60,7 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
     const bool alone = descendant.second_genes().empty() || descendant.kind() != evod::v1::DESCENDANT_KIND_CHILD;
 
     for (std::size_t gene = 0; gene < count; ++gene) {
-        const std::string name = gene < static_cast<std::size_t>(gene_names.size()) ? gene_names[static_cast<int>(gene)]
-                                                                                    : "gene " + std::to_string(gene);
+        const std::string name = gene < gene_names.size() ? gene_names[gene] : "gene " + std::to_string(gene);
         // Two words one above the other: cells are narrow.
         const std::size_t cut = name.find('_');
         sheet.write_centred({middle_of(gene), y + line / 2}, palette::text_quiet, name.substr(0, cut));

@@ -18,6 +18,6 @@ void draw_descendants(const Sheet& sheet, const BreedingRecord& record, const st
 ///
 /// returns  its height in pixels
 float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
-                  const google::protobuf::RepeatedPtrField<std::string>& gene_names);
+                  const std::vector<std::string>& gene_names);
 
 } // namespace evod::viewer

@@ -1,18 +1,22 @@
 #include "client/viewer/panels/breeding/generation_hold.h"
 
+#include <utility>
+
 namespace evod::viewer {
 
-void GenerationHold::set(bool on) {
-    on_ = on;
+void GenerationHold::hold(Run run) {
+    run_ = std::move(run);
     limited_ = false;
 }
 
-GenerationHold::Ask GenerationHold::update(const std::string& run, evod::v1::RunState state, bool stepping) {
-    if (run != run_) {
-        run_ = run;
-        limited_ = false;
-    }
-    if (!on_) {
+void GenerationHold::let_go() {
+    run_.reset();
+    limited_ = false;
+}
+
+GenerationHold::Ask GenerationHold::update(const Run& shown, evod::v1::RunState state, bool stepping) {
+    if (run_ != shown) {
+        let_go();
         return Ask::Nothing;
     }
     if (state == evod::v1::RUN_STATE_RUNNING && !stepping && !limited_) {

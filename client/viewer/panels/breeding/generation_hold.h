@@ -8,6 +8,7 @@
 
 #include "evod/v1/world.pb.h"
 
+#include <optional>
 #include <string>
 
 namespace evod::viewer {
@@ -16,19 +17,24 @@ class GenerationHold {
   public:
     enum class Ask { Nothing, RunOneGeneration, RunOneTick };
 
-    void set(bool on);
-    bool on() const { return on_; }
+    /// Who is held. A look at the past has the id of the run it shows, and another world's name.
+    struct Run {
+        std::string world, id;
+        friend bool operator==(const Run&, const Run&) = default;
+    };
 
-    /// What is to be asked of the world now.
+    void hold(Run run);
+    void let_go();
+    bool on() const { return run_.has_value(); }
+
+    /// What is to be asked of the world now. A run that is not the one that is held ends the hold: nobody meant it.
     ///
-    /// run       its id: what was told to a run before says nothing of this one
     /// state     as it is known
     /// stepping  it runs to a tick that somebody named, and stops there anyway
-    Ask update(const std::string& run, evod::v1::RunState state, bool stepping);
+    Ask update(const Run& shown, evod::v1::RunState state, bool stepping);
 
   private:
-    bool on_ = false;
-    std::string run_;
+    std::optional<Run> run_;
     bool limited_ = false; // the world was told to run one generation, and has not come to its end
 };
 
