@@ -333,6 +333,23 @@ TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
     EXPECT_THAT(late.output, HasSubstr("script:3: click Disconnect: "));
 }
 
+TEST_F(PanelsTest, ATickOfAnyLengthCanBeTypedAndIsBroughtWithinItsRange) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F9
+click "The bodies of this island"
+set "tick, ms" 0
+wait widget "10,000 steps"
+set "tick, ms" -7
+wait widget "10,000 steps"
+set "tick, ms" 1e30
+wait widget "10 steps"
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
 TEST_F(PanelsTest, TextAndWidgetsAreAsLargeAsTheScale) {
     const auto size_of_page = [&](const std::string& scale) {
         const Ran ran = play("--start --size 1280x720 --scale " + scale,

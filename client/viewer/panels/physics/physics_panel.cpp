@@ -7,15 +7,14 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 namespace evod::viewer {
 namespace {
 
-constexpr std::chrono::milliseconds ask_every{250}, patience{5000};
 constexpr double demo_s = 10; // of the motion that is shown
+constexpr float tick_ms_min = 1, tick_ms_max = 1000;
 constexpr std::size_t table_rows = 8;
 
 /// A measure over time, from 0 up, with its newest value in `title`.
@@ -29,53 +28,47 @@ void draw_measure(std::string title, const MotionHistory& history, Of&& of) {
     curve_widget(plot, {0, 1.6 * std::max(*std::ranges::max_element(measure), 1e-6)}, 4 * ImGui::GetFontSize());
 }
 
+/// A header over what can be folded away.
+bool opened(const char* title) {
+    const bool open = ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
+    widgets::mark(title);
+    return open;
+}
+
 } // namespace
 
 void PhysicsPanel::build(Context& context) {
     ask(context);
-    if (ImGui::CollapsingHeader("The bodies of this island", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (opened("The bodies of this island")) {
         build_motion();
     }
-    if (ImGui::CollapsingHeader("What the length of a tick does", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (opened("What the length of a tick does")) {
         build_demo();
     }
 }
 
 void PhysicsPanel::ask(Context& context) {
     Watch& watch = context.watch;
-    if (watch.world() != world_ || watch.island() != island_) {
-        world_ = watch.world();
-        island_ = watch.island();
+    if (watch.place_number() != place_number_) {
+        place_number_ = watch.place_number();
         history_.clear();
-        refusal_.clear();
-        asked_at_.reset();
     }
-    // An answer that never came, for the watch looked elsewhere meanwhile, is not waited for.
-    if (asked_at_ && context.now - *asked_at_ < (is_waiting_ ? patience : ask_every)) {
+    if (!inquiry_.due(watch, context.now)) {
         return;
     }
-    asked_at_ = context.now;
-    is_waiting_ = true;
     evod::v1::Request request;
-    request.mutable_get_motion()->set_world(world_);
-    request.mutable_get_motion()->set_island(island_);
-    watch.ask(std::move(request), [this, island = island_](const link::Result<evod::v1::Response>& response) {
-        if (island != island_) {
-            return;
-        }
-        is_waiting_ = false;
-        if (response && link::accepted(*response)) {
-            refusal_.clear();
+    request.mutable_get_motion()->set_world(watch.world());
+    request.mutable_get_motion()->set_island(watch.island());
+    inquiry_.ask(watch, std::move(request), context.now, [this](const evod::v1::Response* response) {
+        if (response != nullptr) {
             history_.add(response->motion());
-        } else {
-            refusal_ = response ? shown_refusal(response->status()) : response.error().what;
         }
     });
 }
 
 void PhysicsPanel::build_motion() {
-    if (!refusal_.empty()) {
-        widgets::say(refusal_, palette::warning);
+    if (!inquiry_.trouble().empty()) {
+        widgets::say(inquiry_.trouble(), palette::warning);
     }
     if (history_.empty()) {
         ImGui::TextUnformatted("…");
@@ -138,10 +131,13 @@ void PhysicsPanel::build_demo() {
         spring_ = false;
         changed = true;
     }
-    changed |= ImGui::SliderFloat(spring_ ? "ω, 1/s" : "damping, 1/s", &rate_per_s_, 0.5f, 10, "%.1f");
-    changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, 1, 1000, "%.0f", ImGuiSliderFlags_Logarithmic);
+    changed |= ImGui::SliderFloat(spring_ ? "ω, 1/s" : "damping, 1/s", &rate_per_s_, 0.5f, 10, "%.1f",
+                                  ImGuiSliderFlags_AlwaysClamp); // it is divided by
+    changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
+                                  ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    widgets::mark("tick, ms");
     if (!history_.empty() && ImGui::Button("a tick of this world")) {
-        tick_ms_ = static_cast<float>(history_.last().tick_s() * 1000);
+        tick_ms_ = std::clamp(static_cast<float>(history_.last().tick_s() * 1000), tick_ms_min, tick_ms_max);
         changed = true;
     }
     const double dt = static_cast<double>(tick_ms_) / 1000, rate = static_cast<double>(rate_per_s_);
@@ -151,6 +147,9 @@ void PhysicsPanel::build_demo() {
         rows_ = demo.rows(dt, static_cast<std::size_t>(demo_s / dt));
         take_curves(demo);
     }
+    const std::string steps = with_separators(rows_.size() - 1) + " steps";
+    widgets::say(steps);
+    widgets::mark(steps);
     Plot x{.title = "x in 10 s, px"}, energy{.title = "energy, of that at the start"};
     for (const Curve& curve : curves_) {
         x.series.push_back({.colour = curve.colour, .x = t_s_, .y = curve.x_px});

@@ -7,9 +7,8 @@
 #include "client/viewer/panels/panel.h"
 #include "client/viewer/panels/physics/motion_history.h"
 #include "client/viewer/panels/physics/time_step_demo.h"
+#include "client/viewer/watch/inquiry.h"
 
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace evod::viewer {
@@ -26,13 +25,9 @@ class PhysicsPanel : public Panel {
     void build_demo();
     void take_curves(const TimeStepDemo& demo);
 
-    // Of which island the history is, and what has been asked.
-    std::string world_;
-    std::uint32_t island_ = 0;
-    std::optional<link::WorldView::Clock::time_point> asked_at_;
-    bool is_waiting_ = false; // for an answer
+    std::uint64_t place_number_ = 0; // that the history is of
+    Inquiry inquiry_{std::chrono::milliseconds{250}};
     MotionHistory history_;
-    std::string refusal_; // of the last question
 
     // The demonstration, as it was last worked out.
     bool spring_ = true;
