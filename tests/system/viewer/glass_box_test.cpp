@@ -208,6 +208,8 @@ class PanelWindow {
         glClearColor(1, 1, 1, 1);
         glClear(GL_COLOR_BUFFER_BIT);
         ImGui::SetNextWindowPos({10, 10});
+        const Panel::Size size = panel_.first_size();
+        ImGui::SetNextWindowSize({size.width, size.height});
         ImGui::Begin("Glass box");
         Panel::Context context{.watch = watch_, .gui = gui_, .now = now, .sight = sight_};
         panel_.build(context);
