@@ -16,7 +16,7 @@ class PlayingServer {
     explicit PlayingServer(evod::v1::SnapshotFrame picture) : picture_{std::move(picture)} {
         thread_ = std::thread{[this] {
             try {
-                serve(server_.accept_and_welcome());
+                serve(server_.accept_and_welcome(0, evod::v1::ROLE_VIEWER));
             } catch (const boost::system::system_error&) {
                 // The client left while it was being written to, as it may.
             }

@@ -37,11 +37,12 @@ class FakeSession {
     void send(const v1::ServerMessage& message) { write(wire::encode_frame(wire::Channel::Control, message)); }
     void send(const v1::SnapshotFrame& frame) { write(wire::encode_frame(wire::Channel::Stream, frame)); }
 
-    void welcome(std::uint32_t requests_in_flight_max = 0) {
+    void welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED) {
         EXPECT_TRUE(read().has_hello());
         v1::ServerMessage message;
         message.mutable_welcome()->set_protocol_version(1);
         message.mutable_welcome()->set_server_version("fake");
+        message.mutable_welcome()->set_role(role);
         message.mutable_welcome()->mutable_limits()->set_requests_in_flight_max(requests_in_flight_max);
         send(message);
     }
@@ -91,9 +92,9 @@ class FakeServer {
         return {.server = endpoint(), .client_name = "a test", .backoff_min = std::chrono::milliseconds{1}};
     }
     FakeSession accept() { return FakeSession{acceptor_.accept()}; }
-    FakeSession accept_and_welcome(std::uint32_t requests_in_flight_max = 0) {
+    FakeSession accept_and_welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED) {
         FakeSession session = accept();
-        session.welcome(requests_in_flight_max);
+        session.welcome(requests_in_flight_max, role);
         return session;
     }
     void stop_listening() { acceptor_.close(); }

@@ -35,12 +35,7 @@ struct WatchTest : testing::Test {
 
     /// Welcomes the viewer and answers its subscriptions, the pictures as number 7; its question comes next.
     link::FakeSession begin(Watch&, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
-        link::FakeSession session = server.accept();
-        EXPECT_TRUE(session.read().has_hello());
-        evod::v1::ServerMessage welcome;
-        welcome.mutable_welcome()->set_protocol_version(1);
-        welcome.mutable_welcome()->set_role(role);
-        session.send(welcome);
+        link::FakeSession session = server.accept_and_welcome(0, role);
         const auto events = session.read_request();
         EXPECT_TRUE(events.has_subscribe_events());
         session.answer_subscription(events, 6);
