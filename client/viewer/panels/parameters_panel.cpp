@@ -70,10 +70,6 @@ std::span<const Panel::Key> ParametersPanel::keys() const {
 void ParametersPanel::build(Context& context) {
     Watch& watch = context.watch;
     follow(watch, context.shown_anew);
-    if (apply_ && !edits_.busy()) {
-        apply_ = false;
-        send(watch, edits_.apply(watch.name()));
-    }
     if (!problem_.empty()) {
         widgets::say(problem_, palette::warning);
     }
@@ -100,6 +96,10 @@ void ParametersPanel::build(Context& context) {
     build_rows(scale);
     ImGui::EndDisabled();
     ImGui::EndChild();
+    if (apply_ && !edits_.busy()) { // in the frame in which it was let go
+        apply_ = false;
+        send(watch, edits_.apply(watch.name()));
+    }
 }
 
 // ---- the server ------------------------------------------------------------------------------------------------
