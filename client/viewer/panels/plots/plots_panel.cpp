@@ -190,7 +190,8 @@ void PlotsPanel::listen(Context& context) {
         own_->history.see_ended(picture->about.generation() - 1);
     }
     for (const evod::v1::WorldInfo& world : worlds_->list) {
-        if (world.name() == own_->history.world() && own_->history.table().gene_names().empty()) {
+        if (world.name() == own_->history.world() && // whose rows may have come first, and named their genes by number
+            !std::ranges::equal(own_->history.table().gene_names(), world.gene_names())) {
             own_->history.set_gene_names(world);
         }
     }
