@@ -1,20 +1,51 @@
-// What one drawn frame costs the drawing thread: `xvfb-run viewer_frame_bench`.
+// What a drawn frame costs the drawing thread: `under_xvfb.sh viewer_frame_bench`.
 //
-// Where OpenGL is done in software, most of it is that.
-#include "client/viewer/shell/window.h"
+// Where OpenGL is done in software, most of it is that. With driver:0 the calls that hand over shapes and draw them are
+// left out; the program is linked so that they come here first. Those of Dear ImGui are not, so what is left is the
+// viewer's own and a little more.
+#include "client/viewer/shell/screen.h"
 #include "client/viewer/stage/stage.h"
 
+#include <GL/gl.h>
+#include <GL/glext.h>
 #include <SFML/Window/Context.hpp>
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+
+namespace {
+bool driver_works = true;
+}
+// What the linker's --wrap makes of the viewer's calls, and of what they called.
+extern "C" {
+void __real_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage);
+void __real_glClear(GLbitfield mask);
+void __real_glDrawArrays(GLenum mode, GLint first, GLsizei count);
+void __wrap_glBufferData(GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
+    if (driver_works) {
+        __real_glBufferData(target, size, data, usage);
+    }
+}
+void __wrap_glClear(GLbitfield mask) {
+    if (driver_works) {
+        __real_glClear(mask);
+    }
+}
+void __wrap_glDrawArrays(GLenum mode, GLint first, GLsizei count) {
+    if (driver_works) {
+        __real_glDrawArrays(mode, first, count);
+    }
+}
+}
 
 namespace evod::viewer {
 namespace {
 
 constexpr double px2_per_organism = 46'080; // and 2.5 food and 1.5 poison each: the benchmark world
+constexpr std::chrono::milliseconds picture_interval{33};
 
 wire::ItemPicture items(std::size_t count, double width, double step) {
     wire::ItemPicture all;
@@ -26,7 +57,7 @@ wire::ItemPicture items(std::size_t count, double width, double step) {
     return all;
 }
 
-std::shared_ptr<const wire::Picture> picture(std::size_t organism_count, std::uint64_t tick) {
+std::shared_ptr<wire::Picture> picture(std::size_t organism_count, std::uint64_t tick) {
     auto made = std::make_shared<wire::Picture>();
     const double width = std::sqrt(static_cast<double>(organism_count) * px2_per_organism);
     made->about.set_width_px(width);
@@ -49,33 +80,47 @@ link::Options nobody() {
     return options;
 }
 
-/// Range 0: organisms; range 1: how many times larger than fitted.
+/// Range 0: organisms; range 1: how many times larger than fitted; range 2: whether each frame shows a new picture, as
+/// every second one does at 60 frames and 30 pictures a second, or the way from one to the next; range 3: with the
+/// driver.
 void draw_frame(benchmark::State& state) {
     const auto organism_count = static_cast<std::size_t>(state.range(0));
+    const bool anew = state.range(2) != 0;
     const sf::Context context{context_settings(), 1280, 720};
     Stage stage;
     Options options;
     options.connection = nobody();
     Panes panes{wanted_of(options)};
     Pane& pane = panes.focused();
-    const auto start = link::WorldView::Clock::now();
-    const auto first = picture(organism_count, 0), second = picture(organism_count, 2);
-    constexpr std::chrono::milliseconds between{33};
-    pane.watch.view().add(first, start);
-    pane.watch.view().add(second, start + between);
-    Stage::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = start + between, .glide = true};
+    auto now = link::WorldView::Clock::now();
+    std::uint64_t tick = 2;
+    const std::array pictures{picture(organism_count, 0), picture(organism_count, tick)};
+    pane.watch.view().add(pictures[0], now);
+    pane.watch.view().add(pictures[1], now += picture_interval);
+    const auto arrived = now;
+    Stage::Frame frame{.width_pixels = 1280, .height_pixels = 720, .now = now, .glide = true};
     stage.draw(panes, frame);
     pane.camera().zoom_at(pane.camera().viewport().centre(), static_cast<double>(state.range(1)));
+    frame.pointed_at = Point{640, 360};
+    stage.draw(panes, frame);
+    driver_works = state.range(3) != 0;
     for (auto _ : state) {
-        frame.pointed_at = Point{640, 360};
-        frame.now += std::chrono::milliseconds{3}; // from one picture to the next, again and again
-        frame.now = frame.now > start + 2 * between ? start + between : frame.now;
+        if (anew) { // the older of the two comes back as the next one
+            const auto& next = pictures[tick / 2 % 2 == 0 ? 1 : 0];
+            next->about.set_tick(tick += 2);
+            next->about.set_simulated_s(static_cast<double>(tick) / 60);
+            pane.watch.view().add(next, frame.now += picture_interval);
+        } else {
+            frame.now += std::chrono::milliseconds{3}; // from one picture to the next, again and again
+            frame.now = frame.now > arrived + picture_interval ? arrived : frame.now;
+        }
         stage.draw(panes, frame);
     }
+    driver_works = true;
 }
 BENCHMARK(draw_frame)
-    ->ArgNames({"organisms", "zoom"})
-    ->ArgsProduct({{50, 10'000, 100'000}, {1, 16}})
+    ->ArgNames({"organisms", "zoom", "anew", "driver"})
+    ->ArgsProduct({{50, 10'000, 100'000}, {1, 16}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 
 } // namespace

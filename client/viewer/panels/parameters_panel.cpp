@@ -75,11 +75,6 @@ void ParametersPanel::build(Context& context) {
         why = "This world shows the past, which stays as it was.";
     }
     const bool may = why.empty();
-    apply_ = apply_ && may;
-    if (apply_ && !edits_.busy()) {
-        apply_ = false;
-        send(context, edits_.apply(watch.name()));
-    }
     for (const Inquiry* inquiry : {&registry_inquiry_, &values_inquiry_}) {
         if (!inquiry->trouble().empty()) {
             widgets::say(inquiry->trouble(), palette::warning);
@@ -104,6 +99,11 @@ void ParametersPanel::build(Context& context) {
     build_rows(scale);
     ImGui::EndDisabled();
     ImGui::EndChild();
+    apply_ = apply_ && may;
+    if (apply_ && !edits_.busy()) { // in the frame in which it was let go
+        apply_ = false;
+        send(context, edits_.apply(watch.name()));
+    }
 }
 
 // ---- the server ------------------------------------------------------------------------------------------------

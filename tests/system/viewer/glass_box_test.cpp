@@ -6,10 +6,10 @@
 #include "client/viewer/panels/breeding/family.h"
 #include "client/viewer/panels/breeding/tournament.h"
 #include "client/viewer/panels/breeding/wheel_layout.h"
-#include "client/viewer/shell/window.h"
-#include "tests/system/viewer/processes.h"
+#include "tests/system/viewer/support/panel_host.h"
+#include "tests/system/viewer/support/pixels.h"
+#include "tests/system/viewer/support/processes.h"
 
-#include <GL/gl.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -20,49 +20,13 @@ namespace {
 
 constexpr std::uint64_t bred_from = 2; // generation
 
-void set(evod::v1::CreateWorld& world, const char* name, const evod::v1::ParameterValue& value) {
-    auto& parameter = *world.add_parameters();
-    parameter.set_name(name);
-    *parameter.mutable_value() = value;
-}
-evod::v1::ParameterValue choice(const char* name) {
-    evod::v1::ParameterValue value;
-    value.set_choice(name);
-    return value;
-}
-evod::v1::ParameterValue count(std::uint32_t number) {
-    evod::v1::ParameterValue value;
-    value.set_count(number);
-    return value;
-}
-evod::v1::ParameterValue real(double number) {
-    evod::v1::ParameterValue value;
-    value.set_real(number);
-    return value;
-}
-
 /// A world of its own that has bred twice; the record of the second time, whole.
 BreedingRecord breed(RealServer& server, const std::string& name,
-                     const std::vector<std::pair<const char*, evod::v1::ParameterValue>>& parameters) {
-    evod::v1::Request create, speed, run;
-    auto& world = *create.mutable_create_world();
-    world.set_name(name);
-    world.set_seed(11);
-    set(world, "population_size", count(40));
-    set(world, "generation_s", real(4));
-    for (const auto& [parameter, value] : parameters) {
-        set(world, parameter, value);
-    }
-    server.ask(create);
-    speed.mutable_set_speed()->set_world(name);
-    speed.mutable_set_speed()->mutable_speed()->set_max(true);
-    server.ask(speed);
-    run.mutable_run()->set_world(name);
-    run.mutable_run()->set_generations(bred_from + 1);
-    server.ask(run);
-    evod::v1::Request state;
-    state.mutable_get_statistics()->set_world(name);
-    EXPECT_TRUE(comes_true([&] { return server.ask(state).state() == evod::v1::RUN_STATE_WAITING; }));
+                     std::vector<std::pair<std::string, evod::v1::ParameterValue>> parameters) {
+    parameters.emplace_back("population_size", count(40));
+    parameters.emplace_back("generation_s", real(4));
+    server.make_world({.name = name, .seed = 11, .parameters = std::move(parameters)});
+    server.run_generations(name, bred_from + 1);
     BreedingRecord record{{.world = name, .run_id = "", .island = 0, .generation = bred_from}};
     for (const Moment moment : {Moment{}, Moment{BreedingStage::Picking, 0}, Moment{BreedingStage::Breeding, 0}}) {
         while (const auto wanted = record.wanted(moment)) {
@@ -161,87 +125,49 @@ TEST(GlassBox, GenesAreFollowedThroughEveryOperator) {
     }
 }
 
-/// The panel in a window of its own, with a person at the keys.
-class PanelWindow {
+/// The panel alone, with a person at the keys.
+class GlassBox {
   public:
-    static constexpr unsigned width = 1000, height = 720;
+    explicit GlassBox(const std::string& server)
+        : watch_{{.connection = {.server = link::parse_endpoint(server).value()}, .world = ""}} {}
 
-    explicit PanelWindow(const std::string& server)
-        : window_{sf::VideoMode{width, height}, "glass box", sf::Style::None, context_settings()}
-        , watch_{wanted(server)} {}
-
-    void press(sf::Keyboard::Key key) {
-        sf::Event event{};
-        event.key.code = key;
-        for (const auto type : {sf::Event::KeyPressed, sf::Event::KeyReleased}) {
-            event.type = type;
-            gui_.handle(event);
-            draw();
-        }
-    }
+    void press(sf::Keyboard::Key key) { host_.press(key); }
     /// Draws until so many pixels of the colour are seen.
-    bool sees(Colour colour, unsigned least) {
-        return comes_true([&] { return draw() && count(colour) >= least; });
+    bool sees(Colour colour, std::size_t least) {
+        return wait_until([&] { return count(host_.draw(), colour) >= least; });
     }
     bool sees_none_of(Colour colour) {
-        return comes_true([&] { return draw() && count(colour) == 0; });
-    }
-    unsigned count(Colour colour) const {
-        unsigned found = 0;
-        for (std::size_t i = 0; i < pixels_.size(); i += 4) {
-            found += pixels_[i] == colour.red && pixels_[i + 1] == colour.green && pixels_[i + 2] == colour.blue;
-        }
-        return found;
+        return wait_until([&] { return count(host_.draw(), colour) == 0; });
     }
 
   private:
-    static Watch::Wanted wanted(const std::string& server) {
-        Watch::Wanted wanted;
-        wanted.connection.server = link::parse_endpoint(server).value();
-        return wanted;
-    }
-
-    bool draw() {
-        const auto now = std::chrono::steady_clock::now();
-        watch_.update(now);
-        gui_.begin(width, height, 0.02);
-        glClearColor(1, 1, 1, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        ImGui::SetNextWindowPos({10, 10});
-        const Panel::Size size = panel_.first_size();
-        ImGui::SetNextWindowSize({size.width, size.height});
-        ImGui::Begin("Glass box");
-        Panel::Context context{.watch = watch_, .gui = gui_, .now = now, .sight = sight_};
-        panel_.build(context);
-        ImGui::End();
-        gui_.draw();
-        glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
-        return true;
-    }
-
-    sf::Window window_;
-    Gui gui_;
     BreedingPanel panel_;
     Watch watch_;
     Sight sight_;
-    std::vector<std::uint8_t> pixels_ = std::vector<std::uint8_t>(std::size_t{4} * width * height);
+    PanelHost host_{1000, 720, [this](Gui& gui) {
+                        const auto now = std::chrono::steady_clock::now();
+                        watch_.update(now);
+                        ImGui::SetNextWindowPos({10, 10});
+                        ImGui::SetNextWindowSize({panel_.first_size().width, panel_.first_size().height});
+                        ImGui::Begin("Glass box");
+                        Panel::Context context{.watch = watch_, .gui = gui, .now = now, .sight = sight_};
+                        panel_.build(context);
+                        ImGui::End();
+                    }};
 };
 
 TEST(GlassBox, KeysGoThroughABreedingAndBack) {
     TemporaryFolder folder;
     RealServer server{{"--seed", "7", "--speed", "max", "--data", folder.file("runs")}};
-    evod::v1::Request run;
-    run.mutable_run()->set_generations(3);
-    server.ask(run);
-    ASSERT_TRUE(comes_true([&] { return server.state().state() == evod::v1::RUN_STATE_WAITING; }));
-    PanelWindow window{server.address()};
+    server.run_generations("", 3);
+    GlassBox window{server.address()};
     const Colour fittest = rank_colour(0, 50);
     EXPECT_TRUE(window.sees(fittest, 1000)) << "the highest bar";
-    EXPECT_EQ(window.count(palette::first_parent), 0u);
+    EXPECT_TRUE(window.sees_none_of(palette::first_parent));
     window.press(sf::Keyboard::PageDown);
     window.press(sf::Keyboard::PageDown);
     EXPECT_TRUE(window.sees(palette::first_parent, 5000)) << "the genes of the first organism";
-    EXPECT_EQ(window.count(palette::second_parent), 0u) << "which is a survivor";
+    EXPECT_TRUE(window.sees_none_of(palette::second_parent)) << "which is a survivor";
     window.press(sf::Keyboard::End);
     EXPECT_TRUE(window.sees_none_of(palette::first_parent));
     EXPECT_TRUE(window.sees(fittest, 1000));

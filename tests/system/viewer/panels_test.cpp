@@ -2,7 +2,7 @@
 // has.
 //
 // Runs under Xvfb.
-#include "tests/system/viewer/processes.h"
+#include "tests/system/viewer/support/processes.h"
 
 #include <SFML/Graphics/Image.hpp>
 #include <gmock/gmock.h>
@@ -253,12 +253,7 @@ quit
 
 TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
     RealServer server{{"--seed", "7"}};
-    evod::v1::Request create;
-    create.mutable_create_world()->set_name("mars");
-    auto& islands = *create.mutable_create_world()->add_parameters();
-    islands.set_name("island_count");
-    islands.mutable_value()->set_count(3);
-    server.ask(create);
+    server.make_world({.name = "mars", .parameters = {{"island_count", count(3)}}});
     const Ran ran = play(server.address(), R"(
 wait picture
 key F2
@@ -269,11 +264,8 @@ wait state running
 quit
 )");
     ASSERT_EQ(ran.status, 0) << ran.output;
-    evod::v1::Request statistics;
-    statistics.mutable_get_statistics()->set_world("mars");
-    EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_RUNNING);
-    statistics.mutable_get_statistics()->set_world("default");
-    EXPECT_EQ(server.ask(statistics).state(), evod::v1::RUN_STATE_WAITING);
+    EXPECT_EQ(server.state("mars").state(), evod::v1::RUN_STATE_RUNNING);
+    EXPECT_EQ(server.state("default").state(), evod::v1::RUN_STATE_WAITING);
 }
 
 TEST_F(PanelsTest, AViewerComesInThroughTheStartScreenAndChangesNothing) {

@@ -5,8 +5,9 @@
 #include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/stage/timeline.h"
 #include "client/viewer/watch/past.h"
-#include "tests/system/viewer/expected_picture.h"
-#include "tests/system/viewer/past_of_world.h"
+#include "tests/system/viewer/support/expected_picture.h"
+#include "tests/system/viewer/support/past_of_world.h"
+#include "tests/system/viewer/support/person.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +100,7 @@ struct TimelineTest : PanesTest {
 
     bool shows(const wire::Picture& picture, Rectangle place) {
         const ExpectedPicture expected{picture, camera_in(place, picture.about)};
-        return comes_true([&] {
+        return wait_until([&] {
             const sf::Image seen = person.looks();
             return seen.getSize() == sf::Vector2u{800, 500} && expected.compare(seen).count == 0;
         });
@@ -107,13 +108,7 @@ struct TimelineTest : PanesTest {
 
     bool shows_now(Colour colour) {
         const sf::Image seen = person.looks();
-        for (unsigned i = 0; i < seen.getSize().x * seen.getSize().y; ++i) {
-            const sf::Color is = seen.getPixel(i % seen.getSize().x, i / seen.getSize().x);
-            if (Colour{is.r, is.g, is.b, is.a} == colour) {
-                return true;
-            }
-        }
-        return seen.getSize().x == 0; // nobody knows
+        return seen.getSize().x == 0 || count(seen, colour) > 0; // or else nobody knows
     }
 
     std::optional<Process> evoview;
@@ -141,7 +136,7 @@ TEST_F(TimelineTest, TheLineIsDraggedToAnyTick) {
     const TimeScale line{.first_tick = 0, .last_tick = 421, .left = 18, .width = 764};
     const int y = 500 - static_cast<int>(Timeline::height_pixels) + 18;
     const int from = 700, to = 300;
-    ASSERT_TRUE(comes_true([&] {
+    ASSERT_TRUE(wait_until([&] {
         person.move_mouse(from, y);
         return shows_now(palette::focus);
     })) << "it is under the mouse";
@@ -153,7 +148,7 @@ TEST_F(TimelineTest, TheLineIsDraggedToAnyTick) {
     EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(line.tick_at(to))), viewport()));
     person.release_mouse(to, y);
     person.move_mouse(400, 5); // keys are for the line as long as it is held
-    EXPECT_TRUE(comes_true([&] { return !shows_now(palette::focus); }));
+    EXPECT_TRUE(wait_until([&] { return !shows_now(palette::focus); }));
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);
 }

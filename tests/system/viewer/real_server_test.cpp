@@ -1,9 +1,9 @@
 // evoview against evod: what it draws is what the server says, and its keys command the world.
 //
 // Runs under Xvfb.
-#include "tests/system/viewer/expected_picture.h"
-#include "tests/system/viewer/person.h"
-#include "tests/system/viewer/processes.h"
+#include "tests/system/viewer/support/expected_picture.h"
+#include "tests/system/viewer/support/past_of_world.h"
+#include "tests/system/viewer/support/person.h"
 
 #include <gtest/gtest.h>
 
@@ -12,33 +12,13 @@ namespace {
 
 TEST(RealServer, EveryPixelOfAScreenshotIsWhatTheServerSays) {
     RealServer server{{"--seed", "7", "--speed", "max"}};
-    evod::v1::Request create, speed, run;
-    create.mutable_create_world()->set_name("room");
-    create.mutable_create_world()->set_seed(7);
-    for (const auto& [name, count] : {std::pair{"obstacle_count", 6u}, {"crate_count", 9u}, {"population_size", 60u}}) {
-        auto& parameter = *create.mutable_create_world()->add_parameters();
-        parameter.set_name(name);
-        parameter.mutable_value()->set_count(count);
-    }
-    server.ask(create);
-    speed.mutable_set_speed()->set_world("room");
-    speed.mutable_set_speed()->mutable_speed()->set_max(true);
-    server.ask(speed);
+    server.make_world(
+        {.name = "room",
+         .parameters = {{"obstacle_count", count(6)}, {"crate_count", count(9)}, {"population_size", count(60)}}});
     for (const std::string world : {"default", "room"}) {
         constexpr std::uint64_t tick = 601;
-        run.mutable_run_until_tick()->set_world(world);
-        run.mutable_run_until_tick()->set_tick(tick);
-        server.ask(run);
-        evod::v1::SubscribeSnapshots subscription;
-        subscription.set_world(world);
-        subscription.set_rate_hz(60);
-        const auto pictures = server.connection->subscribe(subscription);
-        std::shared_ptr<const wire::Picture> picture;
-        ASSERT_TRUE(comes_true([&] {
-            const auto newer = server.connection->take_picture(pictures);
-            picture = newer ? newer : picture;
-            return picture && picture->about.tick() == tick;
-        }));
+        server.run_to(world, tick);
+        const auto picture = picture_of(server, world);
         const TemporaryFolder folder;
         const std::string path = folder.file("picture.png");
         std::string arguments = "--server " + server.address();
@@ -65,7 +45,7 @@ TEST(RealServer, KeysCommandTheWorld) {
     Person person;
     ASSERT_TRUE(person.finds_window());
     ASSERT_TRUE(person.sees(palette::organism));
-    const auto becomes = [&](auto condition) { return comes_true([&] { return condition(server.state()); }); };
+    const auto becomes = [&](auto condition) { return wait_until([&] { return condition(server.state()); }); };
 
     person.press(XK_space);
     EXPECT_TRUE(becomes([](const auto& world) { return world.state() == evod::v1::RUN_STATE_RUNNING; }));

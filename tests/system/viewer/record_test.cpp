@@ -3,9 +3,9 @@
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/shell/film.h"
-#include "tests/system/viewer/expected_picture.h"
-#include "tests/system/viewer/past_of_world.h"
-#include "tests/system/viewer/playing_server.h"
+#include "tests/system/viewer/support/expected_picture.h"
+#include "tests/system/viewer/support/past_of_world.h"
+#include "tests/system/viewer/support/playing_server.h"
 
 #include <gtest/gtest.h>
 
@@ -24,11 +24,7 @@ struct RecordTest : testing::Test {
         return run_evoview("--server " + server.address() + " --world one --size 640x400 --record " + path + " " +
                            arguments);
     }
-    evod::v1::WorldInfo state() {
-        evod::v1::Request look;
-        look.mutable_get_statistics()->set_world("one");
-        return server.ask(look);
-    }
+    evod::v1::WorldInfo state() { return server.state("one"); }
     void expect_picture(std::size_t number, std::uint64_t tick) { expect_picture(number, tick, at_tick(tick)); }
     void expect_picture(std::size_t number, std::uint64_t tick, const evod::v1::RunMoment& moment) {
         sf::Image image;
@@ -69,7 +65,7 @@ TEST_F(RecordTest, AWorldThatRunsIsOnlyLent) {
     const auto lent = state();
     EXPECT_FALSE(lent.leased());
     EXPECT_EQ(lent.state(), evod::v1::RUN_STATE_RUNNING);
-    EXPECT_TRUE(comes_true([&] { return state().tick() > lent.tick(); }));
+    EXPECT_TRUE(wait_until([&] { return state().tick() > lent.tick(); }));
 }
 
 TEST_F(RecordTest, AGenerationOfThePastIsRecordedAndTheWorldIsNotTouched) {

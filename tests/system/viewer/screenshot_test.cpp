@@ -2,10 +2,10 @@
 //
 // Runs under Xvfb.
 #include "client/viewer/drawing/window_layout.h"
-#include "tests/system/viewer/expected_picture.h"
-#include "tests/system/viewer/known_picture.h"
-#include "tests/system/viewer/playing_server.h"
-#include "tests/system/viewer/processes.h"
+#include "tests/system/viewer/support/expected_picture.h"
+#include "tests/system/viewer/support/known_picture.h"
+#include "tests/system/viewer/support/playing_server.h"
+#include "tests/system/viewer/support/processes.h"
 
 #include <gtest/gtest.h>
 

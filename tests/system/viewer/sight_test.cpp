@@ -3,15 +3,16 @@
 // Draws off the screen, under Xvfb, what a server of the test's own shows.
 #include "client/viewer/shell/window.h"
 #include "client/viewer/stage/stage.h"
-#include "tests/system/viewer/expected_picture.h"
-#include "tests/system/viewer/known_picture.h"
-#include "tests/system/viewer/playing_server.h"
+#include "tests/support/waiting.h"
+#include "tests/system/viewer/support/expected_picture.h"
+#include "tests/system/viewer/support/known_picture.h"
+#include "tests/system/viewer/support/pixels.h"
+#include "tests/system/viewer/support/playing_server.h"
 
 #include <SFML/Window/Context.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <thread>
 
 namespace evod::viewer {
 namespace {
@@ -32,16 +33,11 @@ struct SightTest : testing::Test {
     /// Draws until the condition holds, and once more.
     template <class Condition>
     sf::Image draw_when(Condition condition) {
-        const auto end = Clock::now() + std::chrono::seconds{20};
-        while (!condition()) {
-            if (Clock::now() > end) {
-                ADD_FAILURE() << "it never came to that";
-                break;
-            }
+        EXPECT_TRUE(wait_until(condition, [this] {
             panes->update(Clock::now());
             draw();
-            std::this_thread::sleep_for(std::chrono::milliseconds{2});
-        }
+            take_a_nap();
+        }));
         return draw();
     }
     sf::Image draw_with_population() {
@@ -51,20 +47,9 @@ struct SightTest : testing::Test {
     Sight& sight() { return panes->focused().sight; }
     Camera& camera() { return panes->focused().camera(); }
 
-    static std::size_t count(const sf::Image& image, Colour colour) {
-        std::size_t pixels = 0;
-        for (unsigned y = 0; y < height; ++y) {
-            for (unsigned x = 0; x < width; ++x) {
-                const sf::Color is = image.getPixel(x, y);
-                pixels += Colour{is.r, is.g, is.b} == colour;
-            }
-        }
-        return pixels;
-    }
     Colour at(const sf::Image& image, Point world) {
         const Point pixel = camera().to_screen(world);
-        const sf::Color is = image.getPixel(static_cast<unsigned>(pixel.x), static_cast<unsigned>(pixel.y));
-        return {is.r, is.g, is.b};
+        return pixel_at(image, static_cast<unsigned>(pixel.x), static_cast<unsigned>(pixel.y));
     }
     /// The picture with organisms in these colours, and room for a legend.
     void expect_colours(const sf::Image& image, const std::vector<Colour>& colours) {
@@ -166,8 +151,7 @@ TEST_F(SightTest, TheMinimapIsThereWhereNotAllIsSeen) {
     camera().zoom_at(camera().viewport().centre(), 4);
     const MinimapPlace place = minimap_place(camera().viewport(), 800, 600);
     const auto pixel = [&](const sf::Image& image, Point screen) {
-        const sf::Color is = image.getPixel(static_cast<unsigned>(screen.x), static_cast<unsigned>(screen.y));
-        return Colour{is.r, is.g, is.b};
+        return pixel_at(image, static_cast<unsigned>(screen.x), static_cast<unsigned>(screen.y));
     };
     draw(); // a window of widgets takes its place in the first picture
     const sf::Image image = draw();

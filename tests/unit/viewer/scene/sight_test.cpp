@@ -1,5 +1,6 @@
 #include "client/viewer/scene/sight.h"
 
+#include "tests/support/waiting.h"
 #include "tests/unit/link/fake_server.h"
 #include "tests/unit/viewer/watch/population_pages.h"
 
@@ -88,13 +89,11 @@ struct SightTest : testing::Test {
     /// Updates until the condition holds; fails if it does not within some seconds.
     template <class Condition>
     void until(Condition condition) {
-        const auto end = std::chrono::steady_clock::now() + 10s;
-        while (!condition()) {
-            ASSERT_LT(std::chrono::steady_clock::now(), end) << "it never came to that";
+        ASSERT_TRUE(wait_until(condition, [this] {
             watch->update(std::chrono::steady_clock::now());
             sight.update(*watch, camera, std::chrono::steady_clock::now());
-            std::this_thread::sleep_for(1ms);
-        }
+            take_a_nap();
+        }));
     }
     /// The next request that the sight makes.
     evod::v1::Request next_request() {

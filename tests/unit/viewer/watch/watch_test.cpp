@@ -1,5 +1,6 @@
 #include "client/viewer/watch/watch.h"
 
+#include "tests/support/waiting.h"
 #include "tests/unit/link/fake_server.h"
 
 #include <gmock/gmock.h>
@@ -22,15 +23,13 @@ struct WatchTest : testing::Test {
     /// Updates until the condition holds; fails if it does not within some seconds.
     template <class Condition>
     void until(Watch& watch, Condition condition) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{10};
-        while (!condition()) {
-            ASSERT_LT(std::chrono::steady_clock::now(), end) << "it never came to that";
+        ASSERT_TRUE(wait_until(condition, [&] {
             watch.update(std::chrono::steady_clock::now());
             for (std::string& notice : watch.take_notices()) {
                 notices.push_back(std::move(notice));
             }
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        }
+            take_a_nap();
+        }));
     }
 
     /// Welcomes the viewer and answers its subscriptions, the pictures as number 7; its question comes next.

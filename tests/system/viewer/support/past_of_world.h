@@ -1,38 +1,19 @@
 // PastOfWorld: what the server says a world looked like, asked for over a connection of the test's own.
 #pragma once
 
-#include "tests/system/viewer/person.h"
-#include "tests/system/viewer/processes.h"
+#include "tests/system/viewer/support/processes.h"
 
 namespace evod::viewer {
 
 /// A world of short generations, 120 ticks each, that has come to `tick` and is paused there.
 inline void make_world(RealServer& server, const std::string& name, std::uint64_t tick, std::uint64_t seed = 3,
                        std::uint32_t island_count = 1) {
-    evod::v1::Request create, speed, run, look;
-    auto& wanted = *create.mutable_create_world();
-    wanted.set_name(name);
-    wanted.set_seed(seed);
-    const auto add = [&](const char* parameter) {
-        auto& added = *wanted.add_parameters();
-        added.set_name(parameter);
-        return added.mutable_value();
-    };
-    add("generation_s")->set_real(2);
-    add("population_size")->set_count(20);
-    add("island_count")->set_count(island_count);
-    server.ask(create);
-    speed.mutable_set_speed()->set_world(name);
-    speed.mutable_set_speed()->mutable_speed()->set_max(true);
-    server.ask(speed);
-    run.mutable_run_until_tick()->set_world(name);
-    run.mutable_run_until_tick()->set_tick(tick);
-    server.ask(run);
-    look.mutable_get_statistics()->set_world(name);
-    EXPECT_TRUE(comes_true([&] {
-        const auto world = server.ask(look);
-        return world.tick() == tick && world.state() == evod::v1::RUN_STATE_PAUSED;
-    }));
+    server.make_world({.name = name,
+                       .seed = seed,
+                       .parameters = {{"generation_s", real(2)},
+                                      {"population_size", count(20)},
+                                      {"island_count", count(island_count)}}});
+    server.run_to(name, tick);
 }
 
 /// A picture of a world as it stands.
@@ -44,7 +25,7 @@ inline std::shared_ptr<const wire::Picture> picture_of(RealServer& server, const
     subscription.set_rate_hz(60);
     const auto pictures = server.connection->subscribe(subscription);
     std::shared_ptr<const wire::Picture> picture;
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(wait_until([&] {
         picture = server.connection->take_picture(pictures, island);
         return picture != nullptr;
     }));

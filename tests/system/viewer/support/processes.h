@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/link/connection.h"
+#include "tests/support/waiting.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -18,23 +18,10 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
 namespace evod::viewer {
-
-/// Waits for it; false if it does not come within some seconds.
-template <class Condition>
-bool comes_true(Condition condition) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds{20};
-    while (!condition()) {
-        if (std::chrono::steady_clock::now() > end) {
-            return false;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
-    }
-    return true;
-}
 
 class TemporaryFolder {
   public:
@@ -118,6 +105,29 @@ class Process {
     FILE* output_ = nullptr;
 };
 
+inline evod::v1::ParameterValue choice(const std::string& name) {
+    evod::v1::ParameterValue value;
+    value.set_choice(name);
+    return value;
+}
+inline evod::v1::ParameterValue count(std::uint32_t number) {
+    evod::v1::ParameterValue value;
+    value.set_count(number);
+    return value;
+}
+inline evod::v1::ParameterValue real(double number) {
+    evod::v1::ParameterValue value;
+    value.set_real(number);
+    return value;
+}
+
+/// What is other than by default in a world that a test makes.
+struct NewWorld {
+    std::string name;
+    std::uint64_t seed = 7;
+    std::vector<std::pair<std::string, evod::v1::ParameterValue>> parameters;
+};
+
 /// evod on a port of its own, with a connection of the test's own. It keeps nothing unless it is told --data.
 class RealServer {
   public:
@@ -140,10 +150,47 @@ class RealServer {
         EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
         return response.has_statistics() ? response.statistics().world() : response.world();
     }
-    evod::v1::WorldInfo state() {
+    /// world  empty: the server's choice
+    evod::v1::WorldInfo state(const std::string& world = "") {
         evod::v1::Request request;
-        request.mutable_get_statistics();
+        request.mutable_get_statistics()->set_world(world);
         return ask(request);
+    }
+
+    /// A world that waits, and will go as fast as it can.
+    void make_world(const NewWorld& wanted) {
+        evod::v1::Request create, speed;
+        auto& world = *create.mutable_create_world();
+        world.set_name(wanted.name);
+        world.set_seed(wanted.seed);
+        for (const auto& [name, value] : wanted.parameters) {
+            auto& parameter = *world.add_parameters();
+            parameter.set_name(name);
+            *parameter.mutable_value() = value;
+        }
+        ask(create);
+        speed.mutable_set_speed()->set_world(wanted.name);
+        speed.mutable_set_speed()->mutable_speed()->set_max(true);
+        ask(speed);
+    }
+    /// Until it is paused at this tick.
+    void run_to(const std::string& world, std::uint64_t tick) {
+        evod::v1::Request run;
+        run.mutable_run_until_tick()->set_world(world);
+        run.mutable_run_until_tick()->set_tick(tick);
+        ask(run);
+        EXPECT_TRUE(wait_until([&] {
+            const auto now = state(world);
+            return now.tick() == tick && now.state() == evod::v1::RUN_STATE_PAUSED;
+        }));
+    }
+    /// Until so many more have ended and it waits.
+    void run_generations(const std::string& world, std::uint64_t generations) {
+        evod::v1::Request run;
+        run.mutable_run()->set_world(world);
+        run.mutable_run()->set_generations(generations);
+        ask(run);
+        EXPECT_TRUE(wait_until([&] { return state(world).state() == evod::v1::RUN_STATE_WAITING; }));
     }
 
     evod::v1::ParameterSet parameters() {

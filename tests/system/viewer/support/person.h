@@ -1,8 +1,8 @@
 // Person: somebody at the window of evoview, who looks, presses keys and moves the mouse.
 #pragma once
 
-#include "client/viewer/drawing/palette.h"
-#include "tests/system/viewer/processes.h"
+#include "tests/support/waiting.h"
+#include "tests/system/viewer/support/pixels.h"
 
 #include <SFML/Graphics/Image.hpp>
 #include <X11/Xlib.h>
@@ -29,7 +29,7 @@ class Person {
     ~Person() { XCloseDisplay(display_); }
 
     bool finds_window() {
-        return comes_true([this] {
+        return wait_until([this] {
             ::Window root, parent, *children = nullptr;
             unsigned count = 0;
             XQueryTree(display_, DefaultRootWindow(display_), &root, &parent, &children, &count);
@@ -51,21 +51,7 @@ class Person {
     }
 
     bool sees(Colour colour) {
-        return comes_true([&] {
-            XImage* image = XGetImage(display_, window_, 0, 0, 800, 500, AllPlanes, ZPixmap);
-            const unsigned long wanted = (static_cast<unsigned long>(colour.red) << 16) |
-                                         (static_cast<unsigned long>(colour.green) << 8) | colour.blue;
-            unsigned count = 0;
-            for (int y = 0; image != nullptr && y < image->height; ++y) {
-                for (int x = 0; x < image->width; ++x) {
-                    count += (XGetPixel(image, x, y) & 0xffffff) == wanted;
-                }
-            }
-            if (image != nullptr) {
-                XDestroyImage(image);
-            }
-            return count > 50;
-        });
+        return wait_until([&] { return count(looks(), colour) > 50; });
     }
 
     /// What the window shows; of no size if it cannot be looked at just now.

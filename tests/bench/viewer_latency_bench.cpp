@@ -1,0 +1,331 @@
+// How long a viewer takes, on a real evod and in a real window: `under_xvfb.sh viewer_latency_bench [ORGANISMS…]`.
+//
+// step       from a client's command to a world at rest until the picture of that one tick is on the screen
+// running    from a tick of a world at 1 or 10 times real time until its picture is on the screen; and until everyone
+//            stands where it says, for organisms glide from one picture to the next
+// slider     from a slider's release until the server tells everyone that the parameter holds, at real time; and what
+//            there and back again takes
+//
+// When tick n was, is known from the clock of the world: n / rate after a moment which the answers to many questions
+// of which tick it is close in on, each from above. A picture is on the screen when the window was told to show it.
+#include "client/link/connection.h"
+#include "client/viewer/panels/parameters_panel.h"
+#include "client/viewer/shell/screen.h"
+#include "client/viewer/stage/pane.h"
+#include "tests/system/viewer/support/processes.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <mutex>
+#include <random>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace evod::viewer {
+namespace {
+
+using Clock = link::WorldView::Clock;
+using Ms = std::chrono::duration<double, std::milli>;
+
+constexpr std::chrono::milliseconds frame_min{15}; // as Screen waits
+constexpr double ticks_per_s = 60;                 // at real time
+constexpr const char* turned = "mutation_chance";
+
+void print(const std::string& what, std::vector<double> ms) {
+    if (ms.empty()) {
+        std::printf("%-52s nothing was measured\n", what.c_str());
+        return;
+    }
+    std::ranges::sort(ms);
+    const auto at = [&](double share) { return ms[static_cast<std::size_t>(share * double(ms.size() - 1))]; };
+    std::printf("%-52s median %6.1f, 99 of 100 %6.1f, least %6.1f, most %6.1f ms; %zu times\n", what.c_str(), at(0.5),
+                at(0.99), ms.front(), ms.back(), ms.size());
+    std::fflush(stdout);
+}
+
+/// The density of the benchmark world.
+void make_benchmark_world(RealServer& server, const std::string& name, std::uint32_t organism_count) {
+    const double area_px2 = organism_count * 46'080.0;
+    server.make_world({.name = name,
+                       .parameters = {{"population_size", count(organism_count)},
+                                      {"food_count", count(organism_count * 3)},
+                                      {"poison_count", count(organism_count * 2)},
+                                      {"island_width_px", real(std::sqrt(area_px2 * 16 / 9))},
+                                      {"island_height_px", real(std::sqrt(area_px2 * 9 / 16))}}});
+}
+
+class Viewer {
+  public:
+    Viewer(const std::string& server, const std::string& world) {
+        options_.connection.server = link::parse_endpoint(server).value();
+        options_.world = world;
+        screen_.emplace(options_);
+        panes_.emplace(options_);
+    }
+
+    /// One turn of the window's loop; `meanwhile` happens at some moment of it, and all of them are as likely.
+    ///
+    /// returns  when what was drawn was on the screen
+    Clock::time_point frame(const std::function<void()>& meanwhile = {}) {
+        const auto now = Clock::now();
+        for (sf::Event event; screen_->poll(event);) {
+        }
+        panes_->update(now);
+        Stage::Frame next = screen_->frame(now);
+        next.glide = true;
+        screen_->stage().draw(*panes_, next);
+        screen_->window().display();
+        const auto shown = Clock::now();
+        if (meanwhile) {
+            std::this_thread::sleep_until(
+                now + std::uniform_int_distribution{0, 15'000}(chance_)*std::chrono::microseconds{1});
+            meanwhile();
+        }
+        std::this_thread::sleep_until(now + frame_min);
+        return shown;
+    }
+    /// Frames until the condition holds; when the first was on the screen for which it did.
+    template <class Condition>
+    Clock::time_point frames_until(Condition condition) {
+        const auto end = Clock::now() + std::chrono::seconds{60};
+        while (Clock::now() < end) {
+            if (const auto shown = frame(); condition()) {
+                return shown;
+            }
+        }
+        throw std::runtime_error{"it never came to that"};
+    }
+
+    Watch& watch() { return panes_->focused().watch; }
+    std::uint64_t tick() { return watch().picture() != nullptr ? watch().picture()->about.tick() : 0; }
+    Stage& stage() { return screen_->stage(); }
+
+    void mouse(sf::Event::EventType type, Point at) {
+        sf::Event event{};
+        event.type = type;
+        if (type == sf::Event::MouseMoved) {
+            event.mouseMove = {static_cast<int>(at.x), static_cast<int>(at.y)};
+        } else {
+            event.mouseButton = {sf::Mouse::Left, static_cast<int>(at.x), static_cast<int>(at.y)};
+        }
+        stage().gui().handle(event);
+    }
+    Point find(const std::string& widget) {
+        frames_until([&] { return stage().gui().spots().find(widget).has_value(); });
+        return *stage().gui().spots().find(widget);
+    }
+    void click(const std::string& widget) {
+        const Point at = find(widget);
+        for (const auto type : {sf::Event::MouseMoved, sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
+            mouse(type, at);
+            frame();
+        }
+    }
+
+  private:
+    Options options_;
+    std::optional<Screen> screen_;
+    std::optional<Panes> panes_;
+    std::minstd_rand chance_{1};
+};
+
+evod::v1::Request at_speed(const std::string& world, double factor) {
+    evod::v1::Request request;
+    request.mutable_set_speed()->set_world(world);
+    request.mutable_set_speed()->mutable_speed()->set_real_time_factor(factor);
+    return request;
+}
+
+void measure_steps(RealServer& server, Viewer& viewer, const std::string& world) {
+    std::vector<double> ms;
+    for (int i = 0; i < 200; ++i) {
+        const std::uint64_t tick = viewer.tick() + 1;
+        evod::v1::Request step;
+        step.mutable_run_until_tick()->set_world(world);
+        step.mutable_run_until_tick()->set_tick(tick);
+        Clock::time_point sent;
+        viewer.frame([&] {
+            sent = Clock::now();
+            server.connection->send(step, [](const auto&) {});
+        });
+        ms.push_back(Ms{viewer.frames_until([&] { return viewer.tick() >= tick; }) - sent}.count());
+    }
+    print(world + ", step", ms);
+}
+
+/// When ticks of a world that runs on were, by what it answers.
+class TickClock {
+  public:
+    TickClock(RealServer& server, const std::string& world, double rate_hz) : server_{server}, rate_hz_{rate_hz} {
+        question_.mutable_get_statistics()->set_world(world);
+    }
+    void ask() {
+        server_.connection->send(question_, [this](const link::Result<evod::v1::Response>& response) {
+            if (response && response->has_statistics()) {
+                const std::lock_guard lock{mutex_};
+                const auto now = Clock::now();
+                begins_.emplace_back(now, now - since_begin(response->statistics().world().tick()));
+            }
+        });
+    }
+    /// By answers of half a second before and after, for a world may be held up.
+    Clock::time_point when(std::uint64_t tick, Clock::time_point shown) {
+        const std::lock_guard lock{mutex_};
+        auto begin = Clock::time_point::max();
+        for (const auto& [heard, latest] : begins_) {
+            if (std::chrono::abs(heard - shown) < std::chrono::milliseconds{500}) {
+                begin = std::min(begin, latest);
+            }
+        }
+        return begin + since_begin(tick);
+    }
+
+  private:
+    Clock::duration since_begin(std::uint64_t tick) const {
+        return std::chrono::duration_cast<Clock::duration>(
+            std::chrono::duration<double>{static_cast<double>(tick) / rate_hz_});
+    }
+    RealServer& server_;
+    double rate_hz_;
+    evod::v1::Request question_;
+    std::mutex mutex_;
+    std::vector<std::pair<Clock::time_point, Clock::time_point>> begins_; // an answer's arrival, tick 0 at the latest
+};
+
+void measure_running(RealServer& server, Viewer& viewer, const std::string& world, double factor) {
+    server.ask(at_speed(world, factor));
+    evod::v1::Request run, pause;
+    run.mutable_run()->set_world(world);
+    pause.mutable_pause()->set_world(world);
+    server.ask(run);
+    TickClock clock{server, world, ticks_per_s * factor};
+    struct Shown {
+        std::uint64_t tick;
+        Clock::time_point first, reached;
+    };
+    std::vector<Shown> all;
+    bool slowed = false;
+    const auto begin = Clock::now();
+    while (Clock::now() < begin + std::chrono::seconds{20}) {
+        const auto shown = viewer.frame([&] { clock.ask(); });
+        const bool newer = all.empty() || viewer.tick() != all.back().tick;
+        if (!all.empty() && all.back().reached == Clock::time_point{} &&
+            (newer || viewer.watch().view().blend_at(shown) >= 1)) {
+            all.back().reached = shown;
+        }
+        if (newer) {
+            all.push_back({viewer.tick(), shown, {}});
+        }
+        slowed = slowed || viewer.watch().control().told().slowed();
+    }
+    server.ask(pause);
+    viewer.frames_until([&] { return viewer.watch().control().state() == evod::v1::RUN_STATE_PAUSED; });
+    std::vector<double> first, reached;
+    for (const Shown& shown : all) {
+        if (shown.first > begin + std::chrono::seconds{2} && shown.reached != Clock::time_point{}) {
+            const auto when = clock.when(shown.tick, shown.first);
+            first.push_back(Ms{shown.first - when}.count());
+            reached.push_back(Ms{shown.reached - when}.count());
+        }
+    }
+    const std::string name = world + ", " + std::to_string(static_cast<int>(factor)) + " × real time";
+    print(name + (slowed ? ", slowed: picture" : ": picture"), first);
+    print(name + ": everyone where it says", reached);
+}
+
+void measure_slider(RealServer& server, Viewer& viewer, const std::string& world) {
+    server.ask(at_speed(world, 1));
+    evod::v1::Request run, pause, look;
+    run.mutable_run()->set_world(world);
+    pause.mutable_pause()->set_world(world);
+    look.mutable_get_parameters()->set_world(world);
+    server.ask(run);
+    std::vector<double> there_and_back;
+    for (int i = 0; i < 200; ++i) {
+        const auto sent = Clock::now();
+        server.ask(look);
+        there_and_back.push_back(Ms{Clock::now() - sent}.count());
+    }
+    viewer.stage().panels().show("Parameters");
+    viewer.click("apply on release");
+    viewer.click("Search");
+    for (const char sign : std::string{turned}) {
+        sf::Event event{};
+        event.type = sf::Event::TextEntered;
+        event.text.unicode = static_cast<sf::Uint32>(sign);
+        viewer.stage().gui().handle(event);
+        viewer.frame();
+    }
+    evod::v1::SubscribeEvents subscription;
+    subscription.set_world(world);
+    const auto events = server.connection->subscribe(subscription);
+    server.connection->wait_subscribed(events).value();
+    std::vector<double> ms;
+    for (int i = 0; i < 100; ++i) {
+        Point at = viewer.find(turned);
+        viewer.mouse(sf::Event::MouseMoved, at);
+        viewer.frame();
+        viewer.mouse(sf::Event::MouseButtonPressed, at);
+        viewer.frame();
+        at.x += i % 2 == 0 ? 30 : -30; // never where it is
+        viewer.mouse(sf::Event::MouseMoved, at);
+        viewer.frame();
+        server.connection->take_events();
+        Clock::time_point released, holds;
+        std::thread listener{[&] {
+            while (const auto event = server.connection->wait_event(std::chrono::seconds{20})) {
+                if (event->has_parameters_changed()) {
+                    holds = Clock::now();
+                    return;
+                }
+            }
+        }};
+        viewer.frame([&] {
+            released = Clock::now();
+            viewer.mouse(sf::Event::MouseButtonReleased, at);
+        });
+        for (int frame = 0; frame < 10; ++frame) {
+            viewer.frame();
+        }
+        listener.join();
+        if (holds == Clock::time_point{}) {
+            throw std::runtime_error{"the parameter was never changed"};
+        }
+        ms.push_back(Ms{holds - released}.count());
+    }
+    server.ask(pause);
+    print(world + ", slider", ms);
+    print(world + ", there and back", there_and_back);
+}
+
+void measure(std::uint32_t organism_count) {
+    RealServer server{{}};
+    const std::string world = std::to_string(organism_count);
+    make_benchmark_world(server, world, organism_count);
+    Viewer viewer{server.address(), world};
+    viewer.frames_until([&] { return viewer.watch().picture() != nullptr; });
+    measure_steps(server, viewer, world);
+    measure_running(server, viewer, world, 1);
+    measure_running(server, viewer, world, 10);
+    measure_slider(server, viewer, world);
+}
+
+} // namespace
+} // namespace evod::viewer
+
+int main(int argc, char** argv) {
+    std::vector<std::string> organisms{argv + 1, argv + argc};
+    try {
+        for (const std::string& count : organisms.empty() ? std::vector<std::string>{"50", "10000"} : organisms) {
+            evod::viewer::measure(static_cast<std::uint32_t>(std::stoul(count)));
+        }
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "viewer_latency_bench: %s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
