@@ -5,7 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 namespace evod::storage {
 namespace {
@@ -97,12 +99,38 @@ TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
     EXPECT_THAT(archive.error().message, HasSubstr("w.evod"));
 }
 
-TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorld) {
-    std::ofstream{folder.path() + "/w.evod"};
+TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
+    const std::string next = DataFolder::next_file_of(folder.path() + "/w.evod");
+    { // as far as it is made before the first commit
+        const auto begun = RunFile::begin_new(next, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {});
+        ASSERT_TRUE(begun);
+        std::filesystem::copy_file(next, folder.path() + "/begun.evod-next");
+    }
+    for (const char* name : {"empty", "byte"})
+        std::ofstream{folder.path() + "/" + name + ".evod-next"} << (name == std::string{"byte"} ? "x" : "");
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
     EXPECT_FALSE((*archive)->holds_worlds());
     EXPECT_EQ((*archive)->identity_of("w"), nullptr);
+    for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+        EXPECT_EQ(file.path().filename(), "lock");
+}
+
+TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
+    const std::string path = folder.path() + "/w.evod";
+    std::ofstream{path};
+    EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
+              base::RefusalCode::AlreadyExists);
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}, std::chrono::hours{1}};
+        const RecordedRun run{*data, thread};
+        while (!thread.trouble())
+            std::this_thread::yield();
+        EXPECT_THAT(*thread.trouble(), HasSubstr(path + " is there already"));
+    }
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
 }
 
 TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
@@ -119,6 +147,27 @@ TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
     ASSERT_TRUE(archive) << to_text(archive.error());
     EXPECT_FALSE((*archive)->holds_worlds());
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
+}
+
+TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        for (std::uint64_t reset = 1; reset <= 3; ++reset) {
+            run.command(set_parameter("food_health", 2.0));
+            run.command(set_parameter("food_health", 3.0));
+            run.reset({9}, {3, reset});
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    std::vector<std::uint64_t> remembered;
+    for (const JournalEntry& entry : (*archive)->take_answers())
+        remembered.push_back(entry.origin.request_id);
+    EXPECT_THAT(remembered, testing::UnorderedElementsAre(1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u));
+    EXPECT_EQ(remembered.back(), 9u); // of the run that goes on
 }
 
 /// A world that was reset, as a crash can leave it.

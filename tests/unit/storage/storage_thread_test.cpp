@@ -231,8 +231,20 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
             hashes.push_back(run.world().hash());
             (void)wait();
         }
+        // What has a world's name is whole, and tells its run without its log too.
+        for (const std::string world : {"w", "fork"})
+            if (const std::string path = folder.path() + "/" + world + ".evod"; std::filesystem::exists(path)) {
+                const TemporaryFolder copies;
+                const std::string copy = copies.path() + "/copy.evod";
+                std::filesystem::copy_file(path, copy);
+                const auto alone = RunFile::open_read_only(copy);
+                ASSERT_TRUE(alone) << to_text(alone.error());
+                EXPECT_EQ((*alone)->identity().name, world);
+            }
         const auto archive = Archive::open(folder.path(), {}, executor);
         ASSERT_TRUE(archive) << to_text(archive.error());
+        for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+            EXPECT_EQ(file.path().string().find("-next"), std::string::npos) << file.path();
         simulation::Laboratory laboratory = (*archive)->take_laboratory();
         for (const auto& entry : laboratory.entries()) {
             const std::uint64_t tick = entry->world.moment().tick;
