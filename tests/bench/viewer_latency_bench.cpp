@@ -64,7 +64,7 @@ class Viewer {
         options_.connection.server = link::parse_endpoint(server).value();
         options_.world = world;
         screen_.emplace(options_);
-        panes_.emplace(options_);
+        panes_.emplace(wanted_of(options_));
     }
 
     /// One turn of the window's loop; `meanwhile` happens at some moment of it, and all of them are as likely.
