@@ -36,7 +36,7 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Fit, .key = Key::Home},
     {.action = Action::Follow, .key = Key::L, .help = "follow who is selected; again: no more"},
     {.action = Action::NextColouring, .key = Key::C, .help = "colour by a gene, health, lineage, nothing"},
-    {.action = Action::Radii, .key = Key::V, .help = "show how far they see"},
+    {.action = Action::Radii, .key = Key::V, .help = "show perception radii"},
     {.action = Action::Forces, .key = Key::G, .help = "show forces"},
     {.action = Action::Trails, .key = Key::T, .help = "show trails"},
     {.action = Action::Screenshot, .key = Key::S, .help = "save the picture as PNG in the working folder"},
