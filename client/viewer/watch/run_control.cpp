@@ -187,7 +187,10 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
         request.mutable_get_statistics()->set_world(world_);
         return request;
     }
-    see(response->world());
+    const evod::v1::WorldInfo& world = response->world();
+    // What came of the command may have been told before the answer, which waits for the disk.
+    const bool overtaken = told_.run_id() == world.run_id() && told_.tick() > world.tick() && !shows_past_;
+    see(overtaken ? evod::v1::WorldInfo{told_} : world);
     if (step_ticks > 0) {
         return step(step_ticks);
     }

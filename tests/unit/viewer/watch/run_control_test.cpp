@@ -142,6 +142,17 @@ TEST(RunControl, AnAnswerThatWasOvertakenChangesNothing) {
     EXPECT_EQ(control.state(), paused);
 }
 
+TEST(RunControl, WhatIsToldBeforeAnAnswerHoldsOnceItHasCome) {
+    RunControl control;
+    control.see(world(waiting, 10));
+    control.step(1);
+    control.see(world(paused, 11)); // an event, while the answer waits for the disk
+    EXPECT_EQ(control.state(), waiting);
+    const evod::v1::Response begun = answer(world(running, 10));
+    control.answered(&begun);
+    EXPECT_EQ(control.state(), paused);
+}
+
 TEST(RunControl, StepsAddUpWhileTheyAreUnderWay) {
     RunControl control;
     control.see(world(paused, 100));
