@@ -26,8 +26,8 @@ Result<bool> is_over(RunFile& file) {
     return *mark && (*mark)->ended;
 }
 
-/// A world was to begin again. Once the run that it had has its end mark, the one that waits beside it is whole and
-/// takes its place; before that it is as if nobody had asked.
+/// A world was to begin, or to begin again. Once the run that it had has its end mark, the one that waits beside it is
+/// whole and takes its place; before that it is as if nobody had asked.
 Result<void> finish_replacing(const DataFolder& folder, const std::string& path) {
     const std::string next = DataFolder::next_file_of(path);
     std::error_code error;
@@ -44,6 +44,12 @@ Result<void> finish_replacing(const DataFolder& folder, const std::string& path)
         old->reset();
         if (auto moved = RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id)); !moved)
             return moved;
+    } else {
+        const auto unmade = RunFile::holds_nothing(next);
+        if (!unmade)
+            return unmade.error();
+        if (*unmade)
+            return RunFile::remove(next);
     }
     return RunFile::rename(next, path);
 }
@@ -81,12 +87,8 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
 
 Result<void> Archive::bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor) {
     auto file = RunFile::open(path, options);
-    if (!file) {
-        // Whoever was creating it did not come to the end of it, so nobody was told that it is there.
-        if (file.error().code == base::RefusalCode::NotFound)
-            return {};
+    if (!file)
         return file.error();
-    }
     const RunIdentity identity = (*file)->identity();
     const auto over = is_over(**file);
     if (!over)

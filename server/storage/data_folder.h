@@ -1,5 +1,5 @@
 // Data folder: where a server's run files lie. `NAME.evod` is the run of the world NAME; `NAME.RUNID.evod` is one that
-// has ended; `NAME.evod-next` one that is about to take the place of `NAME.evod`.
+// has ended; `NAME.evod-next` one that is being made, and then becomes `NAME.evod`.
 //
 // Owner        one server: a lock on the file `lock` keeps a second one out.
 #pragma once

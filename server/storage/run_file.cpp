@@ -2,6 +2,7 @@
 
 #include "server/simulation/experiment.h"
 #include "server/storage/checkpoint.h"
+#include "server/storage/data_folder.h"
 
 #include <algorithm>
 #include <charconv>
@@ -119,6 +120,18 @@ simulation::GenerationStatistics read_statistics(RowReader& row) {
     return statistics;
 }
 
+Refusal emptied(const std::string& path) {
+    return refusal(RefusalCode::DataLoss, path + " is damaged: it holds nothing");
+}
+
+/// A file of no more than one byte is an empty database to SQLite, which then throws away the log beside it.
+Result<void> expect_bytes(const std::string& path) {
+    std::error_code error;
+    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1)
+        return emptied(path);
+    return {};
+}
+
 std::string row_of(const char* table, std::uint64_t key) {
     return std::string{"the row "} + std::to_string(key) + " of its table " + table;
 }
@@ -178,7 +191,11 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
                                                  const Options& options, const GenerationBegun* beginning,
                                                  const Checkpoint* checkpoint) {
-    auto file = begin_new(path, identity, options);
+    std::error_code error;
+    if (std::filesystem::exists(path, error))
+        return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    const std::string next = DataFolder::next_file_of(path);
+    auto file = begin_new(next, identity, options);
     if (!file)
         return file.error();
     if (beginning != nullptr)
@@ -187,10 +204,38 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
         (*file)->write(*checkpoint);
     if (auto committed = (*file)->commit(); !committed)
         return committed.error();
-    return file;
+    if (auto settled = (*file)->settle(); !settled)
+        return settled.error();
+    file->reset();
+    if (auto named = rename(next, path); !named)
+        return named.error();
+    return open(path, options);
+}
+
+Result<void> RunFile::settle() {
+    if (database_.number("PRAGMA wal_checkpoint(TRUNCATE)") != 0)
+        return refusal(RefusalCode::Unavailable, path_ + " is being read by somebody");
+    if (database_.failed())
+        return failure();
+    return {};
+}
+
+bool RunFile::holds_nothing() {
+    return database_.number("PRAGMA application_id") == 0 &&
+           database_.number("SELECT count(*) FROM sqlite_schema") == 0 && !database_.failed();
+}
+
+Result<bool> RunFile::holds_nothing(const std::string& path) {
+    RunFile file{path, Database::Mode::Write, {}};
+    const bool nothing = file.holds_nothing();
+    if (file.database_.failed())
+        return file.failure();
+    return nothing;
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Options& options) {
+    if (auto there = expect_bytes(path); !there)
+        return there.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
     if (auto read = file->read_identity(); !read)
         return read.error();
@@ -233,7 +278,7 @@ Result<void> RunFile::remove(const std::string& path) {
     std::filesystem::remove(path, error);
     if (error)
         return refusal(RefusalCode::Unavailable, path + " cannot be removed: " + error.message());
-    for (const char* suffix : {"-wal", "-shm"})
+    for (const char* suffix : {"-wal", "-shm", "-journal"})
         std::filesystem::remove(path + suffix, ignored);
     return {};
 }
@@ -245,6 +290,8 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
         return refusal(RefusalCode::NotFound, path + ": there is no such file");
     if (is_directory(status))
         return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file");
+    if (auto there = expect_bytes(path); !there)
+        return there.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
     auto read = file->read_identity();
     // Whoever reads takes part in the log beside the file, so SQLite has to write there. Where that cannot be, a file
@@ -332,8 +379,8 @@ Result<void> RunFile::read_identity() {
     const std::int64_t format = format_ = database_.number("PRAGMA user_version");
     if (database_.failed())
         return failure();
-    if (application == 0 && database_.number("SELECT count(*) FROM sqlite_schema") == 0 && !database_.failed())
-        return refusal(RefusalCode::NotFound, path_ + " holds nothing");
+    if (holds_nothing())
+        return emptied(path_);
     if (application != application_id)
         return refusal(RefusalCode::InvalidArgument, path_ + " is not a run file of evod");
     if (format > format_version)

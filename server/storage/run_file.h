@@ -39,7 +39,7 @@ class RunFile {
         std::uint64_t keep_every = 1;
     };
 
-    /// A new file; refused if there is one.
+    /// A new file; refused if there is one. It is there whole, or not at all.
     ///
     /// beginning   of identity.first_generation; may follow later for a run that begins with generation 1.
     /// checkpoint  at identity.first_tick, for a run that begins within that generation; it is never taken out.
@@ -47,11 +47,14 @@ class RunFile {
                                                          const Options& options,
                                                          const GenerationBegun* beginning = nullptr,
                                                          const Checkpoint* checkpoint = nullptr);
-    /// A new file that is there with all that is written until commit(), or not at all; as after begin().
+    /// A new file under a name that is not its own yet; as after begin(). Until commit() it holds nothing.
     static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
                                                             const Options& options);
-    /// To be gone on with: its end mark is taken away by the first commit. NOT_FOUND if the file holds nothing: whoever
-    /// was to create it did not come to the end of it.
+    /// Puts what has been committed into the file itself, which then needs no log beside it.
+    base::Result<void> settle();
+    /// Of a file from begin_new(): whether whoever was to make it did not come to the end of it.
+    static base::Result<bool> holds_nothing(const std::string& path);
+    /// To be gone on with: its end mark is taken away by the first commit. A file that holds nothing is damaged.
     static base::Result<std::unique_ptr<RunFile>> open(const std::string& path, const Options& options);
     /// Gives a file that is not open here another name, with all that SQLite keeps beside it: whoever is reading it
     /// goes on, and nothing of it is left under the old name.
@@ -151,6 +154,7 @@ class RunFile {
     /// Whether SQLite finds a table and its indices sound; "1": the whole file, until the first fault.
     base::Result<void> check_tree(const std::string& of);
     base::Result<void> read_first_population();
+    bool holds_nothing();
     bool is_held(std::uint64_t generation);
     /// The first tick after this one of which is_link_held().
     std::uint64_t next_link_held(std::uint64_t after) const;

@@ -7,6 +7,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace evod::storage {
@@ -37,6 +38,12 @@ std::size_t bytes_of(const StorageThread::Record& record) {
             [](const auto&) { return sizeof(HashLink); },
         },
         record);
+}
+
+Refusal is_there(const std::string& path) {
+    return {.code = base::RefusalCode::AlreadyExists,
+            .message = path + " is there already, and holds another run",
+            .violations = {}};
 }
 
 } // namespace
@@ -88,6 +95,7 @@ StorageThread::RunNumber StorageThread::create(const std::string& path, RunIdent
     Run run;
     run.path = path;
     run.to_create = std::move(identity);
+    run.unnamed = true;
     return add(std::move(run), items_of(std::move(first)));
 }
 
@@ -96,6 +104,7 @@ StorageThread::RunNumber StorageThread::replace(RunNumber old_run, Ending ending
     Run run;
     run.path = path;
     run.to_create = std::move(identity);
+    run.unnamed = true;
     run.replaces = old_run;
     Closing closing{.last = items_of(std::move(ending.last)), .renamed = std::move(ending.renamed), .replaced = true};
     return add(std::move(run), items_of(std::move(first)), std::pair{old_run, std::move(closing)});
@@ -233,16 +242,14 @@ Result<void> StorageThread::begin(Run& run) {
         run.file->begin();
         return {};
     }
-    const std::string path = run.replaces ? DataFolder::next_file_of(run.path) : run.path;
+    const std::string path = run.unnamed ? DataFolder::next_file_of(run.path) : run.path;
     // One that was to be created may be there already, if it is not known how creating it went.
     Result<std::unique_ptr<RunFile>> file = RunFile::open(path, options_);
     const bool is_new = run.to_create && !file;
     if (is_new) // with all that it begins with, so that nobody finds one that has less
         file = RunFile::begin_new(path, *run.to_create, options_);
     else if (run.to_create && (*file)->identity().run_id != run.to_create->run_id)
-        file = Refusal{.code = base::RefusalCode::AlreadyExists,
-                       .message = path + " is there already, and holds another run",
-                       .violations = {}};
+        file = is_there(path);
     if (!file)
         return file.error();
     run.file = *std::move(file);
@@ -262,6 +269,9 @@ bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
             std::visit([&](const auto& record) { run.file->write(record); }, *item.record);
     if (auto committed = run.file->commit(); !committed)
         return fail(run, committed.error());
+    if (run.to_create)
+        if (auto settled = run.file->settle(); !settled)
+            return fail(run, settled.error());
     run.to_create.reset();
     run.commit_took = std::chrono::steady_clock::now() - began;
     return true;
@@ -296,7 +306,7 @@ bool StorageThread::write_out(Run& run) {
                            std::make_move_iterator(run.waiting.end()));
         run.waiting.clear();
     }
-    if (run.replaces && !take_place(run))
+    if (run.unnamed && !run.to_create && !take_place(run))
         return false;
     tell(run, run.written);
     if (run.closing)
@@ -313,15 +323,19 @@ bool StorageThread::write_out(Run& run) {
 }
 
 bool StorageThread::take_place(Run& run) {
-    if (const auto old = runs_.find(*run.replaces); old != runs_.end()) {
+    if (const auto old = run.replaces ? runs_.find(*run.replaces) : runs_.end(); old != runs_.end()) {
         old->second.closing->replaced = false;
         if (!write_out(old->second))
             return false;
     }
     run.file.reset();
+    std::error_code error;
+    if (std::filesystem::exists(run.path, error))
+        return fail(run, is_there(run.path));
     if (const auto moved = RunFile::rename(DataFolder::next_file_of(run.path), run.path); !moved)
         return fail(run, moved.error());
     run.replaces.reset();
+    run.unnamed = false;
     return true;
 }
 

@@ -4,10 +4,10 @@
 //
 // A commit is made at once for a record that somebody waits for, else for what has come together in `gathering_time`.
 //
-// Replacing    a run that takes the place of another is made as `NAME.evod-next`; when it is whole, the old one gets
-// its
-//              end mark and its other name, and the new one the name that is free then. So at every instant one of the
-//              two is the world's run; Archive::open() sees which after a crash.
+// New files    a run is made as `NAME.evod-next` and gets its name when it is whole, so that what has that name and
+//              holds nothing is damaged. Where it takes the place of another, the old one gets its end mark and its
+//              other name first. So at every instant one of the two is the world's run; Archive::open() sees which
+//              after a crash.
 // Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
 //              anew and everything that may be missing written again, every `retry_time`, until it is there.
 // Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
@@ -113,6 +113,7 @@ class StorageThread {
     struct Run {
         std::string path;
         std::optional<RunIdentity> to_create;
+        bool unnamed = false;              // its file is one that is not whole yet, or still has the name of one
         std::optional<RunNumber> replaces; // until it has taken the other's place
         std::unique_ptr<RunFile> file;     // nullptr: to be opened, or created
         std::vector<Item> waiting;
@@ -132,6 +133,7 @@ class StorageThread {
     /// Writes what waits for a run; false if that failed.
     bool write_out(Run& run);
     bool commit(Run& run, const std::vector<Item>& items);
+    /// Gives a new file its name.
     bool take_place(Run& run);
     bool end(Run& run);
     void tell(const Run& run, std::vector<Item>& items);

@@ -3,6 +3,7 @@
 //
 // Never a wrong world: damage is named, or it hit what nobody reads, or, where there is a log, the file is taken for
 // what it was at an earlier moment, with everything up to there and nothing after it.
+#include "server/storage/archive.h"
 #include "server/storage/rerun.h"
 #include "server/storage/verify.h"
 #include "tests/unit/storage/recorded_run.h"
@@ -287,6 +288,39 @@ TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
     }
     EXPECT_GT(named, 0);
     EXPECT_EQ(earlier > 0, GetParam() != Left::Closed);
+}
+
+TEST_P(DamageTest, AServerDoesNotStartOverAFileThatHoldsNothingOfTheRunAndLeavesItAsItIs) {
+    constexpr std::size_t page_bytes = 4096, head_bytes = 100;
+    const Content damages[] = {{"", sound.log},
+                               {"", ""},
+                               {"x", ""}, // of no size to SQLite
+                               {sound.file.substr(0, 1), sound.log},
+                               {sound.file.substr(0, head_bytes), ""},
+                               {sound.file.substr(0, page_bytes), ""}};
+    for (const Content& damage : damages) {
+        SCOPED_TRACE(std::to_string(damage.file.size()) + " bytes of the file, of the log " +
+                     std::to_string(damage.log.size()));
+        const TemporaryFolder server;
+        const std::string path = server.path() + "/w.evod";
+        write_content(path, damage);
+        const auto archive = Archive::open(server.path(), {}, executor);
+        ASSERT_FALSE(archive);
+        EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
+        EXPECT_NE(archive.error().message.find(path), std::string::npos) << archive.error().message;
+        EXPECT_EQ(read_bytes(path), damage.file);
+        EXPECT_EQ(read_bytes(path + "-wal"), damage.log);
+        EXPECT_FALSE(RunFile::open_read_only(path));
+    }
+}
+
+/// A file that was created holds by itself which run it is, so that what does not is known to be damaged.
+TEST_P(DamageTest, WithoutItsLogAFileStillTellsItsRun) {
+    write_content(place, {sound.file, ""});
+    const auto file = RunFile::open_read_only(place);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->identity().name, "w");
+    EXPECT_GE((*file)->last_generation(), 1u);
 }
 
 std::string name_of_left(const testing::TestParamInfo<Left>& left) {

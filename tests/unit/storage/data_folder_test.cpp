@@ -5,7 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 namespace evod::storage {
 namespace {
@@ -97,12 +99,38 @@ TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
     EXPECT_THAT(archive.error().message, HasSubstr("w.evod"));
 }
 
-TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorld) {
-    std::ofstream{folder.path() + "/w.evod"};
+TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
+    const std::string next = DataFolder::next_file_of(folder.path() + "/w.evod");
+    { // as far as it is made before the first commit
+        const auto begun = RunFile::begin_new(next, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {});
+        ASSERT_TRUE(begun);
+        std::filesystem::copy_file(next, folder.path() + "/begun.evod-next");
+    }
+    for (const char* name : {"empty", "byte"})
+        std::ofstream{folder.path() + "/" + name + ".evod-next"} << (name == std::string{"byte"} ? "x" : "");
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
     EXPECT_FALSE((*archive)->holds_worlds());
     EXPECT_EQ((*archive)->identity_of("w"), nullptr);
+    for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+        EXPECT_EQ(file.path().filename(), "lock");
+}
+
+TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
+    const std::string path = folder.path() + "/w.evod";
+    std::ofstream{path};
+    EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
+              base::RefusalCode::AlreadyExists);
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}, std::chrono::hours{1}};
+        const RecordedRun run{*data, thread};
+        while (!thread.trouble())
+            std::this_thread::yield();
+        EXPECT_THAT(*thread.trouble(), HasSubstr(path + " is there already"));
+    }
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
 }
 
 TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <fstream>
 #include <future>
 
 namespace evod::storage {
@@ -231,8 +232,17 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
             hashes.push_back(run.world().hash());
             (void)wait();
         }
+        // What has a world's name says what it is without its log too.
+        for (const std::string world : {"w", "fork"})
+            if (const std::string path = folder.path() + "/" + world + ".evod"; std::filesystem::exists(path)) {
+                std::string head(72, '\0');
+                std::ifstream{path, std::ios::binary}.read(head.data(), std::ssize(head));
+                EXPECT_EQ(head.substr(68), "EVOD") << path;
+            }
         const auto archive = Archive::open(folder.path(), {}, executor);
         ASSERT_TRUE(archive) << to_text(archive.error());
+        for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+            EXPECT_EQ(file.path().string().find("-next"), std::string::npos) << file.path();
         simulation::Laboratory laboratory = (*archive)->take_laboratory();
         for (const auto& entry : laboratory.entries()) {
             const std::uint64_t tick = entry->world.moment().tick;
