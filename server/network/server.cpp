@@ -177,6 +177,8 @@ void Server::begin_first_world() {
 void Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
+        static_assert(storage::Archive::answers_kept_of_ended == retries_kept &&
+                      storage::Archive::answers_of_ended_bytes_max == retry_bytes_max);
         dispatcher_.restore(archive_->take_answers());
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries())

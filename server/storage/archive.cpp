@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <tuple>
 #include <utility>
 
 namespace evod::storage {
@@ -71,18 +73,41 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
         return files.error();
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
-    // The last thing that was done to a run that was deleted.
-    for (const std::string& ended : files->ended) {
-        const auto file = RunFile::open_read_only(ended);
-        if (!file)
-            continue; // no world depends on it; whoever opens it is told
-        if (auto last = (*file)->journal((*file)->last_journal_entry()))
-            archive->answers_.insert(archive->answers_.end(), last->begin(), last->end());
-    }
+    archive->remember(files->ended);
     for (const std::string& file : files->of_worlds)
         if (auto brought = archive->bring_back(file, options, executor); !brought)
             return brought.error();
     return archive;
+}
+
+void Archive::remember(const std::vector<std::string>& paths) {
+    struct Ended {
+        std::filesystem::file_time_type when;
+        std::string path;
+        std::vector<JournalEntry> last = {};
+    };
+    std::vector<Ended> runs;
+    for (const std::string& path : paths) {
+        std::error_code error;
+        runs.push_back({std::filesystem::last_write_time(path, error), path});
+    }
+    std::ranges::sort(runs, std::greater{}, [](const Ended& run) { return std::tie(run.when, run.path); });
+    std::size_t bytes = 0;
+    for (Ended& run : runs) {
+        const auto file = RunFile::open_read_only(run.path);
+        if (!file)
+            continue; // no world depends on it; whoever opens it is told
+        const std::uint64_t last = (*file)->last_journal_entry();
+        const std::uint64_t count = std::min<std::uint64_t>(
+            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // that which ended it
+        if (auto entries = (*file)->journal(last + 1 - count))
+            run.last = *std::move(entries);
+        for (const JournalEntry& entry : run.last)
+            bytes += entry.origin.request.size() + entry.answer.size();
+    }
+    for (auto run = runs.rbegin(); run != runs.rend(); ++run)
+        answers_.insert(answers_.end(), std::make_move_iterator(run->last.begin()),
+                        std::make_move_iterator(run->last.end()));
 }
 
 Result<void> Archive::bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor) {

@@ -16,6 +16,11 @@ namespace evod::storage {
 
 class Archive {
   public:
+    /// Commands of runs that have ended whose answers are remembered: the newest of each run, and of all those that
+    /// ended last as long as they take no more bytes; of every other run its last.
+    static constexpr std::uint32_t answers_kept_of_ended = 1000;
+    static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
+
     /// Takes the folder and brings every world back. Refused, naming the file, where one cannot be brought back: a
     /// server that went on without it would seem to have lost it.
     static base::Result<std::unique_ptr<Archive>> open(const std::string& path, const RunFile::Options& options,
@@ -28,7 +33,7 @@ class Archive {
     bool holds_worlds() const { return !identities_.empty(); }
     /// The worlds; once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
-    /// Commands that were applied, with their answers, oldest first within a run; once.
+    /// Commands that were applied, with their answers, oldest first within a run, those of ended runs first; once.
     std::vector<JournalEntry> take_answers() { return std::move(answers_); }
 
     /// nullptr once it is closed.
@@ -39,6 +44,8 @@ class Archive {
 
   private:
     Archive(DataFolder folder, const RunFile::Options& options);
+    /// paths: of runs that have ended.
+    void remember(const std::vector<std::string>& paths);
     base::Result<void> bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor);
 
     DataFolder folder_;

@@ -401,6 +401,23 @@ class Recovery(unittest.TestCase):
             self.assertEqual(reset.status.code, 0)
         server.end()
 
+    def test_a_command_before_a_reset_is_done_once_after_a_kill_too(self):
+        server = self.serve("--seed", "5")
+        with Client(server, "early") as early, Client(server, "k") as client:
+            first = early.call(1, **set_parameter("food_health", 7.0))
+            self.assertEqual(first.status.code, 0)
+            client.call(1, **set_parameter("food_health", 9.0))
+            client.call(2, reset_world=c.ResetWorld())
+            newest = client.call(3, **set_parameter("food_health", 11.0))
+        server.kill()
+        server = self.serve()
+        with Client(server, "early") as early:
+            self.assertEqual(early.call(1, **set_parameter("food_health", 7.0)), first)
+            there = early.call(2, get_parameters=c.GetParameters()).parameters
+            self.assertEqual(there.revision, newest.parameters.revision)
+            self.assertEqual([x.value.real for x in there.parameters if x.name == "food_health"], [11.0])
+        server.end()
+
     def test_an_experiment_goes_on_only_if_it_is_the_same(self):
         path = pathlib.Path(self.data) / "plate.json"
         path.write_text('{"population_size": 20, "seed": 4}')

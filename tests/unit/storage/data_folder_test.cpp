@@ -149,6 +149,27 @@ TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
 }
 
+TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        for (std::uint64_t reset = 1; reset <= 3; ++reset) {
+            run.command(set_parameter("food_health", 2.0));
+            run.command(set_parameter("food_health", 3.0));
+            run.reset({9}, {3, reset});
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    std::vector<std::uint64_t> remembered;
+    for (const JournalEntry& entry : (*archive)->take_answers())
+        remembered.push_back(entry.origin.request_id);
+    EXPECT_THAT(remembered, testing::UnorderedElementsAre(1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u));
+    EXPECT_EQ(remembered.back(), 9u); // of the run that goes on
+}
+
 /// A world that was reset, as a crash can leave it.
 class Replacing : public ArchiveTest {
   protected:
