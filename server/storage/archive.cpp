@@ -143,10 +143,10 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
         return recovered.error();
     const EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
-    log::info({.world = identity.name}, "world \"{}\" goes on from generation {}, tick {}{}", identity.name,
-              recovered->world.moment().generation, recovered->world.moment().tick,
-              was_closed ? "" : ", where its file was left without being closed");
     const auto name = std::filesystem::path{path}.stem().string();
+    log::info({.world = name}, "world \"{}\" goes on from generation {}, tick {} of {}{}", name,
+              recovered->world.moment().generation, recovered->world.moment().tick, path,
+              was_closed ? "" : ", which was left without being closed");
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
     RunRecorder& run = recorder_->go_on(name, *std::move(file), contents, generations_ended);
