@@ -1091,9 +1091,9 @@ void RunFile::write(const HashLink& link) {
 }
 
 void RunFile::write(const Checkpoint& checkpoint) {
-    if (database_.failed())
-        return; // packing would be for nothing
     const simulation::Moment& moment = checkpoint.state.moment;
+    if (database_.failed() || !is_held(moment.generation))
+        return; // packing would be for nothing
     const std::int64_t parameters = number_of(checkpoint.state.parameters);
     const std::string state = pack(checkpoint.state);
     writers()
