@@ -160,6 +160,17 @@ std::string trouble_of(const v1::Storage& storage) {
     }
 }
 
+std::string durability_of(const v1::Welcome& welcome) {
+    switch (welcome.durability()) {
+    case v1::DURABILITY_NONE:
+        return "nothing is kept: worlds end with the server";
+    case v1::DURABILITY_RELAXED:
+        return "durability relaxed: what was answered survives evod, but perhaps not the machine";
+    default:
+        return "";
+    }
+}
+
 std::string to_text(const v1::Speed& speed) {
     return speed.has_real_time_factor() ? exact(speed.real_time_factor()) + "x" : "max";
 }

@@ -76,6 +76,8 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 std::string state_of(const v1::WorldInfo& world);
 /// "commands are refused: the disk is full", "worlds wait for the disk: …"; empty while it keeps up.
 std::string trouble_of(const v1::Storage& storage);
+/// What becomes of a command that was answered, where the machine may lose it; empty where it may not.
+std::string durability_of(const v1::Welcome& welcome);
 /// "2x", "max".
 std::string to_text(const v1::Speed& speed);
 /// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".

@@ -44,10 +44,12 @@ void status(const Common& common) {
                        std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
                        std::to_string(world.island_count()), std::to_string(world.seed())});
         }
-        const std::string trouble = trouble_of(caller.welcome().storage());
-        return "evod " + caller.welcome().server_version() + " at " +
-               link::to_text(*link::parse_endpoint(common.server)) + "\n" + (trouble.empty() ? "" : trouble + "\n") +
-               (worlds.worlds().empty() ? "no worlds: make one with `evoctl create NAME`\n" : table.to_text());
+        std::string text = "evod " + caller.welcome().server_version() + " at " +
+                           link::to_text(*link::parse_endpoint(common.server)) + "\n";
+        for (const std::string& line : {durability_of(caller.welcome()), trouble_of(caller.welcome().storage())}) {
+            text += line.empty() ? "" : line + "\n";
+        }
+        return text + (worlds.worlds().empty() ? "no worlds: make one with `evoctl create NAME`\n" : table.to_text());
     });
 }
 

@@ -148,8 +148,11 @@ void fork(const Common& common, const ForkOptions& options) {
         command.set_at_generation(*options.at_generation);
     }
     const v1::Response response = caller.call(std::move(request));
-    print(common, response,
-          [&] { return "forked " + response.world().name() + ": " + sentence(response.world()) + "\n"; });
+    print(common, response, [&] {
+        const bool kept = caller.welcome().durability() != v1::DURABILITY_NONE;
+        return "forked " + response.world().name() + ": " + sentence(response.world()) + "\n" +
+               (kept ? "" : "it is not kept, and ends with this server: `evod fork` makes a world of a run file\n");
+    });
 }
 
 struct SeekOptions {

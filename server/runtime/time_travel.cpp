@@ -236,7 +236,7 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
     if (!looks_.contains(name))
         return reply(laboratory_, Refusal{.code = RefusalCode::FailedPrecondition,
                                           .message = "this world lives and cannot be taken to another moment: open its "
-                                                     "past, or serve its file with evod replay",
+                                                     "past, as evoview does, or serve its file with evod replay",
                                           .violations = {}});
     const std::string& past_of = (*entry)->recording->past_of;
     look_at(past_of.empty() ? name : past_of, [this, name, request, reply](Result<simulation::Recording> there,

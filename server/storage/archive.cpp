@@ -10,6 +10,8 @@
 
 namespace evod::storage {
 
+using base::Refusal;
+using base::RefusalCode;
 using base::Result;
 
 Archive::Archive(DataFolder folder, const RunFile::Options& options)
@@ -26,6 +28,18 @@ Result<bool> is_over(RunFile& file) {
     if (!mark)
         return mark.error();
     return *mark && (*mark)->ended;
+}
+
+/// Why there is no server with such a file, and what can be done.
+Refusal with_ways_out(Refusal why, const std::string& folder) {
+    const std::string move = "move it, and its -wal if there is one, out of " + folder;
+    if (why.code == RefusalCode::DataLoss)
+        why.message += "; put a copy back, or " + move + " to start without its world";
+    else if (why.code == RefusalCode::FailedPrecondition)
+        why.message += "; start the evod that made it, or " + move + " to start without its world";
+    else if (why.code == RefusalCode::InvalidArgument)
+        why.message += "; " + move;
+    return why;
 }
 
 /// A world was to begin, or to begin again. Once the run that it had has its end mark, the one that waits beside it is
@@ -66,7 +80,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
     auto files = folder->files();
     for (const std::string& file : files ? files->replaced : std::vector<std::string>{})
         if (auto finished = finish_replacing(*folder, file); !finished)
-            return finished.error();
+            return with_ways_out(finished.error(), path);
     if (files && !files->replaced.empty())
         files = folder->files();
     if (!files)
@@ -76,7 +90,7 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
     archive->remember(files->ended);
     for (const std::string& file : files->of_worlds)
         if (auto brought = archive->bring_back(file, options, executor); !brought)
-            return brought.error();
+            return with_ways_out(brought.error(), path);
     return archive;
 }
 
@@ -129,10 +143,10 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
         return recovered.error();
     const EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
-    log::info({.world = identity.name}, "world \"{}\" goes on from generation {}, tick {}{}", identity.name,
-              recovered->world.moment().generation, recovered->world.moment().tick,
-              was_closed ? "" : ", where its file was left without being closed");
     const auto name = std::filesystem::path{path}.stem().string();
+    log::info({.world = name}, "world \"{}\" goes on from generation {}, tick {} of {}{}", name,
+              recovered->world.moment().generation, recovered->world.moment().tick, path,
+              was_closed ? "" : ", which was left without being closed");
     auto entry = std::make_unique<simulation::Entry>(
         simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
     RunRecorder& run = recorder_->go_on(name, *std::move(file), contents, generations_ended);

@@ -21,8 +21,8 @@ class Archive {
     static constexpr std::uint32_t answers_kept_of_ended = 1000;
     static constexpr std::size_t answers_of_ended_bytes_max = 64 << 20;
 
-    /// Takes the folder and brings every world back. Refused, naming the file, where one cannot be brought back: a
-    /// server that went on without it would seem to have lost it.
+    /// Takes the folder and brings every world back. Refused, naming the file and the ways out, where one cannot be
+    /// brought back: a server that went on without it would seem to have lost it.
     static base::Result<std::unique_ptr<Archive>> open(const std::string& path, const RunFile::Options& options,
                                                        base::Executor& executor);
 

@@ -165,8 +165,9 @@ RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& op
 RunFile::~RunFile() = default;
 
 Refusal RunFile::failure() const {
-    return refusal(database_.damaged() ? RefusalCode::DataLoss : RefusalCode::Unavailable,
-                   path_ + ": " + database_.error());
+    if (database_.damaged())
+        return refusal(RefusalCode::DataLoss, path_ + " is damaged, or no run file: " + database_.error());
+    return refusal(RefusalCode::Unavailable, path_ + ": " + database_.error());
 }
 
 Refusal RunFile::damaged(const std::string& what) const {
@@ -534,7 +535,7 @@ std::optional<Refusal> RunFile::other_model() const {
                    path_ + " was made with evod " + identity_.evod_version + ", which followed version " +
                        std::to_string(identity_.model_version) + " of the model; this evod " + EVOD_VERSION +
                        " follows version " + std::to_string(simulation::model_version) +
-                       ", so it can read the file but not simulate the run again");
+                       ", so it can read the file (`evod export`) but not simulate the run again");
 }
 
 Result<std::optional<EndMark>> RunFile::end_mark() {
@@ -1090,9 +1091,9 @@ void RunFile::write(const HashLink& link) {
 }
 
 void RunFile::write(const Checkpoint& checkpoint) {
-    if (database_.failed())
-        return; // packing would be for nothing
     const simulation::Moment& moment = checkpoint.state.moment;
+    if (database_.failed() || !is_held(moment.generation))
+        return; // packing would be for nothing
     const std::int64_t parameters = number_of(checkpoint.state.parameters);
     const std::string state = pack(checkpoint.state);
     writers()

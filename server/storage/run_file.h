@@ -125,7 +125,8 @@ class RunFile {
     void write(const GenerationBegun& begun);
     void write(const GenerationEnded& ended);
     void write(const HashLink& link);
-    /// The newest checkpoints_kept stay, and the one with which the run begins.
+    /// The newest checkpoints_kept stay, and the one with which the run begins. Nothing, where its generation is not
+    /// held any more.
     void write(const Checkpoint& checkpoint);
     /// What the mark counts is counted here.
     void write(EndMark mark);

@@ -209,9 +209,9 @@ void StorageThread::work() {
             runs_.merge(new_runs_);
             new_runs_.clear();
             for (auto& [number, items] : std::exchange(handed_over_, {})) {
-                std::vector<Item>& waiting = runs_[number].waiting;
-                waiting.insert(waiting.end(), std::make_move_iterator(items.begin()),
-                               std::make_move_iterator(items.end()));
+                Run& run = runs_[number];
+                for (Item& item : items)
+                    (item.writing ? run.checkpoints : run.waiting).push_back(std::move(item));
             }
             for (auto& [number, closing] : std::exchange(closing_, {}))
                 runs_[number].closing = std::move(closing);
@@ -219,6 +219,8 @@ void StorageThread::work() {
         failed_ = false;
         for (auto& [number, run] : runs_)
             (void)write_out(run);
+        for (auto& [number, run] : runs_)
+            (void)write_checkpoints(run);
         std::erase_if(runs_, [](const auto& item) { return item.second.closing && item.second.closing->finished; });
         if (!failed_) {
             {
@@ -322,6 +324,15 @@ bool StorageThread::write_out(Run& run) {
     return true;
 }
 
+bool StorageThread::write_checkpoints(Run& run) {
+    if (run.checkpoints.empty())
+        return true;
+    if (!run.waiting.empty() || run.unnamed || !commit(run, run.checkpoints))
+        return false;
+    tell(run, run.checkpoints);
+    return true;
+}
+
 bool StorageThread::take_place(Run& run) {
     if (const auto old = run.replaces ? runs_.find(*run.replaces) : runs_.end(); old != runs_.end()) {
         old->second.closing->replaced = false;
@@ -343,6 +354,8 @@ bool StorageThread::end(Run& run) {
     Closing& closing = *run.closing;
     if (closing.finished)
         return true;
+    if (!write_checkpoints(run))
+        return false;
     if (!closing.marked) {
         if (!commit(run, closing.last))
             return false;

@@ -11,8 +11,8 @@
 // Trouble      a write or commit that fails tells nobody anything. What was to be written is kept; the file is opened
 //              anew and everything that may be missing written again, every `retry_time`, until it is there.
 // Threads      handed to by one, the simulation thread, which never waits for the disk; files belong to this thread.
-// Checkpoints  are large, and can be done without: of a run, one waits at most, beside what the bound is for, so that
-// worlds
+// Checkpoints  are large, take long to pack, and can be done without: they come after what all runs have to write, each
+//              in a transaction of its own. Of a run, one waits at most, beside what the bound is for, so that worlds
 //              need not stand still until it is written.
 // Full         has_room() is false from `waiting_bytes_max` on; whoever hands over stops making more.
 // News         of both, trouble and room, are called out: whoever sleeps meanwhile can be woken.
@@ -117,7 +117,8 @@ class StorageThread {
         std::optional<RunNumber> replaces; // until it has taken the other's place
         std::unique_ptr<RunFile> file;     // nullptr: to be opened, or created
         std::vector<Item> waiting;
-        std::vector<Item> written; // not told yet
+        std::vector<Item> written;     // not told yet
+        std::vector<Item> checkpoints; // that wait, once it has begun
         std::optional<Closing> closing;
         std::chrono::nanoseconds commit_took{0};
         bool said_large = false;
@@ -130,8 +131,10 @@ class StorageThread {
     /// Whether the storage thread is to be woken. mutex_ is held.
     bool wait_in_line(RunNumber run, std::vector<Item> items);
     void work();
-    /// Writes what waits for a run; false if that failed.
+    /// Writes what waits for a run, but for checkpoints; false if that failed.
     bool write_out(Run& run);
+    /// The same of its checkpoints, if all else is written.
+    bool write_checkpoints(Run& run);
     bool commit(Run& run, const std::vector<Item>& items);
     /// Gives a new file its name.
     bool take_place(Run& run);

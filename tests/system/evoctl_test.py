@@ -44,7 +44,17 @@ class WithServer(unittest.TestCase):
         return json.loads(self.evoctl("--json", *words))
 
 
+class Durability(WithServer):
+    options = [*WithServer.options, "--durability", "relaxed"]
+
+    def test_it_is_told_where_the_machine_may_lose_what_was_answered(self):
+        self.assertIn("\ndurability relaxed: ", self.evoctl("status"))
+
+
 class Commands(WithServer):
+    def test_a_server_that_has_all_on_the_disk_says_nothing_of_it(self):
+        self.assertNotIn("durability", self.evoctl("status"))
+
     def test_generations_are_run_and_told(self):
         self.evoctl("run", "3", "--wait")
         rows = list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv"))))

@@ -347,6 +347,15 @@ class Replay(Case):
         self.assertEqual(self.client(served).world().state_hash, self.hashes[250])
         self.assertNotEqual(run("seek", "--tick", "422").returncode, 0)
 
+    def test_evoctl_says_that_its_forks_are_not_kept(self):
+        served = self.server("replay", self.run_file)
+        done = subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", "fork", "mine", "--at-generation", "2"],
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("forked mine", done.stdout)
+        self.assertIn("it is not kept", done.stdout)
+        self.assertIn("`evod fork`", done.stdout)
+
     def test_what_is_no_run_file_is_named(self):
         for path, words in ((f"{self.folder}/nothing.evod", "no such file"), (__file__, "not"), (self.folder, "folder")):
             done = subprocess.run([EVOD, "replay", path], capture_output=True, text=True, timeout=100)

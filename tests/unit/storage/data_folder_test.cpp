@@ -96,7 +96,34 @@ TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
     const auto archive = open();
     ASSERT_FALSE(archive);
     EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
-    EXPECT_THAT(archive.error().message, HasSubstr("w.evod"));
+    EXPECT_THAT(archive.error().message, HasSubstr("w.evod is damaged"));
+    EXPECT_THAT(archive.error().message, HasSubstr("put a copy back, or move it"));
+    EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+}
+
+TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
+    const std::string path = folder.path() + "/w.evod";
+    const auto expect_refused = [&](const std::string& why, const std::string& way_out) {
+        const auto archive = open();
+        ASSERT_FALSE(archive);
+        EXPECT_THAT(archive.error().message, testing::StartsWith(path + why));
+        EXPECT_THAT(archive.error().message, HasSubstr(way_out));
+        EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+    };
+    std::ofstream{path} << std::string(5000, 'x');
+    expect_refused(" is damaged, or no run file: ", "move it");
+    std::filesystem::remove(path);
+    Database{path, Database::Mode::Create}.run("CREATE TABLE songs (title TEXT)");
+    expect_refused(" is not a run file of evod; ", "move it");
+    std::filesystem::remove(path);
+    record(10);
+    Database{path, Database::Mode::Write}.run("PRAGMA user_version = 9");
+    expect_refused(" was written by a newer evod", "start the evod that made it, or move it");
+    std::filesystem::remove(path);
+    ASSERT_TRUE(RunFile::create(
+        path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
+        {}));
+    expect_refused(" was made with evod 0.0.1", "`evod export`");
 }
 
 TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {

@@ -189,7 +189,7 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
         "no database, but longer than the head of one, which is a hundred bytes and begins with a text of its own");
     EXPECT_EQ(refused().code, RefusalCode::DataLoss);
     put(path, "");
-    EXPECT_EQ(refused().code, RefusalCode::NotFound);
+    EXPECT_EQ(refused().code, RefusalCode::DataLoss);
     std::filesystem::remove(path);
     {
         Database foreign{path, Database::Mode::Create};
