@@ -45,12 +45,13 @@ template <bool foretold>
 inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::size_t end, const ChoiceRules& rules,
                         float* force_x, float* force_y, std::int32_t* choices) {
     for (std::size_t i = begin; i < end; i += lanes) {
-        prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.body_radius, columns.id,
-                       columns.health, columns.loss_per_tick, columns.normal_speed, columns.impulse);
-        prefetch_view_ahead(i, columns.food);
-        prefetch_view_ahead(i, columns.poison);
-        if constexpr (!foretold)
+        if constexpr (!foretold) {
+            prefetch_ahead(i, columns.x, columns.y, columns.velocity_x, columns.velocity_y, columns.body_radius,
+                           columns.id, columns.health, columns.loss_per_tick, columns.normal_speed, columns.impulse);
+            prefetch_view_ahead(i, columns.food);
+            prefetch_view_ahead(i, columns.poison);
             store(columns.health + i, load<Floats>(columns.health + i) - load<Floats>(columns.loss_per_tick + i));
+        }
 
         const Integers x = load<Integers>(columns.x + i), y = load<Integers>(columns.y + i);
         const Offset food = offset_to_nearest(columns.food, i, x, y),
