@@ -80,6 +80,14 @@ struct WatchTest : testing::Test {
         session.send(message);
     }
 
+    /// A picture of island 1, and the answer to what the viewer asks on account of it.
+    void show_first_picture(Watch& watch, link::FakeSession& session, std::uint64_t tick) {
+        send_picture(session, 7, 1, tick);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        answer_statistics(session, session.read_request());
+        until(watch, [&] { return watch.all_answered(); });
+    }
+
     link::FakeServer server;
     std::vector<std::string> notices;
 };
@@ -121,10 +129,7 @@ TEST_F(WatchTest, TurnsFromTheLastIslandToTheFirst) {
 TEST_F(WatchTest, ARefusedCommandIsToldAndTheStateIsAskedFor) {
     Watch watch{wanted()};
     auto session = begin(watch);
-    send_picture(session, 7, 1, 50);
-    until(watch, [&] { return watch.picture() != nullptr; });
-    answer_statistics(session, session.read_request());
-    until(watch, [&] { return watch.all_answered(); });
+    show_first_picture(watch, session, 50);
     watch.pause_or_resume();
     const auto pause = session.read_request();
     EXPECT_TRUE(pause.has_pause());
@@ -139,10 +144,7 @@ TEST_F(WatchTest, ARefusedCommandIsToldAndTheStateIsAskedFor) {
 TEST_F(WatchTest, AViewersCommandsAreNotSentAndTheReasonIsTold) {
     Watch watch{wanted()};
     auto session = begin(watch, evod::v1::ROLE_VIEWER);
-    send_picture(session, 7, 1, 50);
-    until(watch, [&] { return watch.picture() != nullptr; });
-    answer_statistics(session, session.read_request());
-    until(watch, [&] { return watch.all_answered(); });
+    show_first_picture(watch, session, 50);
     EXPECT_FALSE(watch.may_command());
     EXPECT_FALSE(watch.may_create());
     watch.pause_or_resume();
@@ -200,10 +202,7 @@ TEST_F(WatchTest, KnowsTheGenesOfTheRunThatIsShown) {
 TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
     Watch watch{wanted()};
     auto session = begin(watch);
-    send_picture(session, 7, 1, 50);
-    until(watch, [&] { return watch.picture() != nullptr; });
-    answer_statistics(session, session.read_request());
-    until(watch, [&] { return watch.all_answered(); });
+    show_first_picture(watch, session, 50);
     watch.step(1); // pauses it first
     evod::v1::ServerMessage answer, event;
     const auto answer_with = [&](const evod::v1::Request& request, evod::v1::RunState state) {
@@ -325,10 +324,7 @@ TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
     Watch watch{wanted()};
     {
         auto session = begin(watch);
-        send_picture(session, 7, 1, 50);
-        until(watch, [&] { return watch.picture() != nullptr; });
-        answer_statistics(session, session.read_request());
-        until(watch, [&] { return watch.all_answered(); });
+        show_first_picture(watch, session, 50);
     }
     until(watch, [&] { return watch.connection_status().state != link::State::Connected; });
     EXPECT_NE(watch.picture(), nullptr) << "the last picture stays in sight";
@@ -399,10 +395,7 @@ struct PastTest : WatchTest {
     /// Watches the past, with pictures as subscription 9.
     link::FakeSession look_back(Watch& watch, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
         auto session = begin(watch, role);
-        send_picture(session, 7, 1, 850);
-        until(watch, [&] { return watch.picture() != nullptr; });
-        answer_statistics(session, session.read_request());
-        until(watch, [&] { return watch.all_answered(); });
+        show_first_picture(watch, session, 850);
         watch.open_past({});
         const auto open = session.read_request();
         EXPECT_EQ(open.open_past().world(), "default");
@@ -476,10 +469,7 @@ TEST_F(PastTest, GenerationsAreTurnedFromTheOneLastAskedForAndWithinTheRun) {
 TEST_F(PastTest, APastThatCannotBeOpenedIsTold) {
     Watch watch{wanted()};
     auto session = begin(watch);
-    send_picture(session, 7, 1, 850);
-    until(watch, [&] { return watch.picture() != nullptr; });
-    answer_statistics(session, session.read_request());
-    until(watch, [&] { return watch.all_answered(); });
+    show_first_picture(watch, session, 850);
     watch.open_past({});
     EXPECT_FALSE(watch.all_answered());
     session.refuse(session.read_request().request_id(), evod::v1::CODE_FAILED_PRECONDITION, "the server keeps no runs");
