@@ -280,31 +280,29 @@ std::vector<Finding> findings(const Selection& selection, std::span<const double
                                  .standard_error = expectation.standard_error.front()});
     fittest.happened = known ? std::optional{counted.front()} : std::nullopt;
 
-    if (!fitness.empty()) {
-        const std::vector<double> scores = standard_scores(fitness);
-        Finding& intensity = all.emplace_back(
-            Finding{.name = "Selection intensity",
-                    .sentence = "By how many of its standard deviations the mean fitness of those picked is above "
-                                "the mean of all.",
-                    .source = "Blickle & Thiele 1996",
-                    .unit = "deviations",
-                    .expected = mean_of_copies(expectation.copies, scores),
-                    .standard_error = error_of_intensity(selection, expectation, scores)});
+    const auto add_intensity = [&](std::string_view name, std::string_view sentence, std::span<const double> scores) {
+        Finding& intensity =
+            all.emplace_back(Finding{.name = name,
+                                     .sentence = sentence,
+                                     .source = "Blickle & Thiele 1996",
+                                     .unit = "deviations",
+                                     .expected = mean_of_copies(expectation.copies, scores),
+                                     .standard_error = error_of_intensity(selection, expectation, scores)});
         intensity.happened = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
+    };
+    if (!fitness.empty()) {
+        add_intensity(
+            "Selection intensity",
+            "By how many of its standard deviations the mean fitness of those picked is above the mean of all.",
+            standard_scores(fitness));
     }
     const bool by_rank = !selection.turns_a_wheel() || selection.scaling == Scaling::LinearRanking ||
                          selection.scaling == Scaling::ExponentialRanking;
     if (by_rank) {
-        const std::vector<double> scores = normal_scores(selection.population);
-        Finding& intensity = all.emplace_back(
-            Finding{.name = "Intensity, normal fitness",
-                    .sentence = "The selection intensity if the fitness were spread as a normal distribution: it then "
-                                "depends on the ranks alone.",
-                    .source = "Blickle & Thiele 1996",
-                    .unit = "deviations",
-                    .expected = mean_of_copies(expectation.copies, scores),
-                    .standard_error = error_of_intensity(selection, expectation, scores)});
-        intensity.happened = known ? std::optional{mean_of_copies(counted, scores)} : std::nullopt;
+        add_intensity("Intensity, normal fitness",
+                      "The selection intensity if the fitness were spread as a normal distribution: it then depends on "
+                      "the ranks alone.",
+                      normal_scores(selection.population));
     }
 
     Finding& missed = all.emplace_back(Finding{.name = "Share not selected",
