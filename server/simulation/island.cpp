@@ -17,6 +17,8 @@ enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, Chr
 
 constexpr std::size_t organisms_per_block = 1024;
 constexpr std::uint32_t dead = ~0u; // in place of a body's index
+/// The most health that meals lead to: from here on a meal's, at most 10,000, is lost in the rounding of a float.
+constexpr float health_reachable = 0x1p38f;
 
 physics::StepParameters step_parameters(const Parameters& p) {
     constexpr physics::Integrator integrators[] = {
@@ -431,7 +433,7 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
             const IslandState::Organism& organism = state.organisms[id];
             if (!can_move(organism))
                 return which("where it has, or how fast it is, its");
-            if (!std::isfinite(organism.health) || (organism.health <= 0 && tick > 0))
+            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0))
                 return which("the health of its");
             continue;
         }
@@ -540,15 +542,20 @@ std::optional<std::size_t> Island::body_of(std::uint32_t id) const {
 }
 
 LiveStatistics Island::live_statistics() const {
-    // In whole numbers, so that the sum does not depend on the order of bodies.
+    // In whole numbers, so that the sum does not depend on the order of bodies; what is behind the point is summed
+    // apart, so that no health that can be reached overflows either sum.
     constexpr double parts = 1 << 16;
-    std::int64_t health = 0;
+    std::int64_t whole = 0, rest = 0;
     for (std::size_t i = 0; i < bodies_.size(); ++i)
-        if (!bodies_.is_void(i))
-            health += std::llrint(static_cast<double>(living_.health[i]) * parts);
+        if (!bodies_.is_void(i)) {
+            const auto units = static_cast<std::int64_t>(living_.health[i]);
+            whole += units;
+            rest += std::llrint((static_cast<double>(living_.health[i]) - static_cast<double>(units)) * parts);
+        }
+    const double health = static_cast<double>(whole) + static_cast<double>(rest) / parts;
     return {.organism_count = static_cast<std::uint32_t>(born_.genes.cols()),
             .alive_count = alive_count_,
-            .health_mean = alive_count_ == 0 ? 0 : static_cast<double>(health) / parts / alive_count_,
+            .health_mean = alive_count_ == 0 ? 0 : health / alive_count_,
             .food_eaten = counts_.food_eaten,
             .poison_eaten = counts_.poison_eaten,
             .starved_count = counts_.starved_count,

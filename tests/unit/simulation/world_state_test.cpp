@@ -182,6 +182,7 @@ TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
         {"fast", [&](WorldState& s) { s.islands[0].organisms[living].x = physics::elsewhere; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = nan; }},
         {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 0; }},
+        {"health", [&](WorldState& s) { s.islands[0].organisms[living].health = 1e12f; }},
         {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[living] = 3; }},
         {"lost", [&](WorldState& s) { s.islands[0].fate.lived_ticks[gone] = 201; }},
         {"lost", [&](WorldState& s) { s.islands[0].fate.cause[gone] = static_cast<CauseOfDeath>(3); }},
@@ -202,6 +203,20 @@ TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
         EXPECT_THAT(refused.error().message, HasSubstr(what));
     }
     EXPECT_TRUE(again(world, sound, executor));
+}
+
+TEST_F(WorldStateTest, TheMostHealthThatMealsLeadToIsSummed) {
+    const float most = 0x1p38f;
+    ASSERT_EQ(most + 10'000, most);
+    World world{with({{"population_size", 1000u}, {"island_width_px", 9000.0}}), base::Seed{9}};
+    world.advance_tick(executor);
+    ASSERT_EQ(world.alive_count(), 1000u);
+    WorldState state = world.state(executor);
+    for (auto& organism : state.islands[0].organisms)
+        organism.health = most;
+    const auto restored = again(world, state, executor);
+    ASSERT_TRUE(restored) << to_text(restored.error());
+    EXPECT_EQ(restored->islands()[0].live_statistics().health_mean, most);
 }
 
 } // namespace
