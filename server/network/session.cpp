@@ -559,8 +559,6 @@ void Session::enqueue(SharedBytes frame, Kind kind) {
 
 void Session::written(const Queued& queued) {
     (queued.kind == Kind::Event ? event_bytes_ : response_bytes_) -= queued.bytes->size();
-    if (queued.kind == Kind::Answer)
-        --in_flight_;
 }
 
 void Session::wake_writer() {
@@ -582,6 +580,8 @@ asio::awaitable<void> Session::write() {
         } else if (!queue_.empty()) {
             // Answers and events first: they are small, and somebody waits for them.
             while (!queue_.empty() && sending_.size() < batch_frames_max) {
+                // Whoever has the answer may ask again before the write is known to be over.
+                in_flight_ -= queue_.front().kind == Kind::Answer;
                 sending_.push_back(std::move(queue_.front()));
                 queue_.pop_front();
                 buffers.push_back(asio::buffer(*sending_.back().bytes));

@@ -212,7 +212,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
     Line::Progress progress_;
     runtime::Clock::time_point progressed_; // when it was last seen that something was taken, or nothing waited
-    std::size_t in_flight_ = 0;             // requests whose answer is not yet written
+    std::size_t in_flight_ = 0;             // requests whose answer is not yet being written
     std::uint64_t dropped_events_ = 0;      // not yet told
     struct Turn {
         std::uint32_t subscription_id, island;

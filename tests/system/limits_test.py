@@ -200,6 +200,13 @@ class Requests(Case):
             self.assertEqual(codes(limit + 1), [OK] * limit + [EXHAUSTED])
         client.call(list_worlds=c.ListWorlds())
 
+    def test_as_many_in_flight_as_there_may_be_all_the_time(self):
+        client = self.come(self.serve())
+        asked = [client.ask(describe=c.Describe()) for _ in range(client.welcome.limits.requests_in_flight_max)]
+        for _ in range(500):
+            self.assertEqual(client.response(asked.pop(0)).status.code, OK)
+            asked.append(client.ask(describe=c.Describe()))
+
     def test_those_waiting_for_the_simulation(self):
         server = self.serve()
         admin = self.come(server)
