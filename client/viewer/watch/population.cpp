@@ -160,4 +160,26 @@ std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
     return children;
 }
 
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const wire::Picture* picture) {
+    std::vector<std::uint32_t> ids;
+    for (std::uint32_t id = 0; id < population.size(); ++id) {
+        if (population.choice(id) != evod::v1::CHOICE_NONE) {
+            ids.push_back(id);
+        }
+    }
+    if (!ids.empty()) {
+        return ids;
+    }
+    if (picture == nullptr || picture->about.generation() != population.generation() ||
+        picture->organisms.id.size() != picture->about.live().alive_count()) {
+        return std::nullopt;
+    }
+    for (const std::uint32_t id : picture->organisms.id) {
+        if (id < population.size()) {
+            ids.push_back(id);
+        }
+    }
+    return ids;
+}
+
 } // namespace evod::viewer

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "evod/v1/commands.pb.h"
+#include "proto/wire/snapshot_codec.h"
 
 #include <array>
 #include <cstddef>
@@ -83,5 +84,13 @@ class Population {
     std::vector<Family> families_;
     std::vector<std::uint8_t> family_;
 };
+
+/// Who of a population lives: ids, rising. Nullopt: nothing tells.
+///
+/// Who is about to do something lives. Once its generation is over nobody is, and only a picture of that generation
+/// tells, if it shows all of the island.
+///
+/// picture  the newest of its island and run; null: there is none
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const wire::Picture* picture);
 
 } // namespace evod::viewer

@@ -40,26 +40,10 @@ std::vector<std::string> csv_files() {
     return names;
 }
 
-bool lives(const Population& population, std::size_t id) {
-    return population.choice(static_cast<std::uint32_t>(id)) != evod::v1::CHOICE_NONE;
-}
-
-/// False where organisms have no bodies, and when their generation is over.
-bool anybody_lives(const Population& population) {
-    for (std::size_t id = 0; id < population.size(); ++id) {
-        if (lives(population, id)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-std::vector<float> gene_of(const Population& population, std::size_t gene, bool only_the_living) {
+std::vector<float> gene_of(const Population& population, std::size_t gene, std::span<const std::uint32_t> ids) {
     std::vector<float> numbers;
-    for (std::size_t id = 0; gene < population.gene_count() && id < population.size(); ++id) {
-        if (!only_the_living || lives(population, id)) {
-            numbers.push_back(population.gene(gene)[id]);
-        }
+    for (const std::uint32_t id : ids) {
+        numbers.push_back(population.gene(gene)[id]);
     }
     return numbers;
 }
@@ -288,8 +272,7 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
         widgets::say("…");
     } else {
         widgets::say("generation " + with_separators(population->generation()) + ", island " +
-                     std::to_string(island_.value_or(context.watch.island())) +
-                     (only_the_living_ && !anybody_lives(*population) ? ": nobody lives, so everyone" : ""));
+                     std::to_string(island_.value_or(context.watch.island())) + shown_of_population_);
     }
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
@@ -324,10 +307,25 @@ void PlotsPanel::build_genes(Context& context) {
         return;
     }
     histogram_of_ = of;
+    const Population* population = population_.whole();
+    shown_of_population_.clear();
+    histogram_ = histogram_of(gene_, {});
     const auto index = static_cast<std::size_t>(std::ranges::find(names, gene_) - names.begin());
-    static const Population nobody;
-    const Population& population = population_.whole() != nullptr ? *population_.whole() : nobody;
-    histogram_ = histogram_of(gene_, gene_of(population, index, only_the_living_ && anybody_lives(population)));
+    if (population == nullptr || index >= population->gene_count()) {
+        return;
+    }
+    if (only_the_living_) {
+        const wire::Picture* picture = context.watch.picture_of(whose.island);
+        const bool of_this_run = picture != nullptr && picture->about.run_id() == whose.run_id;
+        const auto ids = living(*population, of_this_run ? picture : nullptr);
+        if (ids && !ids->empty()) {
+            histogram_ = histogram_of(gene_, gene_of(*population, index, *ids));
+            return;
+        }
+        shown_of_population_ = ids ? ": nobody lives, so everyone" : ": who lives is not known, so everyone";
+    }
+    const std::span<const float> of_all = population->gene(index);
+    histogram_ = histogram_of(gene_, {of_all.begin(), of_all.end()});
 }
 
 // ---- files -----------------------------------------------------------------------------------------------------

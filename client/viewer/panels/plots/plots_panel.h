@@ -74,6 +74,7 @@ class PlotsPanel : public Panel {
         bool only_the_living = false;
         bool operator==(const HistogramOf&) const = default;
     } histogram_of_;
+    std::string shown_of_population_; // where it is not the living that are wanted
 
     std::array<char, 256> path_{}; // of a file to compare with
     std::array<int, 2> picture_pixels_{1200, 700};

@@ -12,6 +12,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Optional;
 
 TEST(Population, IsPutTogetherOfPages) {
     Population population{2};
@@ -43,6 +45,40 @@ TEST(Population, TheFirstGenerationHasNoParents) {
     ASSERT_EQ(population.add(page_of(2, 2, 4, 1)), std::nullopt);
     EXPECT_FALSE(population.has_parents());
     EXPECT_TRUE(population.children_of(1).empty());
+}
+
+/// Of generation 4, with organisms of these ids alive.
+wire::Picture picture_of(std::vector<std::uint32_t> ids) {
+    wire::Picture picture;
+    picture.about.set_generation(4);
+    picture.about.mutable_live()->set_alive_count(static_cast<std::uint32_t>(ids.size()));
+    picture.organisms.id = std::move(ids);
+    return picture;
+}
+
+TEST(Living, AreThoseWhoAreAboutToDoSomething) {
+    Population population{2};
+    auto page = page_of(0, 4, 4);
+    (*page.mutable_choices())[2] = evod::v1::CHOICE_NONE;
+    ASSERT_EQ(population.add(page), std::nullopt);
+    EXPECT_THAT(living(population, nullptr), Optional(ElementsAre(0, 1, 3)));
+}
+
+TEST(Living, AreThoseInThePictureOnceTheGenerationIsOver) {
+    Population population{2};
+    auto page = page_of(0, 4, 4);
+    page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_NONE));
+    ASSERT_EQ(population.add(page), std::nullopt);
+    wire::Picture picture = picture_of({1, 3});
+    EXPECT_THAT(living(population, &picture), Optional(ElementsAre(1, 3)));
+    const wire::Picture nobody = picture_of({});
+    EXPECT_THAT(living(population, &nobody), Optional(IsEmpty()));
+    picture.about.mutable_live()->set_alive_count(3);
+    EXPECT_EQ(living(population, &picture), std::nullopt) << "it shows a part of the island";
+    picture = picture_of({1, 3});
+    picture.about.set_generation(5);
+    EXPECT_EQ(living(population, &picture), std::nullopt);
+    EXPECT_EQ(living(population, nullptr), std::nullopt);
 }
 
 TEST(Population, OfNobodyIsWhole) {
