@@ -188,7 +188,8 @@ void ParameterEdits::take(const evod::v1::ParameterState& told) {
     state.value = told.value();
     state.pending = told.has_pending() ? std::optional{told.pending()} : std::nullopt;
     if (state.edit && same(*state.edit, asked_for(found->second))) {
-        revert(found->second);
+        state.edit.reset();
+        state.violation.reset();
     }
 }
 
@@ -235,6 +236,13 @@ const evod::v1::Violation* ParameterEdits::violation(std::size_t i) const {
     return states_[i].violation ? &*states_[i].violation : nullptr;
 }
 
+void ParameterEdits::forget_refusal() {
+    for (State& state : states_) {
+        state.violation.reset();
+    }
+    problem_.clear();
+}
+
 void ParameterEdits::edit(std::size_t i, ParameterValue value) {
     revert(i);
     if (!same(value, asked_for(i))) {
@@ -244,14 +252,14 @@ void ParameterEdits::edit(std::size_t i, ParameterValue value) {
 
 void ParameterEdits::revert(std::size_t i) {
     states_[i].edit.reset();
-    states_[i].violation.reset();
+    forget_refusal();
 }
 
 void ParameterEdits::revert_all() {
-    for (std::size_t i = 0; i < states_.size(); ++i) {
-        revert(i);
+    for (State& state : states_) {
+        state.edit.reset();
     }
-    problem_.clear();
+    forget_refusal();
 }
 
 std::size_t ParameterEdits::edit_count() const {
@@ -311,11 +319,9 @@ std::optional<evod::v1::Request> ParameterEdits::redo(const std::string& world) 
 }
 
 void ParameterEdits::take_done() {
-    problem_.clear();
     for (const Change& change : sent_.changes) {
         State& state = states_[change.parameter];
         state.changed_by.clear();
-        state.violation.reset();
         if (state.edit && same(*state.edit, change.after)) {
             state.edit.reset(); // else it was moved on meanwhile
         }
@@ -350,9 +356,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
     if (!busy()) {
         return false;
     }
-    for (const Change& change : sent_.changes) {
-        states_[change.parameter].violation.reset();
-    }
+    forget_refusal();
     const bool done = response != nullptr && response->status().code() == evod::v1::CODE_OK;
     if (done) {
         take_done();

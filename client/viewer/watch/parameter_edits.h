@@ -86,6 +86,8 @@ class ParameterEdits {
 
     // Editing.
 
+    // Each of these takes away what is told of the last refusal: that was about other values.
+
     /// The value that is asked for already is no edit.
     void edit(std::size_t i, evod::v1::ParameterValue value);
     void revert(std::size_t i);
@@ -127,6 +129,7 @@ class ParameterEdits {
         std::vector<Change> changes;
     };
 
+    void forget_refusal();
     std::optional<evod::v1::Request> send(const std::string& world, Kind kind, std::vector<Change> changes);
     std::optional<evod::v1::Request> send_back(const std::string& world, Kind kind,
                                                std::vector<std::vector<Change>>& from);

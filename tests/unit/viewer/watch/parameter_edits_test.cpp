@@ -146,6 +146,34 @@ TEST_F(ParameterEditsTest, ARefusalIsShownBesideTheFieldAndTheEditsStay) {
     EXPECT_EQ(edits.problem(), "");
 }
 
+TEST_F(ParameterEditsTest, WhatIsToldOfARefusalGoesWithTheNextEditAndTheNextAnswer) {
+    const auto refuse = [&] { // the fault may be marked where nothing was edited
+        edits.edit(mutation_chance, real(0.9));
+        ASSERT_TRUE(edits.apply("w"));
+        evod::v1::Response refused;
+        refused.mutable_status()->set_code(evod::v1::CODE_INVALID_ARGUMENT);
+        refused.mutable_status()->add_violations()->set_field("set_parameters.food_count");
+        edits.answered(&refused);
+        ASSERT_NE(edits.violation(food_count), nullptr);
+        ASSERT_NE(edits.problem(), "");
+    };
+    const auto expect_nothing_is_told = [&] {
+        EXPECT_EQ(edits.violation(food_count), nullptr);
+        EXPECT_EQ(edits.problem(), "");
+    };
+    refuse();
+    edits.edit(mutation_chance, real(0.5));
+    expect_nothing_is_told();
+    refuse();
+    edits.revert(mutation_chance);
+    expect_nothing_is_told();
+    refuse();
+    ASSERT_TRUE(edits.apply("w")); // somebody else has made it possible
+    const auto response = accepted(set_of(8, 0.9));
+    edits.answered(&response);
+    expect_nothing_is_told();
+}
+
 TEST_F(ParameterEditsTest, WhoeverIsOvertakenIsToldAndAsksForTheSet) {
     edits.edit(mutation_chance, real(0.2));
     ASSERT_TRUE(edits.apply("w"));
