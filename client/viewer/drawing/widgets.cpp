@@ -23,14 +23,16 @@ std::optional<Point> Spots::find(const std::string& name) const {
     return found == shown_.end() ? std::nullopt : std::optional{found->second};
 }
 
-bool Spots::lingers(Point corner, double now_s) {
+bool Spots::lingers(Point corner, double now_s, bool clicked) {
     constexpr double rest_s = 0.5, gap_s = 0.25; // a slow machine draws four times a second
     if (corner != hovered_ || now_s - hovered_last_s_ > gap_s) {
         hovered_ = corner;
         hovered_since_s_ = now_s;
+        clicked_ = false;
     }
     hovered_last_s_ = now_s;
-    return now_s - hovered_since_s_ >= rest_s;
+    clicked_ = clicked_ || clicked;
+    return !clicked_ && now_s - hovered_since_s_ >= rest_s;
 }
 
 namespace widgets {
@@ -65,8 +67,11 @@ void say(std::string_view text, Colour colour) {
 bool wants_note() {
     auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
     const ImVec2 corner = ImGui::GetItemRectMin();
+    const auto clicked = [](ImGuiMouseButton button) {
+        return ImGui::IsMouseDown(button) || ImGui::IsMouseReleased(button);
+    };
     return spots != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) &&
-           spots->lingers({corner.x, corner.y}, ImGui::GetTime());
+           spots->lingers({corner.x, corner.y}, ImGui::GetTime(), clicked(0) || clicked(1));
 }
 
 void note(std::string_view text) {

@@ -28,14 +28,16 @@ class Spots {
     /// name  "Apply", or "Parameters/Apply"
     std::optional<Point> find(const std::string& name) const;
 
-    /// Whether the mouse has been on the widget with this corner for a while, as it is again now.
-    bool lingers(Point corner, double now_s);
+    /// Whether the mouse has been on the widget with this corner for a while, as it is again now. Who clicks on it
+    /// knows it, and wants to see what comes of that: then it does not, until the mouse has been elsewhere.
+    bool lingers(Point corner, double now_s, bool clicked);
 
   private:
     std::string panel_;
     std::map<std::string, Point> shown_, building_;
     Point hovered_;
     double hovered_since_s_ = 0, hovered_last_s_ = -1;
+    bool clicked_ = false; // since then
 };
 
 namespace widgets {

@@ -1,0 +1,37 @@
+#include "client/viewer/drawing/widgets.h"
+
+#include <gtest/gtest.h>
+
+namespace evod::viewer {
+namespace {
+
+constexpr Point apply{10, 20}, discard{80, 20}; // corners of widgets
+
+TEST(Spots, TheMouseLingersWhereItHasBeenForHalfASecond) {
+    Spots spots;
+    EXPECT_FALSE(spots.lingers(apply, 1.0, false));
+    EXPECT_FALSE(spots.lingers(apply, 1.2, false));
+    EXPECT_FALSE(spots.lingers(apply, 1.4, false));
+    EXPECT_TRUE(spots.lingers(apply, 1.6, false));
+    EXPECT_FALSE(spots.lingers(discard, 1.7, false)) << "elsewhere it has just come";
+}
+
+TEST(Spots, AfterAClickItLingersOnlyOnceItHasBeenElsewhere) {
+    Spots spots;
+    for (double now_s = 1; now_s < 1.6; now_s += 0.1) {
+        spots.lingers(apply, now_s, false);
+    }
+    EXPECT_TRUE(spots.lingers(apply, 1.6, false));
+    EXPECT_FALSE(spots.lingers(apply, 1.7, true));
+    for (double now_s = 1.8; now_s < 5; now_s += 0.1) {
+        EXPECT_FALSE(spots.lingers(apply, now_s, false)) << now_s;
+    }
+    spots.lingers(discard, 5, false);
+    spots.lingers(apply, 5.1, false);
+    spots.lingers(apply, 5.3, false);
+    spots.lingers(apply, 5.5, false);
+    EXPECT_TRUE(spots.lingers(apply, 5.7, false));
+}
+
+} // namespace
+} // namespace evod::viewer
