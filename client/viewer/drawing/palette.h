@@ -31,8 +31,8 @@ constexpr Colour health{20, 20, 24};
 
 constexpr Colour organism_outline{20, 20, 24};
 constexpr Colour selected{255, 255, 255};
-constexpr Colour food_radius{30, 110, 40, 150};
-constexpr Colour poison_radius{196, 22, 36, 150};
+constexpr Colour food_radius{62, 176, 76, 220};
+constexpr Colour poison_radius{140, 8, 24, 220};
 constexpr Colour trail{70, 30, 100};
 constexpr Colour unknown{140, 140, 144}; // what has no value, or is of no family that has a colour
 
@@ -89,6 +89,9 @@ constexpr Colour series_blue = kinds[4];
 constexpr Colour series_vermilion = kinds[5];
 constexpr Colour series_purple = kinds[6];
 constexpr Colour series_grey{110, 110, 116};
+// How the demonstration of time steps moves.
+constexpr Colour explicit_euler = kinds[5];
+constexpr Colour symplectic_euler = kinds[4];
 
 // The glass box.
 constexpr Colour first_parent = kinds[4];

@@ -116,8 +116,8 @@ void PhysicsPanel::take_curves(const TimeStepDemo& demo) {
     for (const Row& row : rows_) {
         t_s_.push_back(row.t_s);
     }
-    curves_ = {curve("explicit Euler", palette::poison, &Row::explicit_euler),
-               curve("symplectic Euler", palette::running, &Row::symplectic_euler),
+    curves_ = {curve("explicit Euler", palette::explicit_euler, &Row::explicit_euler),
+               curve("symplectic Euler", palette::symplectic_euler, &Row::symplectic_euler),
                curve("exact solution", palette::text, &Row::exact)};
 }
 

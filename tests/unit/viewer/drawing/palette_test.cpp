@@ -66,9 +66,10 @@ double difference(Colour a, Colour b, const Vision& vision) {
     return std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
 }
 
+// 2.3 is just noticeable side by side; discs of a few pixels, apart from each other, need several times that.
+constexpr double needed = 12;
+
 TEST(Palette, EveryTwoKindsCanBeToldApartByEveryone) {
-    // 2.3 is just noticeable side by side; discs of a few pixels, apart from each other, need several times that.
-    constexpr double needed = 12;
     for (const Vision& vision : visions) {
         for (std::size_t i = 0; i < kinds.size(); ++i) {
             for (std::size_t j = 0; j < i; ++j) {
@@ -78,6 +79,27 @@ TEST(Palette, EveryTwoKindsCanBeToldApartByEveryone) {
         }
         EXPECT_GT(difference(seeks, flees, vision), 2 * needed) << vision.name;
         EXPECT_GT(difference(food, poison, vision), needed) << vision.name;
+    }
+}
+
+/// What is seen where a colour lets the ground through.
+Colour on_the_ground(Colour colour) {
+    const auto mix = [&](std::uint8_t above, std::uint8_t below) {
+        return static_cast<std::uint8_t>(std::lround(below + (above - below) * (colour.alpha / 255.0)));
+    };
+    return {mix(colour.red, background.red), mix(colour.green, background.green), mix(colour.blue, background.blue)};
+}
+
+TEST(Palette, RingsAndCurvesCanBeToldApartByEveryone) {
+    const Colour food_ring = on_the_ground(food_radius), poison_ring = on_the_ground(poison_radius);
+    for (const Vision& vision : visions) {
+        EXPECT_GT(difference(food_ring, poison_ring, vision), needed) << vision.name;
+        EXPECT_GT(difference(food_ring, background, vision), needed) << vision.name;
+        EXPECT_GT(difference(poison_ring, background, vision), needed) << vision.name;
+        EXPECT_GT(difference(poison_ring, organism, vision), needed) << vision.name;
+        EXPECT_GT(difference(explicit_euler, symplectic_euler, vision), needed) << vision.name;
+        EXPECT_GT(difference(explicit_euler, text, vision), needed) << vision.name;
+        EXPECT_GT(difference(symplectic_euler, text, vision), needed) << vision.name;
     }
 }
 
