@@ -19,6 +19,7 @@ struct Rectangle {
     bool contains(Point point) const {
         return point.x >= left && point.x <= left + width && point.y >= top && point.y <= top + height;
     }
+    friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
 class Camera {

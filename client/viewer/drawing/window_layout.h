@@ -7,6 +7,8 @@
 #include "client/viewer/drawing/camera.h"
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace evod::viewer {
@@ -35,5 +37,18 @@ std::vector<Rectangle> side_by_side(Rectangle place, std::size_t count);
 ///
 /// aspect  width of an island by its height, above 0
 std::vector<Rectangle> in_tiles(Rectangle place, std::size_t count, double aspect);
+
+/// A window that wants a place.
+struct PlaceWanted {
+    double width, height;
+    bool at_right; // rather than at the left, if both are as good
+};
+/// Where it covers nobody, as near to a side of the room as it can be, and there as high up; nullopt if there is no
+/// such place.
+///
+/// taken  where others stand
+/// apart  pixels from them, and from the edges of the room
+std::optional<Rectangle> free_place(const PlaceWanted& wanted, Rectangle room, std::span<const Rectangle> taken,
+                                    double apart);
 
 } // namespace evod::viewer

@@ -77,7 +77,10 @@ void Panels::begin_session() {
     Panels fresh;
     for (std::size_t i = 0; i < places_.size(); ++i) {
         fresh.places_[i].shown = places_[i].shown;
+        fresh.places_[i].at = places_[i].at;
+        fresh.places_[i].put_at = places_[i].put_at;
     }
+    fresh.room_ = room_;
     fresh.used_ = std::move(used_);
     *this = std::move(fresh);
 }
@@ -124,30 +127,52 @@ void Panels::build_strip(const Gui& gui) {
     ImGui::PopStyleVar(7);
 }
 
-void Panels::build(Panel::Context context) {
+Rectangle Panels::place_for(std::size_t index, float scale) const {
+    const Panel::Size size = places_[index].panel->first_size();
+    const double margin = 8 * scale;
+    const PlaceWanted wanted{.width = std::min<double>(size.width * scale, std::max(room_.width - 2 * margin, 1.0)),
+                             .height = std::min<double>(size.height * scale, std::max(room_.height - 2 * margin, 1.0)),
+                             .at_right = index % 2 == 0};
+    std::vector<Rectangle> taken;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        if (i != index && places_[i].shown && places_[i].at.width > 0) {
+            taken.push_back(places_[i].at);
+        }
+    }
+    if (const auto free = free_place(wanted, room_, taken, margin)) {
+        return *free;
+    }
+    // Each pair a little lower and further in: every title can be seen.
+    const double step = margin + 26 * scale * static_cast<double>(index / 2 % 6);
+    const double right = room_.left + room_.width - wanted.width, bottom = room_.top + room_.height - wanted.height;
+    return {wanted.at_right ? std::max(right - step, room_.left) : std::min(room_.left + step, right),
+            std::max(std::min(room_.top + step, bottom - margin), room_.top), wanted.width, wanted.height};
+}
+
+void Panels::build(Panel::Context context, Rectangle room) {
     build_strip(context.gui);
-    const float scale = context.gui.scale();
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const Rectangle island =
-        viewport_of(below_panel_strip(static_cast<unsigned>(window.x), static_cast<unsigned>(window.y), scale), scale);
     keyboard_.reset();
+    if (room != room_) {
+        room_ = room;
+        for (Place& place : places_) {
+            if (place.at == place.put_at) { // or else a person wants it there
+                place.at = {};
+            }
+        }
+    }
     for (std::size_t i = 0; i < places_.size(); ++i) {
         Place& place = places_[i];
         if (!place.shown) {
             continue;
         }
         const std::string title{place.panel->title()};
-        const Panel::Size size = place.panel->first_size();
-        const float width = std::min(size.width * scale, window.x),
-                    height = std::min(size.height * scale, static_cast<float>(island.height) - 16 * scale);
-        // In turn at the right and at the left, each pair a little lower and further in: every title can be seen.
-        const float margin = 8 * scale, step = margin + 26 * scale * static_cast<float>(i / 2 % 6);
-        const float top = static_cast<float>(island.top), bottom = top + static_cast<float>(island.height);
-        ImGui::SetNextWindowSize({width, height}, ImGuiCond_FirstUseEver);
-        ImGui::SetNextWindowPos({i % 2 == 0 ? std::max(window.x - width - step, 0.f) : step,
-                                 std::min(top + step, bottom - height - margin)},
-                                ImGuiCond_FirstUseEver);
         const bool was_shown = place.built == ImGui::GetFrameCount() - 1;
+        const bool is_put = place.at.width <= 0 || (!was_shown && place.at == place.put_at);
+        if (is_put) {
+            const Rectangle to = place_for(i, context.gui.scale());
+            ImGui::SetNextWindowPos({static_cast<float>(to.left), static_cast<float>(to.top)});
+            ImGui::SetNextWindowSize({static_cast<float>(to.width), static_cast<float>(to.height)});
+        }
         if (ImGui::Begin(title.c_str(), &place.shown, ImGuiWindowFlags_NoCollapse)) {
             context.shown_anew = !was_shown;
             context.gui.spots().begin_panel(title);
@@ -155,6 +180,9 @@ void Panels::build(Panel::Context context) {
             context.gui.spots().begin_panel({});
             place.built = ImGui::GetFrameCount();
         }
+        const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+        place.at = {corner.x, corner.y, size.x, size.y};
+        place.put_at = is_put ? place.at : place.put_at;
         if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) {
             use(i);
             keyboard_ = i;

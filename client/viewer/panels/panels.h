@@ -44,19 +44,24 @@ class Panels {
     std::span<const Panel::Key> keys_of(std::size_t index) const { return places_[index].panel->keys(); }
 
     /// The strip of names and the panels that are shown, between Gui::begin() and Gui::draw().
-    void build(Panel::Context context);
+    ///
+    /// room  of the window: panels stand in it until a person moves them
+    void build(Panel::Context context, Rectangle room);
 
   private:
     struct Place {
         std::unique_ptr<Panel> panel;
         bool shown = false;
-        int built = -1; // the last frame of Dear ImGui in which it was
+        int built = -1;           // the last frame of Dear ImGui in which it was
+        Rectangle at{}, put_at{}; // where it is, and was put; of no width: nowhere yet
     };
     void build_strip(const Gui& gui);
+    Rectangle place_for(std::size_t index, float scale) const;
     void use(std::size_t index);
 
     std::vector<Place> places_;
     std::vector<std::string_view> titles_;
+    Rectangle room_;
     std::vector<std::size_t> used_;       // indices, those of late at the end
     std::optional<std::size_t> keyboard_; // the panel that has it
 };

@@ -2,6 +2,7 @@
 
 #include "client/viewer/drawing/offscreen.h"
 #include "client/viewer/drawing/palette.h"
+#include "client/viewer/drawing/window_layout.h"
 #include "client/viewer/panels/organism_panel.h"
 #include "client/viewer/scene/legend.h"
 
@@ -19,6 +20,16 @@ std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const wire:
     const auto place = id ? std::ranges::lower_bound(ids, *id) : ids.end();
     return place != ids.end() && *place == *id ? std::optional{static_cast<std::size_t>(place - ids.begin())}
                                                : std::nullopt;
+}
+
+/// What the strips and time lines of a window leave.
+Rectangle room_for_panels(Panes& panes, const Stage::Frame& frame, double scale) {
+    Rectangle room = below_panel_strip(frame.width_pixels, frame.height_pixels, scale);
+    for (std::size_t i = 0; i < panes.size(); ++i) {
+        const Rectangle& place = panes[i].place();
+        room.height = std::min(room.height, place.top + place.height - room.top);
+    }
+    return viewport_of(room, scale);
 }
 
 void clear(Colour colour, const Stage::Frame& frame) {
@@ -71,7 +82,8 @@ void Stage::draw(Panes& panes, const Frame& frame) {
     }
     overlay_.build(gui_, panels_, frame.now);
     if (frame.interactive) {
-        panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight});
+        panels_.build({panes.focused().watch, gui_, frame.now, panes.focused().sight},
+                      room_for_panels(panes, frame, gui_.scale()));
     }
     gui_.draw();
 }

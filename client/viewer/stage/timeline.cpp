@@ -96,6 +96,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     const float pixel = gui.scale(), label_size = label_height * pixel;
     const float width = std::max(static_cast<float>(place.width) - 2 * edge * pixel, 1.f);
     ImGui::InvisibleButton("line", {width, line_height * pixel});
+    widgets::mark("time line");
     const TimeScale scale{recording.first_tick(), std::max(recording.last_tick(), recording.first_tick()),
                           corner.x + line_edge * pixel, width - 2 * line_edge * pixel};
     const auto under_mouse = scale.tick_at(ImGui::GetIO().MousePos.x);

@@ -251,6 +251,19 @@ quit
     ASSERT_EQ(ran.status, 0) << ran.output;
 }
 
+TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
+    RealServer server{{"--seed", "7", "--data", folder.file("data")}};
+    evod::v1::Request run;
+    run.mutable_run_until_tick()->set_world("default");
+    run.mutable_run_until_tick()->set_tick(30);
+    server.ask(run);
+    for (const char* when : {"wait widget left/Present\nkey F8\n", "key F8\nwait widget left/Present\n"}) {
+        const Ran ran = play(server.address() + " --past 1 --size 1280x720",
+                             std::string{"wait picture\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");
+        ASSERT_EQ(ran.status, 0) << ran.output;
+    }
+}
+
 TEST_F(PanelsTest, AClickOnAWorldLooksAtIt) {
     RealServer server{{"--seed", "7"}};
     server.make_world({.name = "mars", .parameters = {{"island_count", count(3)}}});

@@ -19,6 +19,7 @@ namespace evod::viewer {
 class PlotsPanel : public Panel {
   public:
     std::string_view title() const override { return "Plots"; }
+    Size first_size() const override { return {560, 460}; }
     void build(Context& context) override;
 
   private:
