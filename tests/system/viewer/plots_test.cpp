@@ -135,6 +135,26 @@ TEST_F(PlotsTest, APictureOfThePlotIsSaved) {
     EXPECT_GT(count(image, palette::series_blue), 200u) << "the line of the mean";
 }
 
+TEST_F(PlotsTest, ThePicturesSizeIsTypedAndBroughtWithinItsRange) {
+    make_world();
+    run(3);
+    std::ofstream{folder.file("script")} << R"(wait picture
+key F7
+wait widget "3 generations, up to 3"
+click "picture's width"
+key Q
+set "picture's width" 5
+set "picture's height" 300
+click "Save PNG"
+quit
+)";
+    const Ran ran = run_evoview(server.address() + " --world lab --script " + folder.file("script"));
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    sf::Image image;
+    ASSERT_TRUE(image.loadFromFile(path_of("fitness", 3) + ".png"));
+    EXPECT_EQ(image.getSize(), (sf::Vector2u{200, 300}));
+}
+
 /// A plot that fills the window, and a mouse.
 struct PlotUnderTheMouse {
     Plot plot;

@@ -14,8 +14,8 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr float plot_height_min = 120;     // pixels
-constexpr int picture_pixels_max = 10'000; // of either side of a file
+constexpr float plot_height_min = 120;                               // pixels
+constexpr int picture_pixels_min = 200, picture_pixels_max = 10'000; // of either side of a file
 
 struct Tab {
     const char* name;
@@ -26,6 +26,18 @@ constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},
                         {"Diversity", Quantity::Diversity},
                         {"Survivors", Quantity::Survivors},
                         {"Deaths", Quantity::Deaths}};
+
+/// A field for a side of a picture.
+void build_pixels(const char* label, const char* name, int& pixels) {
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 4);
+    ImGui::InputInt(label, &pixels, 0);
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        pixels = std::clamp(pixels, picture_pixels_min, picture_pixels_max);
+    }
+    widgets::mark(name);
+    widgets::explain(std::string{"The "} + name + ", " + with_separators(picture_pixels_min) + " to " +
+                     with_separators(picture_pixels_max) + " pixels.");
+}
 
 /// CSV files of the working folder, by name.
 std::vector<std::string> csv_files() {
@@ -179,9 +191,11 @@ void PlotsPanel::build_choices() {
     }
     ImGui::SameLine();
     const HistoryTable& table = own_.history.table();
-    widgets::say(table.empty() ? own_.history.complete() ? "No generation has ended yet" : "…"
-                               : with_separators(table.column(std::nullopt, "generation").size()) +
-                                     " generations, up to " + with_separators(table.last_generation()));
+    const std::string known = table.empty() ? own_.history.complete() ? "No generation has ended yet" : "…"
+                                            : with_separators(table.column(std::nullopt, "generation").size()) +
+                                                  " generations, up to " + with_separators(table.last_generation());
+    widgets::say(known);
+    widgets::mark(known);
 }
 
 void PlotsPanel::compare_with_file(const std::string& path) {
@@ -356,7 +370,7 @@ void PlotsPanel::save_png() {
                       ", run " + own_.history.run_id().substr(0, 8);
         const std::string path = std::filesystem::absolute(file_name(what) + ".png").string();
         const auto pixels = [this](std::size_t i) {
-            return static_cast<unsigned>(std::clamp(picture_pixels_[i], 200, picture_pixels_max));
+            return static_cast<unsigned>(std::clamp(picture_pixels_[i], picture_pixels_min, picture_pixels_max));
         };
         write_file(path, png_of(picture_of(plot, view, pixels(0), pixels(1))));
         return path;
@@ -382,16 +396,19 @@ void PlotsPanel::save_png() {
 }
 
 void PlotsPanel::build_export() {
-    if (ImGui::Button("Save CSV")) {
+    if (widgets::button("Save CSV")) {
         save_csv();
     }
     ImGui::SameLine();
-    if (ImGui::Button("Save PNG")) {
+    if (widgets::button("Save PNG")) {
         save_png();
     }
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 8);
-    ImGui::DragInt2("pixels", picture_pixels_.data(), 10, 200, picture_pixels_max);
+    build_pixels("##width", "picture's width", picture_pixels_[0]);
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    ImGui::TextUnformatted("×");
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    build_pixels("pixels", "picture's height", picture_pixels_[1]);
     if (!told_.empty()) {
         widgets::say(told_, told_trouble_ ? palette::warning : palette::text_quiet);
     }
