@@ -212,6 +212,7 @@ class Connection::Io {
         share([&] {
             status_.state = State::Connected;
             status_.reason.clear();
+            status_.refusal.reset();
             status_.welcome = std::move(welcome);
             ++status_.connected_count;
         });
@@ -243,6 +244,7 @@ class Connection::Io {
             status_.state = again ? State::Lost : State::Failed;
             status_.reason = ending.reason;
             status_.token_needed = ending.token_needed;
+            status_.refusal = ending.refusal;
             answers_.clear();
         });
         std::vector<Handler> given_up;

@@ -116,6 +116,7 @@ struct ConnectionStatus {
     State state = State::Connecting;
     std::string reason;                       // Lost, Failed and Connecting after a loss: why, one sentence; else empty
     bool token_needed = false;                // Failed: the server wants a token, or another one
+    std::optional<evod::v1::Status> refusal;  // what the server said, where that is the reason
     std::optional<evod::v1::Welcome> welcome; // of the last server we were connected with
     std::uint64_t connected_count = 0;        // times that Connected was reached
     std::uint64_t damaged_picture_count = 0;  // pictures thrown away because they could not be decoded

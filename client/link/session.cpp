@@ -168,9 +168,7 @@ void Session::read() {
             return;
         }
         if (error) {
-            self->end({.reason = self->going_away_
-                                     ? "the server at " + to_text(self->options_.server) + " was shut down"
-                                     : reason_of(error, self->options_.server)});
+            self->end(self->lost(error));
             return;
         }
         self->reader_.feed(std::span{self->received_}.first(length));
@@ -219,6 +217,10 @@ void Session::take_control(std::span<const std::byte> body) {
     } else if (!welcomed_) {
         take_first(*message);
     } else {
+        last_word_.reset();
+        if (message->has_response() && message->response().request_id() == 0) {
+            last_word_ = message->response().status();
+        }
         going_away_ = going_away_ || message->event().has_server_going_away();
         handlers_.received(*std::move(message));
     }
@@ -228,10 +230,7 @@ void Session::take_first(const evod::v1::ServerMessage& message) {
     if (message.has_response()) {
         const auto code = message.response().status().code();
         const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
-        end({.reason =
-                 "the server at " + to_text(options_.server) + " refused us: " + to_text(message.response().status()),
-             .final = !later,
-             .token_needed = code == evod::v1::CODE_UNAUTHENTICATED});
+        end(refused(message.response().status(), "refused us", !later));
     } else if (!message.has_welcome()) {
         end({.reason = to_text(options_.server) + " is not an evod server: it did not begin with a welcome",
              .final = true});
@@ -245,6 +244,21 @@ void Session::take_first(const evod::v1::ServerMessage& message) {
         welcomed_ = true;
         handlers_.welcomed(message.welcome());
     }
+}
+
+Session::Ending Session::lost(const error_code& error) const {
+    if (last_word_) { // a token that was revoked is not known any more to whoever tries it again
+        return refused(*last_word_, "ended the session", last_word_->code() == evod::v1::CODE_UNAUTHENTICATED);
+    }
+    return {.reason = going_away_ ? "the server at " + to_text(options_.server) + " was shut down"
+                                  : reason_of(error, options_.server)};
+}
+
+Session::Ending Session::refused(const evod::v1::Status& status, const char* did, bool final) const {
+    return {.reason = "the server at " + to_text(options_.server) + " " + did + ": " + to_text(status),
+            .final = final,
+            .token_needed = status.code() == evod::v1::CODE_UNAUTHENTICATED,
+            .refusal = status};
 }
 
 void Session::send(std::string frame) {

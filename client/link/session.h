@@ -28,8 +28,9 @@ class Session : public std::enable_shared_from_this<Session> {
   public:
     struct Ending {
         std::string reason;
-        bool final = false;        // trying again is of no use
-        bool token_needed = false; // without another token
+        bool final = false;                           // trying again is of no use
+        bool token_needed = false;                    // without another token
+        std::optional<evod::v1::Status> refusal = {}; // of which the reason tells
     };
     struct Handlers {
         std::function<void(evod::v1::Welcome)> welcomed; // once, before any of the next two
@@ -57,6 +58,8 @@ class Session : public std::enable_shared_from_this<Session> {
     void take_frames();
     void take_control(std::span<const std::byte> body);
     void take_first(const evod::v1::ServerMessage& message);
+    Ending lost(const boost::system::error_code& error) const;
+    Ending refused(const evod::v1::Status& status, const char* did, bool final) const;
     void write();
     void expect_within(std::chrono::milliseconds timeout, std::string what);
     void end(Ending ending);
@@ -72,7 +75,8 @@ class Session : public std::enable_shared_from_this<Session> {
     std::vector<std::byte> received_;
     std::deque<std::string> to_send_; // the first is being written
     bool welcomed_ = false, ended_ = false;
-    bool going_away_ = false; // the server has said so
+    bool going_away_ = false;                   // the server has said so
+    std::optional<evod::v1::Status> last_word_; // of no request: why the server ends it, if the end comes next
 };
 
 } // namespace evod::link

@@ -31,12 +31,11 @@ Window::Ending Window::run(bool must_connect, const std::function<void()>& conne
         panes_.link_cameras(panes_.focused().camera());
         panes_.update(now_);
         if (!was_connected) {
-            const link::ConnectionStatus status = panes_[0].watch.connection_status();
-            was_connected = status.connected_count > 0;
+            was_connected = panes_[0].watch.connection_status().connected_count > 0;
             if (was_connected) {
                 connected();
-            } else if (must_connect && !status.reason.empty()) {
-                return {.elsewhere = true, .reason = status.reason};
+            } else if (std::string why = panes_[0].watch.no_connection(); must_connect && !why.empty()) {
+                return {.elsewhere = true, .reason = std::move(why)};
             }
         }
         for (std::size_t i = 0; i < panes_.size(); ++i) {

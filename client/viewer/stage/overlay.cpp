@@ -39,7 +39,8 @@ float sheet(ImDrawList& list, const Gui& gui, Rectangle place, float top, Colour
 }
 
 Colour state_colour(const Watch& watch) {
-    const bool runs = watch.control().state() == evod::v1::RUN_STATE_RUNNING && !link::worlds_wait(watch.storage());
+    const bool runs = watch.connected() && watch.control().state() == evod::v1::RUN_STATE_RUNNING &&
+                      !link::worlds_wait(watch.storage());
     return runs ? palette::running : palette::stopped;
 }
 
@@ -96,7 +97,7 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, 
     const float title_end = write(list, gui.title(), {title_begin, top + (title_height - gui.title().FontSize) / 2 - 1},
                                   palette::text, title(picture->about));
 
-    const std::string state = shown_state(watch.control().state(), watch.storage());
+    const std::string state = watch.state_words();
     const std::string help = "H help";
     const float help_begin = right - margin - size_of(help, text).x;
     const float state_begin = help_begin - 2 * margin - size_of(state, text).x;
@@ -104,7 +105,9 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, 
     if (state_begin > title_end + margin) {
         write(list, text, {state_begin, top_line}, state_colour(watch), state);
     }
-    for (const std::string& about : {place_and_speed(picture->about, watch.control()), picture->about.world()}) {
+    const std::string where = watch.connected() ? place_and_speed(picture->about, watch.control())
+                                                : shown_place(picture->about); // nobody knows how fast it goes
+    for (const std::string& about : {where, picture->about.world()}) {
         const float about_begin = state_begin - 2 * margin - size_of(about, text).x;
         if (about_begin > title_end + margin) {
             write(list, text, {about_begin, top_line}, palette::text, about);
@@ -127,9 +130,11 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle pla
     const std::string trouble = shown_storage(watch.storage());
     std::string text;
     if (status.state == link::State::Failed) {
-        text = "No connection to " + server + ": " + status.reason + "\nCtrl+Backspace goes to the start screen";
+        text =
+            "No connection to " + server + "\n" + watch.no_connection() + "\nCtrl+Backspace goes to the start screen";
     } else if (status.state != link::State::Connected) {
-        text = "Connecting to " + server + " …" + (status.reason.empty() ? "" : "\n" + status.reason + "; retrying");
+        const std::string why = watch.no_connection();
+        text = "Connecting to " + server + " …" + (why.empty() ? "" : "\n" + why + "; retrying");
     } else if (const auto refusal = watch.refusal()) {
         text = *refusal + "\nW shows another world, Tab another island";
     } else if (watch.picture() == nullptr) {

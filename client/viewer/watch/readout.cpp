@@ -1,11 +1,20 @@
 #include "client/viewer/watch/readout.h"
 
-#include "client/link/connection.h"
-
 #include <cctype>
 #include <cmath>
 
 namespace evod::viewer {
+
+namespace {
+
+std::string capitalised(std::string text) {
+    if (!text.empty()) {
+        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    }
+    return text;
+}
+
+} // namespace
 
 std::string shown_speed(const evod::v1::Speed& speed) {
     if (speed.max()) {
@@ -50,14 +59,18 @@ const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storag
 }
 
 std::string shown_refusal(const evod::v1::Status& status) {
-    std::string text = status.message();
-    if (!text.empty()) {
-        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    }
+    std::string text = capitalised(status.message());
     for (const evod::v1::Violation& violation : status.violations()) {
         text += (violation.got().empty() ? "" : " (" + violation.got() + ")") + "; allowed: " + violation.allowed();
     }
     return text;
+}
+
+std::string shown_loss(const link::ConnectionStatus& status, bool came_with_token) {
+    if (status.token_needed && !came_with_token) { // the server tells of options, for those who have no fields
+        return "The server wants a token: whoever runs it makes them";
+    }
+    return status.refusal ? shown_refusal(*status.refusal) : capitalised(status.reason);
 }
 
 std::string title(const evod::v1::SnapshotFrame& picture) {
@@ -68,12 +81,16 @@ std::string past_mark(const evod::v1::Recording& recording) {
     return recording.past_of().empty() ? "REPLAY" : "PAST of " + recording.past_of();
 }
 
-std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control) {
+std::string shown_place(const evod::v1::SnapshotFrame& picture) {
     std::string text = picture.world();
     if (picture.island_count() > 1) {
         text += print(" · island %u of 0–%u", picture.island(), picture.island_count() - 1);
     }
-    text += " · " + shown_speed(control.speed());
+    return text;
+}
+
+std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control) {
+    std::string text = shown_place(picture) + " · " + shown_speed(control.speed());
     if (control.state() == evod::v1::RUN_STATE_RUNNING && picture.ticks_per_s() > 0) {
         text += " (" + with_separators(static_cast<std::uint64_t>(std::llround(picture.ticks_per_s()))) + " ticks/s)";
     }

@@ -3,6 +3,7 @@
 // Threads      none.
 #pragma once
 
+#include "client/link/connection.h"
 #include "client/viewer/text/numbers.h"
 #include "client/viewer/watch/run_control.h"
 
@@ -23,12 +24,18 @@ std::string shown_storage(const evod::v1::Storage& storage);
 /// Why the server says no, for a person: "There is no such island (9); allowed: 0 to 7".
 std::string shown_refusal(const evod::v1::Status& status);
 
+/// Why there is no connection, in a sentence for a person who sees fields for server and token; empty if nothing is
+/// wrong.
+std::string shown_loss(const link::ConnectionStatus& status, bool came_with_token);
+
 /// "Generation 12"; empty before the first picture.
 std::string title(const evod::v1::SnapshotFrame& picture);
 
 /// Before the title of a world that shows what has been: "PAST of default", or "REPLAY" of a run file.
 std::string past_mark(const evod::v1::Recording& recording);
 
+/// "default · island 2 of 0–7"
+std::string shown_place(const evod::v1::SnapshotFrame& picture);
 /// "default · island 2 of 0–7 · 4× (240 ticks/s)"; the state is written beside it.
 std::string place_and_speed(const evod::v1::SnapshotFrame& picture, const RunControl& control);
 

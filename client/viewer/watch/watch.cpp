@@ -508,6 +508,14 @@ const wire::Picture* Watch::picture_of(std::uint32_t island) const {
     return view == views_.end() ? nullptr : view->second.latest().get();
 }
 
+std::string Watch::no_connection() const {
+    return shown_loss(connection_status(), !wanted_.connection.token.empty());
+}
+
+std::string Watch::state_words() const {
+    return connected() ? shown_state(control_.state(), storage_) : "no connection";
+}
+
 std::uint32_t Watch::island_count() const {
     for (const auto& [island, view] : views_) {
         if (view.latest()) {

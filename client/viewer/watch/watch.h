@@ -130,6 +130,11 @@ class Watch {
     /// Whether the server has answered everything, the questions of the beginning among it.
     bool all_answered() const { return connected_count_ > 0 && unanswered_.empty() && !opening_.valid(); }
     link::ConnectionStatus connection_status() const { return connection_.status(); }
+    bool connected() const { return connection_status().state == link::State::Connected; }
+    /// Why it is not, in a sentence; empty if nobody knows yet.
+    std::string no_connection() const;
+    /// How the world that is shown stands: "running", "waiting – Space runs", "no connection".
+    std::string state_words() const;
     /// Why the server shows no pictures: what it said to the subscription. Nullopt if it does, or has not answered.
     std::optional<std::string> refusal() const;
     /// How it stands with the server's disk; without a state if it keeps nothing, or the world shows the past.

@@ -68,5 +68,24 @@ TEST(RealServer, KeysCommandTheWorld) {
     EXPECT_EQ(evoview.wait(), 0);
 }
 
+TEST(RealServer, NothingIsSaidToRunOnceItIsGone) {
+    RealServer server{{"--seed", "7"}};
+    Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500"}};
+    Person person;
+    ASSERT_TRUE(person.finds_window());
+    ASSERT_TRUE(person.sees(palette::organism));
+    const auto says_that_it_runs = [&](bool it_does) {
+        return wait_until([&] {
+            const sf::Image seen = person.looks();
+            return seen.getSize().x > 0 && (count(seen, palette::running) > 0) == it_does;
+        });
+    };
+    person.press(XK_space);
+    ASSERT_TRUE(says_that_it_runs(true));
+    server.end();
+    EXPECT_TRUE(says_that_it_runs(false));
+    EXPECT_TRUE(person.sees(palette::organism)) << "the last picture stays";
+}
+
 } // namespace
 } // namespace evod::viewer

@@ -276,6 +276,43 @@ TEST(Reconnection, FollowsAMessageThatIsNoMessage) {
     EXPECT_TRUE(eventually([&] { return connection.status().connected_count == 2; }));
 }
 
+TEST(Reconnection, TellsTheServersLastWord) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession first = server.accept_and_welcome();
+        first.refuse(0, v1::CODE_INVALID_ARGUMENT, "that was no message");
+        first.send_event(1); // the session went on
+    }
+    {
+        FakeSession second = server.accept();
+        EXPECT_THAT(connection.status().reason, HasSubstr("closed the connection"));
+        EXPECT_FALSE(connection.status().refusal);
+        second.welcome();
+        second.refuse(0, v1::CODE_RESOURCE_EXHAUSTED, "this client takes nothing");
+    }
+    FakeSession third = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("ended the session: RESOURCE_EXHAUSTED: this client takes"));
+    third.welcome();
+    EXPECT_TRUE(eventually([&] { return connection.status().connected_count == 3; }));
+    EXPECT_FALSE(connection.status().refusal);
+}
+
+TEST(Reconnection, DoesNotFollowARevokedToken) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession session = server.accept_and_welcome();
+        session.refuse(0, v1::CODE_UNAUTHENTICATED, "the token has been revoked");
+    }
+    EXPECT_TRUE(eventually([&] { return connection.status().state == State::Failed; }));
+    const ConnectionStatus status = connection.status();
+    EXPECT_THAT(status.reason, HasSubstr("the token has been revoked"));
+    EXPECT_TRUE(status.token_needed);
+    ASSERT_TRUE(status.refusal);
+    EXPECT_EQ(status.refusal->message(), "the token has been revoked");
+}
+
 TEST(Subscriptions, AreAskedForInTurnAtFirstAndAheadOfTheRestAfterALoss) {
     FakeServer server;
     Connection connection{server.options()};

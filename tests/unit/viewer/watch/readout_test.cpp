@@ -50,6 +50,19 @@ TEST(Readout, ARefusalIsASentence) {
     EXPECT_EQ(shown_refusal(status), "There is no such island (9); allowed: 0 to 7");
 }
 
+TEST(Readout, SaysWhyThereIsNoConnectionWithoutNamesOfCodesAndOptions) {
+    link::ConnectionStatus status;
+    EXPECT_EQ(shown_loss(status, true), "");
+    status.reason = "no server at localhost:1";
+    EXPECT_EQ(shown_loss(status, true), "No server at localhost:1");
+    status.reason = "the server at localhost:1 refused us: UNAUTHENTICATED: this server does not know the token";
+    status.refusal.emplace().set_message("this server does not know the token");
+    status.token_needed = true;
+    EXPECT_EQ(shown_loss(status, true), "This server does not know the token");
+    status.refusal->set_message("this server wants a token: --token-file gives it one");
+    EXPECT_EQ(shown_loss(status, false), "The server wants a token: whoever runs it makes them");
+}
+
 TEST(Readout, TellsTheIslandOnlyWhereThereAreSeveral) {
     evod::v1::SnapshotFrame picture;
     picture.set_world("default");
@@ -63,6 +76,7 @@ TEST(Readout, TellsTheIslandOnlyWhereThereAreSeveral) {
     picture.set_island_count(8);
     picture.set_island(2);
     EXPECT_EQ(place_and_speed(picture, control), "default · island 2 of 0–7 · 2× (120 ticks/s)");
+    EXPECT_EQ(shown_place(picture), "default · island 2 of 0–7");
 }
 
 TEST(Readout, HasEveryStatisticOfTheGenerationThatRunsAndOfTheOneBefore) {

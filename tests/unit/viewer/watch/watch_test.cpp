@@ -335,6 +335,21 @@ TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
     until(watch, [&] { return watch.picture()->about.tick() == 70; });
 }
 
+TEST_F(WatchTest, WithoutAConnectionItDoesNotSayThatTheWorldRuns) {
+    Watch watch{wanted()};
+    {
+        auto session = begin(watch);
+        send_picture(session, 7, 1, 50);
+        until(watch, [&] { return watch.picture() != nullptr; });
+        answer_statistics(session, session.read_request());
+        until(watch, [&] { return watch.state_words() == "running"; });
+        EXPECT_EQ(watch.no_connection(), "");
+        session.refuse(0, evod::v1::CODE_UNAUTHENTICATED, "the token has been revoked");
+    }
+    until(watch, [&] { return watch.state_words() == "no connection"; });
+    ASSERT_NE(watch.picture(), nullptr) << "the last is still shown";
+}
+
 TEST_F(WatchTest, AllIslandsComeOverOneSubscription) {
     Watch::Wanted all = wanted();
     all.all_islands = true;
