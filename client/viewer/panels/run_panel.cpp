@@ -6,7 +6,8 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <charconv>
+#include <initializer_list>
+#include <limits>
 
 namespace evod::viewer {
 
@@ -24,6 +25,43 @@ const char* outcome_words(evod::v1::Outcome outcome) {
         return "everyone has died";
     default:
         return "a criterion holds";
+    }
+}
+
+constexpr std::uint64_t count_max = 1'000'000'000'000; // of ticks or generations at a time
+
+struct Allowed {
+    std::uint64_t least, most;
+};
+/// What a field says, if it is allowed; `problem` then becomes empty, or else says what is.
+std::optional<std::uint64_t> number_in(std::string_view field, std::string_view text, Allowed allowed,
+                                       std::string& problem) {
+    const auto number = whole_number(text);
+    if (number && *number >= allowed.least && *number <= allowed.most) {
+        problem.clear();
+        return number;
+    }
+    problem = std::string{field} + ": \"" + std::string{text} + "\" is no whole number from " +
+              with_separators(allowed.least) + " to " + with_separators(allowed.most);
+    return std::nullopt;
+}
+
+/// A field for a number, which is looked at when it is used.
+template <std::size_t size>
+void number_field(const char* name, std::array<char, size>& field, float width, const char* hint = "") {
+    ImGui::SetNextItemWidth(width);
+    ImGui::InputTextWithHint((std::string{"##"} + name).c_str(), hint, field.data(), field.size(),
+                             ImGuiInputTextFlags_CharsDecimal);
+    widgets::mark(name);
+    ImGui::SameLine();
+}
+
+/// What is wrong, below the fields that it may be about.
+void tell(const std::string& problem, std::initializer_list<std::string_view> fields) {
+    const std::string_view field = std::string_view{problem}.substr(0, problem.find(':'));
+    if (!problem.empty() && std::ranges::find(fields, field) != fields.end()) {
+        widgets::say(problem, palette::warning);
+        widgets::mark(std::string{field} + " is refused");
     }
 }
 
@@ -87,25 +125,22 @@ void RunPanel::build_run(Watch& watch, float scale) {
         watch.step(1);
     }
     const float field = 110 * scale;
-    ImGui::SetNextItemWidth(field);
-    ImGui::InputInt("##ticks", &ticks_, 0);
-    widgets::mark("ticks");
-    ticks_ = std::max(ticks_, 1);
-    ImGui::SameLine();
+    number_field("ticks", ticks_, field);
     if (widgets::button("Step ticks")) {
-        watch.step(static_cast<std::uint64_t>(ticks_));
+        if (const auto ticks = number_in("ticks", ticks_.data(), {1, count_max}, problem_)) {
+            watch.step(*ticks);
+        }
     }
     widgets::explain("So many ticks, then it pauses.");
-    ImGui::SetNextItemWidth(field);
-    ImGui::InputInt("##generations", &generations_, 0);
-    widgets::mark("generations");
-    generations_ = std::max(generations_, 1);
-    ImGui::SameLine();
+    number_field("generations", generations_, field);
     if (widgets::button("Run generations")) {
-        watch.run_generations(static_cast<std::uint64_t>(generations_));
+        if (const auto generations = number_in("generations", generations_.data(), {1, count_max}, problem_)) {
+            watch.run_generations(*generations);
+        }
     }
     widgets::explain("So many generations to their end, then it waits.");
     ImGui::EndDisabled();
+    tell(problem_, {"ticks", "generations"});
 }
 
 void RunPanel::build_speed(Watch& watch) {
@@ -125,7 +160,13 @@ void RunPanel::build_speed(Watch& watch) {
     }
     widgets::mark("speed");
     if (ImGui::IsItemDeactivatedAfterEdit() && factor_) {
-        watch.at_factor(*factor_);
+        const bool allowed = *factor_ >= least && *factor_ <= most; // a typed one may be anything
+        problem_ = allowed ? ""
+                           : "speed: " + shown_number(*factor_) + " is not from " + shown_number(least) + " to " +
+                                 shown_number(most) + " times real time";
+        if (allowed) {
+            watch.at_factor(*factor_);
+        }
     }
     if (!ImGui::IsItemActive()) {
         factor_.reset();
@@ -135,6 +176,7 @@ void RunPanel::build_speed(Watch& watch) {
     if (widgets::button("Real time")) {
         watch.real_time();
     }
+    tell(problem_, {"speed"});
     if (watch.control().told().slowed()) {
         widgets::say("The server's machine cannot keep up: the clock goes slower, no tick is left out.");
     }
@@ -145,18 +187,12 @@ void RunPanel::build_reset(Watch& watch, float scale) {
         widgets::say("This world shows the past, which stays as it was.");
         return;
     }
-    ImGui::SetNextItemWidth(200 * scale);
-    ImGui::InputTextWithHint("##seed", "the same seed again", seed_.data(), seed_.size(),
-                             ImGuiInputTextFlags_CharsDecimal);
-    widgets::mark("seed");
-    ImGui::SameLine();
+    number_field("seed", seed_, 200 * scale, "the same seed again");
     if (widgets::button("Reset …")) {
         ImGui::OpenPopup("reset");
     }
     widgets::explain("Begins the run again at generation 1, with the parameters last set.");
-    if (!problem_.empty()) {
-        widgets::say(problem_, palette::warning);
-    }
+    tell(problem_, {"seed"});
     if (!ImGui::BeginPopup("reset")) {
         return;
     }
@@ -164,16 +200,12 @@ void RunPanel::build_reset(Watch& watch, float scale) {
     ImGui::Text("Begin %s again at generation 1, %s?", watch.control().world().c_str(),
                 seed.empty() ? "with the same seed" : ("with the seed " + seed).c_str());
     if (widgets::button("Reset the world")) {
-        std::uint64_t number = 0;
-        const auto [end, error] = std::from_chars(seed.data(), seed.data() + seed.size(), number);
+        constexpr Allowed any{0, std::numeric_limits<std::uint64_t>::max()};
         if (seed.empty()) {
+            problem_.clear();
             watch.reset(std::nullopt);
-            problem_.clear();
-        } else if (error == std::errc{} && end == seed.data() + seed.size()) {
-            watch.reset(number);
-            problem_.clear();
-        } else {
-            problem_ = "seed: \"" + seed + "\" is no whole number from 0 to 18446744073709551615";
+        } else if (const auto number = number_in("seed", seed, any, problem_)) {
+            watch.reset(*number);
         }
         ImGui::CloseCurrentPopup();
     }

@@ -15,7 +15,7 @@ namespace evod::viewer {
 class RunPanel : public Panel {
   public:
     std::string_view title() const override { return "Run"; }
-    Size first_size() const override { return {400, 280}; }
+    Size first_size() const override { return {420, 300}; }
     void build(Context& context) override;
 
   private:
@@ -24,11 +24,11 @@ class RunPanel : public Panel {
     void build_speed(Watch& watch);
     void build_reset(Watch& watch, float scale);
 
-    int generations_ = 10;
-    int ticks_ = 60;
+    using Field = std::array<char, 24>;
+    Field ticks_{"60"}, generations_{"10"};
+    Field seed_{};                 // empty: the same again
     std::optional<double> factor_; // while the slider is held
-    std::array<char, 24> seed_{};  // empty: the same again
-    std::string problem_;
+    std::string problem_;          // of what was wanted last: "ticks: …"
 };
 
 } // namespace evod::viewer

@@ -1,6 +1,7 @@
 #include "client/viewer/text/numbers.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -64,6 +65,12 @@ std::string shown_duration(double seconds) {
     const auto minutes = static_cast<std::uint64_t>(tenths / 600);
     const double rest = (tenths - 600 * static_cast<double>(minutes)) / 10;
     return minutes == 0 ? print("%.1f s", rest) : with_separators(minutes) + print(":%04.1f", rest);
+}
+
+std::optional<std::uint64_t> whole_number(std::string_view text) {
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size() ? std::optional{number} : std::nullopt;
 }
 
 double nice_step(double least) {

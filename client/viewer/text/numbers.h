@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -23,6 +24,9 @@ std::string with_unit(double number, std::string_view unit);
 
 std::string shown_tenths(double number);    // 251.34 → "251.3"
 std::string shown_duration(double seconds); // 75.25 → "1:15.2"
+
+/// Digits and nothing else; nullopt also of what is more than 64 bits hold.
+std::optional<std::uint64_t> whole_number(std::string_view text);
 
 /// The least of 1, 2 and 5 times a power of ten that is not less than `least`; 1 of nothing. A little more than it
 /// gives the next one: nice_step(1.5 * 20) is 50.

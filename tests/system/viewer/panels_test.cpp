@@ -168,6 +168,32 @@ quit
     EXPECT_TRUE(world.speed().max());
 }
 
+TEST_F(PanelsTest, NumbersThatAreNotAllowedAreRefusedWithWhatIs) {
+    RealServer server{{"--seed", "7"}};
+    const Ran ran = play(server.address(), R"(
+wait picture
+key F3
+set ticks 99999999999999
+click "Step ticks"
+wait widget "ticks is refused"
+set generations 0
+click "Run generations"
+wait widget "generations is refused"
+set speed -5
+wait widget "speed is refused"
+set seed 99999999999999999999
+click "Reset …"
+click "Reset the world"
+wait widget "seed is refused"
+quit
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    const auto world = server.state();
+    EXPECT_EQ(world.state(), evod::v1::RUN_STATE_WAITING);
+    EXPECT_EQ(world.tick(), 0u);
+    EXPECT_EQ(world.speed().real_time_factor(), 1);
+}
+
 TEST_F(PanelsTest, EscClosesAQuestionThenThePanelUsedLast) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(

@@ -35,6 +35,14 @@ TEST(Numbers, HaveSixDigits) {
     EXPECT_EQ(with_unit(3, ""), "3");
 }
 
+TEST(Numbers, AreReadWhole) {
+    EXPECT_EQ(whole_number("0"), 0u);
+    EXPECT_EQ(whole_number("18446744073709551615"), ~std::uint64_t{0});
+    for (const char* text : {"", "-1", "+1", "1.5", "7 ", " 7", "1,000", "18446744073709551616", "seven"}) {
+        EXPECT_EQ(whole_number(text), std::nullopt) << text;
+    }
+}
+
 TEST(Durations, HaveMinutesAndTenthsOfSeconds) {
     EXPECT_EQ(shown_duration(0), "0.0 s");
     EXPECT_EQ(shown_duration(12.39), "12.3 s");
