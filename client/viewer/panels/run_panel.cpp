@@ -93,7 +93,7 @@ void RunPanel::build(Context& context) {
 void RunPanel::build_state(const Watch& watch) {
     const RunControl& control = watch.control();
     const evod::v1::WorldInfo& told = control.told();
-    std::string state = state_word(control.state(), watch.storage());
+    std::string state = watch.at_the_end() ? watch.state_words() : state_word(control.state(), watch.storage());
     if (control.state() == evod::v1::RUN_STATE_TERMINATED) {
         state += std::string{": "} + outcome_words(control.outcome());
     } else if (told.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
@@ -111,7 +111,7 @@ void RunPanel::build_state(const Watch& watch) {
 
 void RunPanel::build_run(Watch& watch, float scale) {
     const evod::v1::RunState state = watch.control().state();
-    const bool over = state == evod::v1::RUN_STATE_TERMINATED;
+    const bool over = state == evod::v1::RUN_STATE_TERMINATED || watch.at_the_end();
     ImGui::BeginDisabled(over);
     const char* label = state == evod::v1::RUN_STATE_RUNNING  ? "Pause"
                         : state == evod::v1::RUN_STATE_PAUSED ? "Go on"

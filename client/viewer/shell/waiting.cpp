@@ -1,7 +1,5 @@
 #include "client/viewer/shell/waiting.h"
 
-#include "client/viewer/watch/readout.h"
-
 #include <algorithm>
 #include <stdexcept>
 
@@ -20,8 +18,7 @@ std::string standing(const Watch& watch) {
     if (!control.known()) {
         return link::to_text(watch.server()) + " has shown no picture of " + quoted(watch.world());
     }
-    return quoted(control.world()) + " is " + shown_state(control.state(), watch.storage()) + " at tick " +
-           std::to_string(control.tick());
+    return quoted(control.world()) + " is " + watch.state_words() + " at tick " + std::to_string(control.tick());
 }
 
 void check_hope(const Watch& watch) {

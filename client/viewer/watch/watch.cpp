@@ -273,9 +273,10 @@ void Watch::ask_state() {
 }
 
 bool Watch::is_over() {
-    const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED;
+    const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED || at_the_end();
     if (over) {
-        notices_.push_back("The run has ended; a reset of the world begins it again");
+        notices_.push_back(recording_ ? "This is the end of the recording; [ goes back by a generation"
+                                      : "The run has ended; a reset of the world begins it again");
     }
     return over;
 }
@@ -513,7 +514,18 @@ std::string Watch::no_connection() const {
 }
 
 std::string Watch::state_words() const {
-    return connected() ? shown_state(control_.state(), storage_) : "no connection";
+    const bool waits = control_.state() == evod::v1::RUN_STATE_WAITING;
+    return !connected()   ? "no connection"
+           : at_the_end() ? "at the end of the recording"
+           : waits && recording_ && control_.tick() >= recording_->last_tick()
+               ? "waits for the present to go on"
+               : shown_state(control_.state(), storage_);
+}
+
+bool Watch::at_the_end() const {
+    const bool stands =
+        control_.state() == evod::v1::RUN_STATE_WAITING || control_.state() == evod::v1::RUN_STATE_PAUSED;
+    return recording_ && recording_->past_of().empty() && stands && control_.tick() >= recording_->last_tick();
 }
 
 std::uint32_t Watch::island_count() const {

@@ -97,6 +97,8 @@ class Watch {
     const evod::v1::Recording* recording() const { return recording_ ? &*recording_ : nullptr; }
     /// Whether the past is one that return_to_present() leaves.
     bool opened_past() const { return present_.has_value(); }
+    /// Whether a replay shows the last of its recording, and can only go back. A past goes on as its world does.
+    bool at_the_end() const;
     /// The world that return_to_present() leads to; nullopt: no past was opened.
     const std::optional<std::string>& present() const { return present_; }
     /// Where a seek is going to; null if none is under way.
@@ -133,7 +135,8 @@ class Watch {
     bool connected() const { return connection_status().state == link::State::Connected; }
     /// Why it is not, in a sentence; empty if nobody knows yet.
     std::string no_connection() const;
-    /// How the world that is shown stands: "running", "waiting – Space runs", "no connection".
+    /// How the world that is shown stands: "running", "waiting – Space runs", "at the end of the recording", "no
+    /// connection".
     std::string state_words() const;
     /// Why the server shows no pictures: what it said to the subscription. Nullopt if it does, or has not answered.
     std::optional<std::string> refusal() const;

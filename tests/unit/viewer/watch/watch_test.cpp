@@ -350,6 +350,38 @@ TEST_F(WatchTest, WithoutAConnectionItDoesNotSayThatTheWorldRuns) {
     ASSERT_NE(watch.picture(), nullptr) << "the last is still shown";
 }
 
+TEST_F(WatchTest, AReplayThatIsOverSaysSoAndIsNotRun) {
+    Watch watch{wanted()};
+    auto session = begin(watch);
+    const auto question = session.read_request();
+    ASSERT_TRUE(question.has_get_statistics());
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(question.request_id());
+    auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
+    world = info("default", evod::v1::RUN_STATE_WAITING);
+    world.set_tick(899);
+    world.mutable_recording()->set_last_tick(900);
+    session.send(message);
+    until(watch, [&] { return watch.recording() != nullptr; });
+    EXPECT_FALSE(watch.at_the_end());
+    EXPECT_EQ(watch.state_words(), "waiting – Space runs");
+    message.Clear();
+    message.mutable_event()->set_world("default");
+    auto& told = *message.mutable_event()->mutable_run_control_changed()->mutable_world();
+    told = info("default", evod::v1::RUN_STATE_PAUSED);
+    told.set_tick(900);
+    told.mutable_recording()->set_last_tick(900);
+    session.send(message);
+    until(watch, [&] { return watch.at_the_end(); });
+    EXPECT_EQ(watch.state_words(), "at the end of the recording");
+    watch.pause_or_resume();
+    watch.step(1);
+    watch.next_world();
+    EXPECT_TRUE(session.read_request().has_list_worlds()) << "nothing else was sent";
+    until(watch, [&] { return notices.size() == 2; });
+    EXPECT_THAT(notices[0], testing::HasSubstr("the end of the recording"));
+}
+
 TEST_F(WatchTest, AllIslandsComeOverOneSubscription) {
     Watch::Wanted all = wanted();
     all.all_islands = true;
