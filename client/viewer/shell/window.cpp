@@ -132,19 +132,27 @@ void Window::carry_out(Action action) {
         elsewhere_ = true;
         return;
     case Action::Close:
-        if (stage_.gui().close_popup()) {
-            return;
-        }
-        if (stage_.overlay().help()) {
-            stage_.overlay().toggle_help();
-        } else if (!stage_.panels().close_front()) {
-            window_.close();
-        }
-        return;
+        return close_front();
     case Action::Quit:
         return window_.close();
     case Action::FirstPanel: // a panel: above
         break;
+    }
+}
+
+void Window::close_front() {
+    if (stage_.gui().close_popup()) {
+        return;
+    }
+    if (stage_.overlay().help()) {
+        stage_.overlay().toggle_help();
+    } else if (stage_.panels().close_front()) {
+        return;
+    } else if (now_ < asked_to_quit_ + Overlay::notice_shown) {
+        window_.close();
+    } else { // who presses it once too often wants to see the island
+        asked_to_quit_ = now_;
+        stage_.overlay().notice("Esc again quits; the worlds run on", now_);
     }
 }
 

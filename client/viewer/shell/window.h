@@ -32,6 +32,7 @@ class Window {
   private:
     void handle_events();
     void carry_out(Action action);
+    void close_front();
     void look_at_past_or_present();
     void save_screenshot();
 
@@ -41,7 +42,8 @@ class Window {
     Panes panes_;
     Input input_;
     link::WorldView::Clock::time_point now_{};
-    bool elsewhere_ = false; // a person wants to go to the start screen
+    link::WorldView::Clock::time_point asked_to_quit_{}; // for a while the next Esc does
+    bool elsewhere_ = false;                             // a person wants to go to the start screen
 };
 
 } // namespace evod::viewer

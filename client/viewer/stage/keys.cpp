@@ -47,8 +47,8 @@ constexpr KeyBinding bindings[] = {
     {.action = Action::Help, .key = Key::H, .help = "show or hide this help"},
     {.action = Action::Help, .key = Key::F1},
     {.action = Action::Help, .sign = '?'},
-    {.action = Action::Close, .key = Key::Escape, .help = "close a menu, the help, the panel used last; else quit"},
-    {.action = Action::Quit, .key = Key::Q, .help = "quit; the worlds run on"},
+    {.action = Action::Close, .key = Key::Escape, .help = "close a menu, the help, the panel used last; twice: quit"},
+    {.action = Action::Quit, .key = Key::Q, .help = "quit at once; the worlds run on"},
 };
 
 /// What the mouse does, and keys that act for as long as they are held.

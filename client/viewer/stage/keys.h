@@ -46,7 +46,7 @@ enum class Action {
     Follow,
     Start, // to the start screen
     Help,
-    Close, // a menu, or else the help, the panel in front, the window
+    Close, // a menu, or else the help, the panel in front; where there is none the window, asked for twice
     Quit,
     FirstPanel, // and from here on the panels after it, by index
 };

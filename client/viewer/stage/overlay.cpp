@@ -21,7 +21,6 @@ namespace {
 // In pixels at scale 1.
 constexpr float edge = 14;         // between text and the window's edge
 constexpr float help_width = 1060; // of the help with the panels' keys beside those of the window
-constexpr std::chrono::seconds notice_shown{6};
 constexpr std::size_t notices_max = 4;
 
 /// A rounded sheet with text, its upper edge at `top`, in the middle of `place`; returns its lower edge.

@@ -19,7 +19,8 @@ class Overlay {
   public:
     using Clock = link::WorldView::Clock;
 
-    /// Shows a sentence for some seconds.
+    static constexpr std::chrono::seconds notice_shown{6};
+    /// Shows a sentence for so long.
     void notice(std::string text, Clock::time_point now);
     void toggle_help() { help_ = !help_; }
     bool help() const { return help_; }

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -213,6 +214,24 @@ wait state running
 quit
 )");
     ASSERT_EQ(ran.status, 0) << ran.output;
+}
+
+TEST_F(PanelsTest, EscOnTheBareIslandAsksBeforeItQuits) {
+    RealServer server{{"--seed", "7"}};
+    const std::string path = folder.file("still_there.png");
+    const Ran ran = play(server.address(), R"(
+wait picture
+key Escape
+key F2
+wait widget Worlds/default
+key F2
+screenshot )" + path + R"(
+key Escape
+key Escape
+wait widget "nothing: the window is gone"
+)");
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    EXPECT_TRUE(std::filesystem::exists(path)) << "the first one closed it";
 }
 
 TEST_F(PanelsTest, TheGlassBoxTakesItsKeysAndNoOthers) {
