@@ -14,6 +14,11 @@ std::string capitalised(std::string text) {
     return text;
 }
 
+/// Without the name of the request: "fork_world.name" → "name".
+std::string own_name(const std::string& field) {
+    return field.substr(field.rfind('.') + 1);
+}
+
 } // namespace
 
 std::string shown_speed(const evod::v1::Speed& speed) {
@@ -59,9 +64,19 @@ const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storag
 }
 
 std::string shown_refusal(const evod::v1::Status& status) {
+    const auto& violations = status.violations();
+    if (violations.size() == 1) {
+        const evod::v1::Violation& only = violations[0];
+        if (!only.field().empty() && status.message().starts_with(only.field())) { // it says what is allowed
+            return capitalised(own_name(only.field()) + status.message().substr(only.field().size()));
+        }
+        return capitalised(status.message()) + (only.got().empty() ? "" : " (" + only.got() + ")") +
+               "; allowed: " + only.allowed();
+    }
     std::string text = capitalised(status.message());
-    for (const evod::v1::Violation& violation : status.violations()) {
-        text += (violation.got().empty() ? "" : " (" + violation.got() + ")") + "; allowed: " + violation.allowed();
+    for (int i = 0; i < violations.size(); ++i) {
+        text += (i == 0 ? ": " : "; ") + own_name(violations[i].field()) + " must be " + violations[i].allowed() +
+                (violations[i].got().empty() ? "" : ", not " + violations[i].got());
     }
     return text;
 }

@@ -48,6 +48,16 @@ TEST(Readout, ARefusalIsASentence) {
     violation.set_got("9");
     violation.set_allowed("0 to 7");
     EXPECT_EQ(shown_refusal(status), "There is no such island (9); allowed: 0 to 7");
+    status.set_message("fork_world.name must be 1 to 64 letters, not \"a b\"");
+    violation.set_field("fork_world.name");
+    violation.set_got("a b");
+    violation.set_allowed("1 to 64 letters");
+    EXPECT_EQ(shown_refusal(status), "Name must be 1 to 64 letters, not \"a b\"") << "once";
+    status.set_message("2 fields are not as they must be");
+    status.add_violations()->set_field("fork_world.seed");
+    status.mutable_violations(1)->set_allowed("a number");
+    EXPECT_EQ(shown_refusal(status), "2 fields are not as they must be: name must be 1 to 64 letters, not a b; "
+                                     "seed must be a number");
 }
 
 TEST(Readout, SaysWhyThereIsNoConnectionWithoutNamesOfCodesAndOptions) {
