@@ -67,20 +67,6 @@ std::string fixed(double value, int decimals) {
     return {digits.data(), static_cast<std::size_t>(length)};
 }
 
-std::string duration(double seconds) {
-    if (!(seconds >= 60 && seconds < 1e15)) {
-        return fixed(seconds, 1) + " s";
-    }
-    const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
-    const auto two_digits = [](std::uint64_t value) {
-        return std::string(value < 10 ? "0" : "") + std::to_string(value);
-    };
-    if (whole < 3600) {
-        return std::to_string(whole / 60) + ":" + two_digits(whole % 60) + " min";
-    }
-    return std::to_string(whole / 3600) + ":" + two_digits(whole / 60 % 60) + ":" + two_digits(whole % 60) + " h";
-}
-
 std::string short_time(double seconds) {
     const auto told = [](double value, const char* unit) { return fixed(value, value < 9.95 ? 1 : 0) + unit; };
     return seconds < 0.9995e-3 ? told(seconds * 1e6, " µs")

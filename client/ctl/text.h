@@ -1,6 +1,7 @@
 // Text: tables, sparklines and numbers for people to read.
 #pragma once
 
+#include "client/link/duration.h"
 #include "client/link/exact.h"
 
 #include <cstdint>
@@ -38,8 +39,7 @@ std::string sparkline(std::span<const double> values, std::size_t width_max);
 using link::exact;
 /// With so many decimals.
 std::string fixed(double value, int decimals);
-/// "12.3 s", "4:05 min", "2:00:00 h": simulated time.
-std::string duration(double seconds);
+using link::duration;
 /// "12 µs", "3.4 ms", "1.2 s".
 std::string short_time(double seconds);
 /// "512 B", "1.5 KiB", "12 MiB".

@@ -1,5 +1,6 @@
 #include "client/viewer/shell/recorder.h"
 
+#include "client/link/duration.h"
 #include "client/viewer/shell/film.h"
 #include "client/viewer/shell/waiting.h"
 #include "client/viewer/shell/window.h"
@@ -191,7 +192,7 @@ class Recorder {
                 return false;
             }
             if (limited && Clock::now() >= end) {
-                throw std::runtime_error{"no picture came within " + shown_duration(wanted_.timeout_s) + ": " +
+                throw std::runtime_error{"no picture came within " + link::duration(wanted_.timeout_s) + ": " +
                                          standing(leader())};
             }
             std::this_thread::sleep_for(look_again);

@@ -1,5 +1,6 @@
 #include "client/viewer/shell/screenshot.h"
 
+#include "client/link/duration.h"
 #include "client/viewer/drawing/png.h"
 #include "client/viewer/shell/screen.h"
 #include "client/viewer/shell/waiting.h"
@@ -62,7 +63,7 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
         }
         if (Clock::now() >= end) {
             throw std::runtime_error{"no picture of tick " + std::to_string(screenshot.tick) + " came within " +
-                                     shown_duration(screenshot.timeout_s) + ": " + standing(*watch)};
+                                     link::duration(screenshot.timeout_s) + ": " + standing(*watch)};
         }
         std::this_thread::sleep_for(look_again);
     }

@@ -60,13 +60,6 @@ std::string shown_tenths(double number) {
     return print("%.1f", number);
 }
 
-std::string shown_duration(double seconds) {
-    const double tenths = std::floor(seconds * 10 + 1e-6); // a time that has passed is never shown before it has
-    const auto minutes = static_cast<std::uint64_t>(tenths / 600);
-    const double rest = (tenths - 600 * static_cast<double>(minutes)) / 10;
-    return minutes == 0 ? print("%.1f s", rest) : with_separators(minutes) + print(":%04.1f", rest);
-}
-
 std::optional<std::uint64_t> whole_number(std::string_view text) {
     std::uint64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

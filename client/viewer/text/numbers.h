@@ -22,8 +22,7 @@ std::string shown_number(double number);
 /// "1,234.5 px"; of no unit the number.
 std::string with_unit(double number, std::string_view unit);
 
-std::string shown_tenths(double number);    // 251.34 → "251.3"
-std::string shown_duration(double seconds); // 75.25 → "1:15.2"
+std::string shown_tenths(double number); // 251.34 → "251.3"
 
 /// Digits and nothing else; nullopt also of what is more than 64 bits hold.
 std::optional<std::uint64_t> whole_number(std::string_view text);

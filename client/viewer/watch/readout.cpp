@@ -1,5 +1,7 @@
 #include "client/viewer/watch/readout.h"
 
+#include "client/link/duration.h"
+
 #include <cctype>
 #include <cmath>
 
@@ -120,7 +122,7 @@ std::vector<std::string> statistics(const evod::v1::SnapshotFrame& picture,
         print("mean health %.1f", live.health_mean()),
         "food eaten " + with_separators(live.food_eaten()),
         "poison eaten " + with_separators(live.poison_eaten()),
-        "tick " + with_separators(picture.tick()) + " (" + shown_duration(picture.simulated_s()) + ")",
+        "tick " + with_separators(picture.tick()) + " (" + link::duration(picture.simulated_s()) + ")",
     };
     if (last_generation != nullptr) {
         pieces.push_back(print("fitness of generation %llu: best %.1f, mean %.1f",

@@ -43,14 +43,6 @@ TEST(Numbers, AreReadWhole) {
     }
 }
 
-TEST(Durations, HaveMinutesAndTenthsOfSeconds) {
-    EXPECT_EQ(shown_duration(0), "0.0 s");
-    EXPECT_EQ(shown_duration(12.39), "12.3 s");
-    EXPECT_EQ(shown_duration(59.99), "59.9 s");
-    EXPECT_EQ(shown_duration(60), "1:00.0");
-    EXPECT_EQ(shown_duration(3675.25), "61:15.2");
-}
-
 TEST(NiceSteps, AreOneTwoOrFiveTimesAPowerOfTen) {
     EXPECT_EQ(nice_step(0), 1);
     EXPECT_EQ(nice_step(1), 1);

@@ -104,7 +104,7 @@ TEST(Readout, HasEveryStatisticOfTheGenerationThatRunsAndOfTheOneBefore) {
     last.set_fitness_mean(160.2);
     EXPECT_THAT(statistics(picture, &last),
                 ElementsAre("alive 43 of 50", "mean health 78.2", "food eaten 1,312", "poison eaten 45",
-                            "tick 36,034 (10:00.5)", "fitness of generation 15: best 251.3, mean 160.2"));
+                            "tick 36,034 (10:01 min)", "fitness of generation 15: best 251.3, mean 160.2"));
     EXPECT_EQ(statistics(picture, nullptr).size(), 5u);
 }
 
