@@ -1,6 +1,7 @@
 #include "client/viewer/drawing/widgets.h"
 
 #include "client/viewer/drawing/ink.h"
+#include "client/viewer/text/lines.h"
 
 #include <utility>
 
@@ -37,6 +38,18 @@ bool Spots::lingers(Point corner, double now_s, bool clicked) {
 
 namespace widgets {
 
+namespace {
+
+/// Small text, in lines that Dear ImGui would break within a number.
+void write_lines(std::string_view text, float width_max) {
+    const std::string lines = in_lines(text, width_max, [](std::string_view line) {
+        return ImGui::CalcTextSize(line.data(), line.data() + line.size()).x;
+    });
+    ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
+}
+
+} // namespace
+
 void mark(std::string_view name) {
     auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
     if (spots != nullptr && ImGui::IsItemVisible()) {
@@ -58,9 +71,7 @@ bool window_pressed() {
 
 void say(std::string_view text, Colour colour) {
     ImGui::PushStyleColor(ImGuiCol_Text, ink(colour));
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
-    ImGui::PopTextWrapPos();
+    write_lines(text, ImGui::GetContentRegionAvail().x);
     ImGui::PopStyleColor();
 }
 
@@ -76,9 +87,7 @@ bool wants_note() {
 
 void note(std::string_view text) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
-    ImGui::PopTextWrapPos();
+    write_lines(text, ImGui::GetFontSize() * 26);
     ImGui::EndTooltip();
 }
 
