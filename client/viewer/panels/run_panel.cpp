@@ -154,8 +154,8 @@ void RunPanel::build_speed(Watch& watch) {
     double factor = factor_.value_or(speed.max() ? 1 : speed.real_time_factor());
     const double least = RunControl::factor_min, most = RunControl::factor_max;
     ImGui::SetNextItemWidth(-ImGui::CalcTextSize("Real time").x - 4 * ImGui::GetStyle().FramePadding.x);
-    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most, "%.3g × real time",
-                            ImGuiSliderFlags_Logarithmic)) {
+    if (ImGui::SliderScalar("##speed", ImGuiDataType_Double, &factor, &least, &most,
+                            factor < 1000 ? "%.3g × real time" : "%.0f × real time", ImGuiSliderFlags_Logarithmic)) {
         factor_ = factor;
     }
     widgets::mark("speed");

@@ -124,6 +124,8 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     list.AddRectFilled({left, top}, {x, bottom}, ink(palette::past), 3 * pixel);
     const auto count_max = static_cast<std::size_t>(width / (mark_room * pixel));
     learn_beginnings(watch, recording, count_max);
+    std::vector<std::string> texts;
+    std::vector<Label> labels;
     for (const std::uint64_t generation :
          marked_generations(recording.first_generation(), recording.last_generation(), count_max)) {
         const auto begin = begin_tick_.find(generation);
@@ -132,8 +134,11 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
         }
         const float at = std::round(static_cast<float>(scale.x_of(begin->second)));
         list.AddLine({at, top - 3 * pixel}, {at, bottom}, ink(palette::text_quiet));
-        const std::string text = std::to_string(generation);
-        write(list, gui.label(), {at + 2 * pixel, corner.y - pixel}, palette::text_quiet, text);
+        texts.push_back(std::to_string(generation));
+        labels.push_back({at + 2 * pixel, size_of(texts.back(), gui.label()).x});
+    }
+    for (const std::size_t i : labels_apart(labels, 4 * pixel)) { // generations may be of very different lengths
+        write(list, gui.label(), {static_cast<float>(labels[i].left), corner.y - pixel}, palette::text_quiet, texts[i]);
     }
     list.AddRectFilled({x - 4 * pixel, top - 3 * pixel}, {x + 4 * pixel, bottom + 2 * pixel},
                        ink(held ? palette::focus : palette::text), 2 * pixel);

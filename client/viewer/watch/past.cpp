@@ -57,4 +57,14 @@ std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t
     return marked;
 }
 
+std::vector<std::size_t> labels_apart(std::span<const Label> labels, double apart) {
+    std::vector<std::size_t> written;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (written.empty() || labels[i].left >= labels[written.back()].left + labels[written.back()].width + apart) {
+            written.push_back(i);
+        }
+    }
+    return written;
+}
+
 } // namespace evod::viewer

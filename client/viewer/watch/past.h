@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace evod::viewer {
@@ -39,5 +40,13 @@ struct TimeScale {
 
 /// Generations to be marked: at most `count_max` from `first` to `last`, multiples of 1, 2, 5, 10, 20, 50, …
 std::vector<std::uint64_t> marked_generations(std::uint64_t first, std::uint64_t last, std::size_t count_max);
+
+/// What is written along a line, in pixels.
+struct Label {
+    double left, width;
+};
+/// The labels that can be written without covering each other: the first, and each that begins `apart` pixels or more
+/// after the one before it that is written. Indices, rising.
+std::vector<std::size_t> labels_apart(std::span<const Label> labels, double apart);
 
 } // namespace evod::viewer

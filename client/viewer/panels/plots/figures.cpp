@@ -89,6 +89,7 @@ class Maker {
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene) {
     Maker make{subject, other};
     make.plot().x_label = "generation";
+    make.plot().counted_x = true;
     switch (quantity) {
     case Quantity::Fitness:
         make.plot().title = "Fitness";

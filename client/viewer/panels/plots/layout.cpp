@@ -30,13 +30,13 @@ Range with_room(Range range, double room_share) {
     return {std::max(middle, -4e307) - half, std::min(middle, 4e307) + half};
 }
 
-Ticks ticks_in(Range range, int count_max) {
+Ticks ticks_in(Range range, int count_max, double step_min) {
     Ticks ticks;
     const double rough = range.width() / std::max(count_max, 1);
     if (!(rough > 0) || !std::isfinite(rough)) {
         return ticks;
     }
-    for (ticks.step = nice_step(rough / 2);; ticks.step = nice_step(1.5 * ticks.step)) {
+    for (ticks.step = nice_step(std::max(rough / 2, step_min));; ticks.step = nice_step(1.5 * ticks.step)) {
         const double first = std::ceil(range.min / ticks.step - 1e-9), last = std::floor(range.max / ticks.step + 1e-9);
         if (last - first + 1 <= count_max) {
             for (double number = first; number <= last; ++number) {

@@ -26,12 +26,14 @@ std::optional<Range> joined(std::optional<Range> a, std::optional<Range> b);
 /// A range that can be drawn: wider than the digits of a double, and with a little room at either end.
 Range with_room(Range range, double room_share);
 
-/// Round numbers, 1, 2 or 5 times a power of ten apart, inside of the range; at most `count_max` of them.
 struct Ticks {
     double step = 1;
     std::vector<double> at; // rising
 };
-Ticks ticks_in(Range range, int count_max);
+/// Round numbers, 1, 2 or 5 times a power of ten apart, inside of the range; at most `count_max` of them.
+///
+/// step_min  how far apart at least: 1 for what is counted
+Ticks ticks_in(Range range, int count_max, double step_min = 0);
 
 /// With as many decimals as the step needs: "1,500", "0.25", "1.5e+20".
 std::string tick_label(double tick, double step);

@@ -188,7 +188,8 @@ class Drawing {
             list_.AddLine({area_.left, y}, {area_.right, y}, ink(palette::plot_grid));
             write(area_.left - tick_pixels - gap / 2 - width_of(label), y - letter / 2, palette::text, label);
         }
-        const Ticks ticks = ticks_in(x_, std::max(2, static_cast<int>(columns() / (6 * letter))));
+        const Ticks ticks =
+            ticks_in(x_, std::max(2, static_cast<int>(columns() / (6 * letter))), plot_.counted_x ? 1 : 0);
         for (const double tick : ticks.at) {
             const float x = std::round(column(tick));
             const std::string label = tick_label(tick, ticks.step);

@@ -41,6 +41,7 @@ struct Plot {
     std::string x_label{}, y_label{}; // y_label with its unit
     std::vector<Series> series{};     // the first at the back
     bool from_zero = false;           // the y axis begins at 0, if nothing is below it
+    bool counted_x = false;           // x is whole numbers, and nothing stands between them
 };
 
 /// What of the x axis is shown.

@@ -83,5 +83,11 @@ TEST(MarkedGenerations, AreRoundNumbersAndNoMoreThanHaveRoom) {
     }
 }
 
+TEST(Labels, AreLeftOutWhereTheyWouldCoverEachOther) {
+    const std::vector<Label> labels{{10, 20}, {25, 20}, {33, 10}, {40, 10}, {50, 30}};
+    EXPECT_THAT(labels_apart(labels, 3), ElementsAre(0, 2, 4));
+    EXPECT_THAT(labels_apart({}, 3), IsEmpty());
+}
+
 } // namespace
 } // namespace evod::viewer

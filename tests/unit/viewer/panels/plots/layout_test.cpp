@@ -28,6 +28,8 @@ TEST(Ticks, AreRoundNumbersInsideTheRange) {
             }
         }
     }
+    EXPECT_THAT(ticks_in({1, 3}, 9, 1).at, ElementsAre(1, 2, 3)) << "generations";
+    EXPECT_THAT(ticks_in({1, 3000}, 4, 1).at, ElementsAre(1000, 2000, 3000));
     EXPECT_TRUE(ticks_in({3, 3}, 5).at.empty());
     EXPECT_TRUE(ticks_in({none, 3}, 5).at.empty());
 }
