@@ -102,7 +102,7 @@ std::string shown_children(const std::vector<OrganismStory::Child>& children) {
 void OrganismPanel::build(Context& context) {
     const OrganismStory* story = context.sight.story();
     if (story == nullptr) {
-        ImGui::TextWrapped("A click on an organism selects it.");
+        widgets::say("A click on an organism selects it.", palette::text);
         return;
     }
     ImGui::Text("Organism %u of generation %s", story->id(), with_separators(story->generation()).c_str());
@@ -111,9 +111,9 @@ void OrganismPanel::build(Context& context) {
         return;
     }
     const evod::v1::OrganismInfo& info = *story->info();
-    ImGui::TextWrapped("%s", shown_fate(*story).c_str());
+    widgets::say(shown_fate(*story), palette::text);
     if (!story->dead() && !story->ended()) {
-        ImGui::TextWrapped("%s", shown_choice(info).c_str());
+        widgets::say(shown_choice(info), palette::text);
         bool following = context.sight.following();
         if (ImGui::Checkbox("keep it in the middle (L)", &following)) {
             context.sight.toggle_following(context.watch);
@@ -134,19 +134,21 @@ void OrganismPanel::build(Context& context) {
         }
     }
     if (story->ranges().empty() && !context.sight.trouble().empty()) {
-        ImGui::TextWrapped("%s.", context.sight.trouble().c_str());
+        widgets::say(context.sight.trouble() + ".", palette::text);
     }
     ImGui::Separator();
     if (info.parents_size() == 2) {
-        ImGui::TextWrapped(info.parents(0) == info.parents(1) ? "Came of %u of the generation before"
+        widgets::say(print(info.parents(0) == info.parents(1) ? "Came of %u of the generation before"
                                                               : "Came of %u and %u of the generation before",
-                           info.parents(0), info.parents(1));
+                           info.parents(0), info.parents(1)),
+                     palette::text);
     } else {
         ImGui::TextUnformatted("Came of nobody: of the first generation, or set there");
     }
     if (story->children()) {
-        ImGui::TextWrapped("Of it came in generation %s: %s", with_separators(story->generation() + 1).c_str(),
-                           shown_children(*story->children()).c_str());
+        widgets::say(print("Of it came in generation %s: %s", with_separators(story->generation() + 1).c_str(),
+                           shown_children(*story->children()).c_str()),
+                     palette::text);
     } else if (!story->ended()) {
         ImGui::TextDisabled("Who comes of it is seen in the next generation");
     } else if (!story->waits_for_children()) {

@@ -99,7 +99,7 @@ void RunPanel::build_state(const Watch& watch) {
     } else if (told.has_run_until_generation() && control.state() == evod::v1::RUN_STATE_RUNNING) {
         state += " until generation " + with_separators(told.run_until_generation());
     }
-    ImGui::TextWrapped("%s: %s", control.world().c_str(), state.c_str());
+    widgets::say(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
     if (const wire::Picture* picture = watch.picture()) {
         where = "generation " + with_separators(picture->about.generation()) + ", " + where;

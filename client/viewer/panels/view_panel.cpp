@@ -1,5 +1,6 @@
 #include "client/viewer/panels/view_panel.h"
 
+#include "client/viewer/drawing/widgets.h"
 #include "client/viewer/scene/legend.h"
 
 #include <imgui.h>
@@ -70,11 +71,11 @@ void ViewPanel::build(Context& context) {
             sight.toggle_following(context.watch);
         }
     } else {
-        ImGui::TextWrapped("A click on an organism selects it.");
+        widgets::say("A click on an organism selects it.", palette::text);
     }
     if (!sight.trouble().empty()) {
         ImGui::Separator();
-        ImGui::TextWrapped("%s.", sight.trouble().c_str());
+        widgets::say(sight.trouble() + ".", palette::text);
     }
 }
 

@@ -68,7 +68,7 @@ void BreedingPanel::build(Context& context) {
     hold_world(context.watch);
     build_generation(context);
     if (!error_.empty()) {
-        ImGui::TextWrapped("%s", error_.c_str());
+        widgets::say(error_, palette::text);
         if (widgets::button("Ask again")) {
             error_.clear();
             inquiry_.hurry();
@@ -76,8 +76,8 @@ void BreedingPanel::build(Context& context) {
     }
     if (!shown_) {
         if (newest_ == 0) {
-            ImGui::TextWrapped(
-                "The first generation has not been bred from yet: it has to end, and the next to begin.");
+            widgets::say("The first generation has not been bred from yet: it has to end, and the next to begin.",
+                         palette::text);
         } else if (error_.empty()) {
             ImGui::TextUnformatted("Asked for …");
         }
@@ -319,7 +319,7 @@ void BreedingPanel::build_stage(const Context& context) {
     const Gui& gui = context.gui;
     const Moment moment = stepper_.moment();
     ImGui::BeginChild("caption", {0, 3 * ImGui::GetTextLineHeightWithSpacing()});
-    ImGui::TextWrapped("%s", caption(*shown_, moment).c_str());
+    widgets::say(caption(*shown_, moment), palette::text);
     ImGui::EndChild();
     const float height = ImGui::GetContentRegionAvail().y - 8;
     const float strip = 14 * gui.scale();
@@ -382,15 +382,17 @@ void BreedingPanel::build_theory(const Gui& gui) {
     draw_copies(sheet_of(gui, std::min(300.f * gui.scale(), ImGui::GetContentRegionAvail().y * 0.6f)), *comparison_,
                 picking || happened == 0 ? copies_after(*shown_, happened) : comparison_->copies,
                 picking ? double(happened) / picks : 1);
-    ImGui::TextWrapped("%zu of %zu ranks are more than two standard errors off", comparison_->beyond_two,
-                       comparison_->organisms.size());
+    widgets::say(print("%zu of %zu ranks are more than two standard errors off", comparison_->beyond_two,
+                       comparison_->organisms.size()),
+                 palette::text);
     for (const Finding& finding : comparison_->findings) {
         ImGui::Separator();
-        ImGui::TextWrapped("%.*s: expected %s, happened %s", static_cast<int>(finding.name.size()), finding.name.data(),
+        widgets::say(print("%.*s: expected %s, happened %s", static_cast<int>(finding.name.size()), finding.name.data(),
                            shown(finding.expected, finding.unit).c_str(),
-                           shown(finding.happened, finding.unit).c_str());
+                           shown(finding.happened, finding.unit).c_str()),
+                     palette::text);
         if (const auto off = finding.deviation()) {
-            ImGui::TextWrapped("%+.2f standard errors", *off);
+            widgets::say(print("%+.2f standard errors", *off), palette::text);
         }
         widgets::say(std::string{finding.sentence} + " (" + std::string{finding.source} + ")");
     }

@@ -94,11 +94,12 @@ void PhysicsPanel::build_motion() {
     draw_measure("its step in a tick, of its radius: " + shown_number(now.fastest_step_share()), history_,
                  [](const Motion& m) { return m.fastest_step_share(); });
     const double step_px = now.fastest_px_s() * now.tick_s();
-    ImGui::TextWrapped("The fastest moves %.3g px in a tick; contacts are looked for in strips of %.4g px. The deepest "
+    widgets::say(print("The fastest moves %.3g px in a tick; contacts are looked for in strips of %.4g px. The deepest "
                        "overlap is %.2g of the smaller body's radius. In this generation %s moves were longer than the "
                        "body's radius, and max_speed_px_s held bodies back %s times.",
                        step_px, now.cell_px(), now.deepest_overlap_share(),
-                       with_separators(now.too_fast_count()).c_str(), with_separators(now.speed_limit_count()).c_str());
+                       with_separators(now.too_fast_count()).c_str(), with_separators(now.speed_limit_count()).c_str()),
+                 palette::text);
 }
 
 void PhysicsPanel::take_curves(const TimeStepDemo& demo) {
@@ -190,18 +191,21 @@ void PhysicsPanel::build_demo() {
         ImGui::EndTable();
     }
     if (spring_) {
-        ImGui::TextWrapped(
-            "ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
-            "short; symplectic Euler, the default of a world, %s.",
-            rate * dt, demo.explicit_growth(dt),
-            demo.symplectic_is_stable(dt) ? "keeps it near what it was, while ω·dt is below 2"
-                                          : "keeps it only while ω·dt is below 2, so not here");
+        widgets::say(
+            print("ω·dt is %.3g. Explicit Euler multiplies the energy by 1 + ω²dt² = %.4g in every step, however "
+                  "short; symplectic Euler, the default of a world, %s.",
+                  rate * dt, demo.explicit_growth(dt),
+                  demo.symplectic_is_stable(dt) ? "keeps it near what it was, while ω·dt is below 2"
+                                                : "keeps it only while ω·dt is below 2, so not here"),
+            palette::text);
     } else {
-        ImGui::TextWrapped(
-            "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the exact solution keeps e^(−c·dt): "
-            "from 1 on the body turns round, from 2 on it gets faster. With symplectic and explicit Euler a "
-            "world's damping keeps e^(−c·dt) itself, whatever the tick.",
-            rate * dt);
+        widgets::say(
+            print(
+                "c·dt is %.3g. Both keep 1 − c·dt of the velocity in a step, where the exact solution keeps e^(−c·dt): "
+                "from 1 on the body turns round, from 2 on it gets faster. With symplectic and explicit Euler a "
+                "world's damping keeps e^(−c·dt) itself, whatever the tick.",
+                rate * dt),
+            palette::text);
     }
 }
 
