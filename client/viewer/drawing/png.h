@@ -9,7 +9,7 @@
 
 namespace evod::viewer {
 
-/// 8 bits each of red, green and blue; what shines through is left out. Packed fast rather than small.
+/// 8 bits each of red, green and blue; what shines through is left out.
 std::string png_of(const sf::Image& image);
 
 /// Writes a whole file, in the place of one that is there. Throws std::runtime_error that names path and reason.
