@@ -1,0 +1,26 @@
+"""evod: an evolution laboratory, from Python.
+
+    import evod
+
+    with evod.connect("host:7744", token="…") as lab:
+        world = lab.world("default")
+        world.set(mutation_chance=0.1)
+        for g in world.run(generations=50):
+            print(g.best, g.mean)
+
+`evod.local()` starts a private server and stops it; notebooks need nothing else. `evod.open_run("x.evod")` reads a run file
+without a server. `evod.aio` has the same words for asyncio. `evod.v1` has the messages of the protocol.
+"""
+from evod.blocking import Events, Frames, Lab, Past, Run, World, connect
+from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
+from evod.generations import Generation, Population
+from evod.local import LocalLab, local
+from evod.parameters import Parameter, Parameters, Registry
+from evod.pictures import Boxes, Frame, Items, Organisms, Tile
+from evod.run_file import RunFile, open_run
+
+__all__ = [
+    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "Generation", "Items", "Lab", "LocalLab", "NoConnection",
+    "Organisms", "Parameter", "Parameters", "Past", "Population", "Registry", "Run", "RunFile", "Tile", "Timeout",
+    "Violation", "World", "connect", "local", "open_run",
+]  # fmt: skip

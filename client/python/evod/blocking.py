@@ -1,0 +1,788 @@
+"""The plain face: every call waits for its answer.
+
+Threads      none of its own. Any number may share a Lab: whoever waits first reads for all, and hands that over when what
+             it waited for is there.
+"""
+from __future__ import annotations
+
+import contextlib
+import random
+import select
+import socket
+import ssl
+import threading
+import time
+from typing import Any, Callable, Iterator, Mapping, Sequence, TypeVar
+
+import numpy.typing
+
+from evod import endpoint, plans, reach
+from evod.core import Core
+from evod.errors import DamagedData, Error, NoConnection, Timeout
+from evod.generations import Generation, Population
+from evod.parameters import Parameters, Registry, Value
+from evod.pictures import Frame
+from evod.plans import Plan
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
+
+T = TypeVar("T")
+_READ_BYTES = 256 << 10
+
+
+def connect(
+    server: str = "localhost",
+    *,
+    token: str | None = None,
+    token_file: str | None = None,
+    tls: bool = False,
+    ca: str | None = None,
+    cert: str | None = None,
+    key: str | None = None,
+    timeout_s: float = 30.0,
+    reconnect: bool = True,
+    client_name: str = "evod for Python",
+) -> Lab:
+    """Connects with a server: HOST, HOST:PORT or [IPV6]:PORT; port 7744 unless said otherwise.
+
+    token, token_file    who comes: a token, or a file with one that nobody else can read; else the environment's EVOD_TOKEN.
+    tls                  TLS with a server whose certificate this system trusts.
+    ca                   TLS; PEM file of who vouches for the server: its own evod.crt, perhaps.
+    cert, key            TLS; PEM files of a certificate of ours, for servers that want one.
+    timeout_s            how long an answer may take, and how long a server may be away.
+    reconnect            whether a line that broke is to be opened again.
+
+    NoConnection: there is no server, or it does not want us.
+
+    >>> import evod
+    >>> with evod.local() as server:  # in place of a server of yours
+    ...     with evod.connect(server.address) as lab:
+    ...         lab.role, [info.name for info in lab.worlds()]
+    ('admin', ['default'])
+    """
+    where = endpoint.Endpoint.parse(server)
+    core = Core(
+        token=endpoint.token_of(token, token_file), client_name=client_name, client_version="", server=str(where)
+    )
+    link = Link(where, core, endpoint.tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
+    link.open()
+    return Lab(link)
+
+
+class Link:
+    """Carries out plans over a socket."""
+
+    def __init__(
+        self, server: endpoint.Endpoint, core: Core, tls: ssl.SSLContext | None, *, timeout_s: float, reconnect: bool
+    ) -> None:
+        self.server, self.core, self.timeout_s = server, core, timeout_s
+        self._tls, self._reconnect = tls, reconnect
+        self._changed = threading.Condition(threading.Lock())  # guards everything here, and the core
+        self._reading = False  # somebody reads for all
+        self._closed = False
+        self._socket: socket.socket | None = None
+        self._line = reach.Line(server, None)
+        self._to_send = bytearray()
+        self._told, self._tell = socket.socketpair()  # wakes who reads
+        for end in (self._told, self._tell):
+            end.setblocking(False)
+        self._backoff_s = reach.BACKOFF_MIN_S
+        self._retry_at = self._welcome_by = 0.0
+        self._down_since: float | None = time.monotonic()
+
+    # ---- plans ----------------------------------------------------------------------------------------------------
+
+    def perform(self, plan: Plan[T]) -> T:
+        with self._changed:
+            try:
+                step = next(plan)
+                while True:
+                    try:
+                        result = self._do(step)
+                    except Error as error:
+                        step = plan.throw(error)
+                    else:
+                        step = plan.send(result)
+            except StopIteration as done:
+                value: T = done.value
+                return value
+            finally:
+                plan.close()
+                self._flush()
+
+    def tell(self, change: Callable[[], None]) -> None:
+        """Changes something that is not answered."""
+        with self._changed:
+            change()
+            self._flush()
+
+    def _do(self, step: plans.Step) -> c.Response | None:
+        if isinstance(step, plans.Until):
+            self._wait(step.holds, self.timeout_s if step.in_time else None)
+            return None
+        pending = self.core.request(step)
+        try:
+            self._wait(lambda: pending.done, self.timeout_s)
+        finally:
+            self.core.forget(pending)
+        if pending.error is not None:
+            raise pending.error
+        return pending.response
+
+    def _wait(self, holds: Callable[[], object], timeout_s: float | None) -> None:
+        deadline = None if timeout_s is None else time.monotonic() + timeout_s
+        self._flush()
+        while not holds():
+            if self.core.failed is not None:
+                raise self.core.failed
+            now = time.monotonic()
+            end = deadline
+            if self._down_since is not None:
+                back_by = self._down_since + self.timeout_s
+                if now >= back_by or not self._reconnect and self.core.loss:
+                    raise self.core.loss or NoConnection(f"no welcome from {self.server}")
+                end = back_by if end is None else min(end, back_by)
+            if deadline is not None and now >= deadline:
+                raise Timeout(f"no answer within {timeout_s:g} s")
+            remaining_s = None if end is None else max(0.0, end - now)
+            if self._reading:
+                self._changed.wait(remaining_s)
+                continue
+            self._reading = True
+            try:
+                self._go_on(remaining_s)
+            finally:
+                self._reading = False
+                self._changed.notify_all()
+                if self._closed:
+                    self._close()
+
+    # ---- the line -------------------------------------------------------------------------------------------------
+
+    def open(self) -> None:
+        """The first time; NoConnection: there is no server, or it does not want us."""
+        with self._changed:
+            try:
+                while not self.core.connected:
+                    self._go_on(reach.CONNECT_TIMEOUT_S)
+                    if self.core.loss is not None:
+                        raise self.core.failed or self.core.loss
+            except BaseException:
+                self._close()
+                raise
+
+    def close(self) -> None:
+        with self._changed:
+            self._close()
+            self._changed.notify_all()
+
+    def _close(self) -> None:
+        if self.core.failed is None:
+            self.core.close()
+        self._closed = True
+        if self._reading:  # who does that closes the rest
+            self._wake()
+            return
+        for end in (self._socket, self._told, self._tell):
+            if end is not None:
+                end.close()
+        self._socket = None
+
+    @contextlib.contextmanager
+    def _unlocked(self) -> Iterator[None]:
+        self._changed.release()
+        try:
+            yield
+        finally:
+            self._changed.acquire()
+
+    def _wake(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            self._tell.send(b"!")
+
+    def _go_on(self, most_s: float | None) -> None:
+        """Connects, waits for the time to, or sends and receives once. The lock is free meanwhile."""
+        if self._socket is None:
+            wait_s = self._retry_at - time.monotonic()
+            if wait_s > 0:
+                self._sleep(wait_s if most_s is None else min(wait_s, most_s))
+            else:
+                self._connect()
+            return
+        if not self.core.connected:
+            wait_s = self._welcome_by - time.monotonic()
+            if wait_s <= 0:
+                self._lost(reach.reason_of(TimeoutError(), self.server))
+                return
+            most_s = wait_s if most_s is None else min(wait_s, most_s)
+        connection, writes = self._socket, [self._socket] if self._to_send else []
+        data: bytes | None = None
+        lost: Error | None = None
+        with self._unlocked():
+            try:
+                readable, _, _ = select.select([connection, self._told], writes, [], most_s)
+                if self._told in readable:
+                    self._told.recv(4096)
+                if connection in readable:
+                    data = connection.recv(_READ_BYTES)
+            except BlockingIOError:
+                pass
+            except OSError as error:
+                lost = reach.reason_of(error, self.server)
+        if self._closed:
+            return
+        if lost is not None:
+            self._lost(lost)
+        elif data is not None:
+            self._take(data)
+        self._flush()
+
+    def _sleep(self, wait_s: float) -> None:
+        with self._unlocked():
+            if select.select([self._told], [], [], wait_s)[0]:
+                self._told.recv(4096)
+
+    def _connect(self) -> None:
+        with self._unlocked():
+            try:
+                connection = socket.create_connection((self.server.host, self.server.port), reach.CONNECT_TIMEOUT_S)
+            except OSError as error:
+                failure: OSError | None = error
+            else:
+                failure = None
+                reach.notice_silence(connection)
+                connection.setblocking(False)
+        if failure is not None:
+            self._lost(reach.reason_of(failure, self.server))
+        elif self._closed:
+            connection.close()
+        else:
+            self._socket, self._line = connection, reach.Line(self.server, self._tls)
+            self._to_send.clear()
+            self._welcome_by = time.monotonic() + reach.CONNECT_TIMEOUT_S
+            self.core.opened()
+            self._flush()
+
+    def _take(self, data: bytes) -> None:
+        try:
+            if not data:
+                raise reach.closed_by(self.server)
+            said = self._line.incoming(data)
+            if said:
+                self.core.received(said)
+        except ssl.SSLError as error:
+            if isinstance(error, ssl.SSLCertVerificationError):
+                self.core.failed = reach.reason_of(error, self.server)
+            self._lost(reach.reason_of(error, self.server))
+        except (NoConnection, DamagedData) as error:
+            self._lost(error)
+        if self.core.connected and self._down_since is not None:
+            self._down_since, self._backoff_s = None, reach.BACKOFF_MIN_S
+
+    def _flush(self) -> None:
+        """Sends what can be sent without waiting."""
+        if self._socket is None or self._closed:
+            return
+        try:
+            self._to_send += self._line.outgoing(self.core.outgoing())
+            while self._to_send:
+                del self._to_send[: self._socket.send(self._to_send)]
+        except BlockingIOError:
+            if self._reading:
+                self._wake()
+        except OSError:
+            self._to_send.clear()  # what the server said before it closed may still be on its way: who reads will see
+
+    def _lost(self, error: Error) -> None:
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+        if self._down_since is None:
+            self._down_since = time.monotonic()
+        self.core.lost(error)
+        # Many clients of one server should not come back in the same instant.
+        self._retry_at = time.monotonic() + self._backoff_s * random.uniform(0.5, 1.0)
+        self._backoff_s = min(2 * self._backoff_s, reach.BACKOFF_MAX_S)
+
+
+class _Closing:
+    """Something that is closed at the end of a `with`."""
+
+    def close(self) -> None:
+        raise NotImplementedError
+
+    def __enter__(self: T) -> T:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+class Lab(_Closing):
+    """A connection with a server, and the worlds on it. Made by connect() or local(); close() ends it, as does `with`."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._desk = plans.Desk(link.core)
+
+    def __repr__(self) -> str:
+        return f"<evod at {self.address}>"
+
+    def close(self) -> None:
+        self._link.close()
+
+    @property
+    def address(self) -> str:
+        """HOST:PORT of the server."""
+        return str(self._link.server)
+
+    @property
+    def welcome(self) -> session_pb2.Welcome:
+        """What the server said of itself when we came last: version, limits, durability, …"""
+        return self._link.core.welcome or session_pb2.Welcome()
+
+    @property
+    def client_key(self) -> str:
+        """What our commands are known by, in journals too."""
+        return self._link.core.client_key
+
+    @property
+    def role(self) -> str:
+        """What we may do there: "viewer", "controller" or "admin"."""
+        return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
+
+    def request(self, **request: Any) -> c.Response:
+        """Any request of the protocol, by its name; Error: it was refused.
+
+        >>> import evod
+        >>> from evod.v1 import commands_pb2
+        >>> with evod.local() as lab:
+        ...     lab.request(run_until_tick=commands_pb2.RunUntilTick(tick=60)).applied_tick
+        0
+        """
+        return self._link.perform(plans.ask(**request))
+
+    # ---- worlds ---------------------------------------------------------------------------------------------------
+
+    def worlds(self) -> Sequence[world_pb2.WorldInfo]:
+        """In order of creation."""
+        return self._link.perform(plans.worlds())
+
+    def world(self, name: str | None = None) -> World:
+        """The world of that name; without one the only world there is, or "default" if there are several."""
+        return World(self, self._link.perform(self._desk.name_of(name)))
+
+    def create_world(
+        self,
+        name: str,
+        parameters: Mapping[str, object] | None = None,
+        *,
+        seed: int | None = None,
+        population: Sequence[numpy.typing.ArrayLike] | None = None,
+        speed: float | str | None = None,
+    ) -> World:
+        """A new world; it waits to be told to run.
+
+        parameters   the rest have their defaults.
+        seed         otherwise one that the server draws.
+        population   what its first generation consists of, one array of shape (population_size, 6) for each island; otherwise
+                     that is drawn by the seed.
+        speed        as of World.set_speed(); otherwise that of the clock.
+
+        >>> import evod
+        >>> with evod.local() as lab:
+        ...     world = lab.create_world("small", {"population_size": 10}, seed=7)
+        ...     world.info().seed, len(world.population())
+        (7, 10)
+        """
+        return World(self, self._link.perform(self._desk.create_world(name, parameters or {}, seed, population, speed)))
+
+    # ---- the server -----------------------------------------------------------------------------------------------
+
+    def registry(self) -> Registry:
+        """Every parameter there is."""
+        return self._link.perform(self._desk.registry())
+
+    def describe(self) -> c.Description:
+        """The messages it knows, the registry and the limits, as they are told."""
+        return self.request(describe=c.Describe()).description
+
+    def metrics(self) -> c.Metrics:
+        """What the server counts and measures."""
+        return self.request(get_metrics=c.GetMetrics()).metrics
+
+    def events(self) -> Events:
+        """Events of all worlds, from now on."""
+        return Events(self._link, plans.EventStream(self._link.core, self._link.perform(self._desk.subscribe_events(None))))
+
+    def shut_down(self) -> None:
+        """Ends the server: what was asked is still answered, all runs are written down."""
+        self.request(shut_down=c.ShutDown())
+
+
+class World:
+    """One experiment on a server; made by Lab.world() and Lab.create_world()."""
+
+    def __init__(self, lab: Lab, name: str) -> None:
+        self._lab, self._name = lab, name
+        self._link, self._desk = lab._link, lab._desk
+
+    @property
+    def name(self) -> str:
+        return self._name
+
+    @property
+    def lab(self) -> Lab:
+        return self._lab
+
+    def __repr__(self) -> str:
+        return f"<world {self.name} at {self._lab.address}>"
+
+    def _command(self, **request: Any) -> world_pb2.WorldInfo:
+        return self._link.perform(plans.ask_for_world(**request))
+
+    # ---- parameters -----------------------------------------------------------------------------------------------
+
+    @property
+    def parameters(self) -> LiveParameters:
+        """The parameters as attributes, as they are now; assigning one sets it.
+
+        >>> import evod
+        >>> with evod.local() as lab:
+        ...     world = lab.world()
+        ...     world.parameters.mutation_chance = 0.3
+        ...     world.parameters.mutation_chance, world.parameters["mutation_chance"].allowed
+        (0.3, '0 to 1')
+        """
+        return LiveParameters(self)
+
+    def get_parameters(self) -> Parameters:
+        """All of them, as they are now."""
+        return self._link.perform(self._desk.parameters(self.name))
+
+    def set(
+        self,
+        values: Mapping[str, object] | None = None,
+        /,
+        *,
+        dry_run: bool = False,
+        expected_revision: int | None = None,
+        **more: object,
+    ) -> Parameters:
+        """Sets parameters, all of them or none: ``world.set(mutation_chance=0.1, selection="tournament")``.
+
+        dry_run             checks and answers as if it were done, and changes nothing.
+        expected_revision   refused if somebody has changed parameters since that Parameters.revision was read.
+
+        Error: every value that is not allowed; those that are out of range are not even sent.
+        """
+        plan = self._desk.set_parameters(self.name, {**(values or {}), **more}, dry_run, expected_revision)
+        return self._link.perform(plan)
+
+    # ---- running --------------------------------------------------------------------------------------------------
+
+    def run(self, generations: int | None = None) -> Run:
+        """Runs until so many more generations have ended, without a number on and on; gives them as they end.
+
+        It runs whether somebody looks at them or not; Run.wait() waits for the end.
+
+        >>> import evod
+        >>> with evod.local(seed=42) as lab:
+        ...     best = [g.best for g in lab.world().run(generations=3)]
+        >>> len(best)
+        3
+        """
+        return Run(self._link, self._link.perform(self._desk.run(self.name, generations)))
+
+    def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
+        """Runs until so many ticks of the run are over, then pauses. Answered at once: wait() waits for it."""
+        return self._command(run_until_tick=c.RunUntilTick(world=self.name, tick=tick))
+
+    def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
+        """Runs so many ticks and waits for it.
+
+        >>> import evod
+        >>> with evod.local() as lab:
+        ...     lab.world().step(60).tick
+        60
+        """
+        return self._link.perform(self._desk.step(self.name, ticks))
+
+    def wait(self) -> world_pb2.WorldInfo:
+        """Waits until it does not run."""
+        return self._link.perform(self._desk.wait(self.name))
+
+    def pause(self) -> world_pb2.WorldInfo:
+        """Stands still; what it was told to run for is remembered."""
+        return self._command(pause=c.Pause(world=self.name))
+
+    def resume(self) -> world_pb2.WorldInfo:
+        """Goes on with what it was told to run for."""
+        return self._command(resume=c.Resume(world=self.name))
+
+    def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
+        """Simulated seconds per second, 0.001 to 10,000, or "max"."""
+        return self._command(set_speed=c.SetSpeed(world=self.name, speed=plans.speed_of(speed)))
+
+    def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
+        """The run begins again at generation 1, with the same seed or another one; it waits."""
+        return self._command(reset_world=c.ResetWorld(world=self.name, seed=seed))
+
+    def release_lease(self) -> world_pb2.WorldInfo:
+        """A world that was lent by run_until_tick() or step() goes on."""
+        return self._command(release_lease=c.ReleaseLease(world=self.name))
+
+    def renew_lease(self) -> None:
+        """It stays lent for as long again."""
+        self._link.perform(plans.ask(renew_lease=c.RenewLease(world=self.name)))
+
+    def fork(self, name: str, at_generation: int | None = None) -> World:
+        """A second world, from the first moment of a generation, or from now; it waits. Nothing happens to this one."""
+        request = c.ForkWorld(world=self.name, name=name, at_generation=at_generation)
+        return World(self._lab, self._command(fork_world=request).name)
+
+    def delete(self) -> None:
+        """The world is gone."""
+        self._link.perform(plans.ask(delete_world=c.DeleteWorld(world=self.name)))
+
+    # ---- looking --------------------------------------------------------------------------------------------------
+
+    def info(self) -> world_pb2.WorldInfo:
+        """Where it stands: tick, generation, state, seed, …"""
+        return self._link.perform(plans.info_of(self.name))
+
+    def frame(self, island: int = 0) -> Frame:
+        """A picture of an island as it is now."""
+        return self._link.perform(self._desk.frame(self.name, island))
+
+    def frames(
+        self,
+        rate_hz: float = 30.0,
+        *,
+        island: int | None = None,
+        region: tuple[float, float, float, float] | None = None,
+        detail: str | None = None,
+        bytes_per_s_max: int | None = None,
+    ) -> Frames:
+        """Pictures, at most so many a second, of one island or of all; who takes long is shown fewer.
+
+        With one of the others they are made of tiles: region (left, top, width, height in px) is what is wanted, detail
+        ("full", "dots" or "density") the most that is of use, bytes_per_s_max what the line may be given.
+
+        >>> import evod
+        >>> with evod.local(seed=1) as lab:
+        ...     world = lab.world()
+        ...     with world.frames() as frames:
+        ...         run = world.run(generations=1)
+        ...         for frame in frames:
+        ...             if frame.tick > 100:
+        ...                 break
+        >>> frame.organisms.health.max() > 0
+        True
+        """
+        view = plans.view_of(region, detail, bytes_per_s_max)
+        subscription = self._link.perform(self._desk.subscribe_snapshots(self.name, island, rate_hz, view))
+        return Frames(self._link, plans.FrameStream(self._link.core, subscription))
+
+    def events(self) -> Events:
+        """What happens to it, from now on."""
+        subscription = self._link.perform(self._desk.subscribe_events(self.name))
+        return Events(self._link, plans.EventStream(self._link.core, subscription))
+
+    def statistics(self) -> c.Statistics:
+        """How each island is doing now, and what the last generation came to."""
+        return self._link.perform(plans.ask(get_statistics=c.GetStatistics(world=self.name))).statistics
+
+    def history(
+        self, first: int | None = None, last: int | None = None, *, island: int | None = None
+    ) -> list[Generation]:
+        """Generations that have ended, as far back as the server keeps them."""
+        return self._link.perform(plans.history(self.name, first, last, island))
+
+    def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
+        """Genes, place, health and parents of one organism, by its id, and what it is about to do."""
+        request = c.GetOrganism(world=self.name, island=island, organism=organism)
+        return self._link.perform(plans.ask(get_organism=request)).organism
+
+    def population(self, island: int = 0) -> Population:
+        """Genes, parents and choices of all organisms of the generation that runs, as arrays.
+
+        >>> import evod
+        >>> with evod.local(seed=1) as lab:
+        ...     population = lab.world().population()
+        >>> population.genes.shape
+        (50, 6)
+        """
+        return self._link.perform(plans.population(self.name, island))
+
+    def breeding(
+        self,
+        island: int = 0,
+        generation: int | None = None,
+        *,
+        first_contender: int = 0,
+        first_pick: int = 0,
+        first_descendant: int = 0,
+    ) -> c.Breeding:
+        """How a generation was bred: the very picks, pairs, cuts and mutations. Without a number the last that has bred."""
+        request = c.GetBreeding(
+            world=self.name,
+            island=island,
+            generation=generation,
+            first_contender=first_contender,
+            first_pick=first_pick,
+            first_descendant=first_descendant,
+        )
+        return self._link.perform(plans.ask(get_breeding=request)).breeding
+
+    def motion(self, island: int = 0) -> c.Motion:
+        """How its bodies move: energy, momentum, overlaps."""
+        return self._link.perform(plans.ask(get_motion=c.GetMotion(world=self.name, island=island))).motion
+
+    def open_past(self, generation: int | None = None, tick: int | None = None) -> Past:
+        """Its past, as a world beside it: from a generation, a tick of it, or a tick of the run; without a number from the
+        beginning. The server has to keep its runs."""
+        at = plans.moment_of(generation, tick) if (generation, tick) != (None, None) else None
+        return Past(self._lab, self._command(open_past=c.OpenPast(world=self.name, at=at)).name)
+
+    def export(
+        self,
+        table: str,
+        format: str = "csv",
+        *,
+        generation: int | None = None,
+        of: tuple[int, int, int] | None = None,
+    ) -> str:
+        """A table of what the world's run file holds, as text: "generations", "organisms", "lineage", "population" or
+        "events"; "csv" or "jsonl".
+
+        generation   of the population; otherwise the last that has begun.
+        of           the lineage of one organism: its generation, island and id.
+        """
+        return self._link.perform(plans.export(self.name, table, format, generation, of))
+
+    def table(self, table: str, *, generation: int | None = None, of: tuple[int, int, int] | None = None) -> Any:
+        """The same as a pandas DataFrame."""
+        from evod.tables import frame_of
+
+        return frame_of(self.export(table, generation=generation, of=of))
+
+
+class Past(World, _Closing):
+    """A world that shows the past of another one; made by World.open_past(), gone with close() or the connection."""
+
+    def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
+        """To a generation, a tick of it, or a tick of the run; without a number to the last moment that is known."""
+        return self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
+
+    def close(self) -> None:
+        self._link.perform(plans.ask(close_past=c.ClosePast(world=self.name)))
+
+
+class LiveParameters(Mapping[str, Any]):
+    """A world's parameters as they are now, as attributes and by name."""
+
+    def __init__(self, world: World) -> None:
+        object.__setattr__(self, "_world", world)
+
+    _world: World
+
+    def __getattr__(self, name: str) -> Value:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._world.get_parameters().__getattr__(name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        self._world.set({name: value})
+
+    def __getitem__(self, name: str) -> Any:
+        return self._world.get_parameters()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._world.lab.registry())
+
+    def __len__(self) -> int:
+        return len(self._world.lab.registry())
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+    def __repr__(self) -> str:
+        return f"<parameters of {self._world!r}>"
+
+    def _repr_html_(self) -> str:
+        return self._world.get_parameters()._repr_html_()
+
+
+class _Stream(_Closing):
+    def __init__(self, link: Link, stream: Any) -> None:
+        self._link, self._stream = link, stream
+
+    def close(self) -> None:
+        """No more of it is sent."""
+        self._link.tell(self._stream.close)
+
+
+class Run(_Stream):
+    """The generations of a run as they end, each once, also those that end while the line is broken."""
+
+    _stream: plans.GenerationStream
+
+    @property
+    def info(self) -> world_pb2.WorldInfo:
+        """The world as it was when it was told to run."""
+        return self._stream.info
+
+    def __iter__(self) -> Run:
+        return self
+
+    def __next__(self) -> Generation:
+        generation = self._link.perform(self._stream.next())
+        if generation is None:
+            raise StopIteration
+        return generation
+
+    def wait(self) -> Generation | None:
+        """Waits until it is over; the last generation of those that were not taken yet."""
+        last = None
+        for last in self:
+            pass
+        return last
+
+
+class Frames(_Stream):
+    """Pictures as they come; the next ones are let come by taking them."""
+
+    _stream: plans.FrameStream
+
+    def __iter__(self) -> Frames:
+        return self
+
+    def __next__(self) -> Frame:
+        return self._link.perform(self._stream.next())
+
+    def set_view(
+        self,
+        region: tuple[float, float, float, float] | None = None,
+        detail: str | None = None,
+        bytes_per_s_max: int | None = None,
+    ) -> None:
+        """Another view for pictures that were asked for with one; holds from the next picture."""
+        view = plans.view_of(region, detail, bytes_per_s_max) or c.View()
+        self._link.perform(self._stream.set_view(view))
+
+    def request_keyframe(self) -> None:
+        """The next pictures are whole, and come at once, even if the world stands still."""
+        self._link.perform(self._stream.request_keyframe())
+
+
+class Events(_Stream):
+    """Events as they happen, as the protocol has them. After the line broke an `events_dropped` comes with a count of 0, as
+    nobody can tell how many there were meanwhile."""
+
+    _stream: plans.EventStream
+
+    def __iter__(self) -> Events:
+        return self
+
+    def __next__(self) -> stream_pb2.Event:
+        return self._link.perform(self._stream.next())

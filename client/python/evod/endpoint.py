@@ -1,0 +1,99 @@
+"""Where a server is, and who we come to it as."""
+from __future__ import annotations
+
+import dataclasses
+import os
+import ssl
+
+from evod.errors import Error
+
+DEFAULT_PORT = 7744
+
+
+@dataclasses.dataclass(frozen=True)
+class Endpoint:
+    host: str = "localhost"  #: without brackets
+    port: int = DEFAULT_PORT
+
+    @classmethod
+    def parse(cls, text: str) -> Endpoint:
+        """HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; an IPv6 address without a port may stand without brackets.
+
+        >>> Endpoint.parse("lab.example:7000")
+        Endpoint(host='lab.example', port=7000)
+        >>> Endpoint.parse("::1")
+        Endpoint(host='::1', port=7744)
+        >>> Endpoint.parse("lab:x")
+        Traceback (most recent call last):
+        evod.errors.Error: 'lab:x' is not a server's address: a port is a number from 1 to 65535 (HOST, HOST:PORT or [IPV6]:PORT)
+        """
+        host, port = text, None
+        if text.startswith("["):
+            host, bracket, rest = text[1:].partition("]")
+            if not bracket:
+                raise _malformed(text, "']' is missing")
+            if rest and not rest.startswith(":"):
+                raise _malformed(text, "after ']' comes ':' and a port")
+            port = rest[1:] if rest else None
+        elif text.count(":") == 1:
+            host, port = text.split(":")
+        if not host:
+            raise _malformed(text, "there is no host")
+        if port is None:
+            return cls(host)
+        if not (port.isascii() and port.isdigit() and len(port) <= 5 and 1 <= int(port) <= 65535):
+            raise _malformed(text, "a port is a number from 1 to 65535")
+        return cls(host, int(port))
+
+    def __str__(self) -> str:
+        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
+
+
+def _malformed(text: str, why: str) -> Error:
+    return Error(f"'{text}' is not a server's address: {why} (HOST, HOST:PORT or [IPV6]:PORT)")
+
+
+def token_of(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
+    """The token as given, else the file's, else the environment's EVOD_TOKEN, else none. Files must be the owner's alone."""
+    if token is not None:
+        if token_file is not None:
+            raise Error("token and token_file are both given: one of them says who comes")
+        return token
+    if token_file is None:
+        return os.environ.get("EVOD_TOKEN", "")
+    try:
+        with open(token_file, encoding="utf-8") as file:
+            if os.fstat(file.fileno()).st_mode & 0o077:
+                raise Error(f"token_file: {os.fspath(token_file)}: others can read it: chmod 600 it")
+            words = file.read(4096).split()
+    except (OSError, UnicodeDecodeError) as error:
+        why = error.strerror if isinstance(error, OSError) else "it is not text"
+        raise Error(f"token_file: {os.fspath(token_file)}: {why}") from None
+    if not words:
+        raise Error(f"token_file: {os.fspath(token_file)}: there is no token in it")
+    return words[0]
+
+
+def tls_context(
+    tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None, key: str | os.PathLike[str] | None
+) -> ssl.SSLContext | None:
+    """None: in the clear. TLS with `tls`, and wherever a file is named.
+
+    ca: PEM file of who vouches for the server; otherwise those that the system trusts. cert, key: PEM files of a certificate
+    of ours, for servers that want one; the key may be in the same file.
+    """
+    if key is not None and cert is None:
+        raise Error("key is given without cert: a key is of a certificate")
+    if not tls and ca is None and cert is None:
+        return None
+    try:
+        context = ssl.create_default_context(cafile=ca)
+    except (OSError, ssl.SSLError) as error:
+        raise Error(f"{ca} cannot be used for TLS: {error.strerror or error}") from None
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    if cert is not None:
+        try:
+            context.load_cert_chain(cert, key)
+        except (OSError, ssl.SSLError) as error:
+            raise Error(f"{cert} cannot be used for TLS: {error.strerror or error}") from None
+    return context

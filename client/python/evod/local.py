@@ -1,0 +1,117 @@
+"""A private server: started for one program, and stopped with it."""
+from __future__ import annotations
+
+import collections
+import json
+import os
+import re
+import subprocess
+import tempfile
+import threading
+from typing import IO, Mapping
+
+from evod.blocking import Lab, Link, connect
+from evod.errors import Error
+from evod.program import program_of
+
+_LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
+# Stands between us and the server, and stops it when we are gone, however we went: our end of its input is closed then.
+_KEEPER = '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"'
+
+
+def local(
+    *,
+    seed: int | None = None,
+    experiment: str | os.PathLike[str] | Mapping[str, object] | None = None,
+    data: str | os.PathLike[str] | None = None,
+    speed: float | str = "max",
+    threads: int | None = None,
+    program: str | os.PathLike[str] | None = None,
+    timeout_s: float = 30.0,
+) -> LocalLab:
+    """Starts a server of your own at a free port, and connects with it; close() stops it, as does the end of the program.
+
+    seed         of its world; otherwise drawn by chance.
+    experiment   its parameters: an experiment file, or a mapping of names to values; otherwise the default world.
+    data         folder where runs are kept; otherwise nothing is kept, and the past cannot be looked at.
+    speed        of its world: simulated seconds per second, or "max", as fast as the machine can.
+    threads      that simulate; otherwise as many as the machine has processors.
+    program      the program evod; otherwise the one that the environment's EVOD names, or that is on the path.
+
+    >>> import evod
+    >>> with evod.local(experiment={"population_size": 20}) as lab:
+    ...     lab.world().parameters.population_size
+    20
+    """
+    command = [program_of(program), "--port", "0"]
+    command += ["--keep-nothing"] if data is None else ["--data", os.fspath(data)]
+    command += ["--speed", str(speed)]
+    command += [] if seed is None else ["--seed", str(seed)]
+    command += [] if threads is None else ["--threads", str(threads)]
+    with tempfile.TemporaryDirectory(prefix="evod-") as folder:
+        if isinstance(experiment, Mapping):
+            path = os.path.join(folder, "default.json")  # worlds are called after their file
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(dict(experiment), file)
+            command += ["--experiment", path]
+        elif experiment is not None:
+            command += ["--experiment", os.fspath(experiment)]
+        server = _Server(command)
+    try:
+        lab = connect(server.address, timeout_s=timeout_s, client_name="evod.local")
+    except BaseException:
+        server.stop()
+        raise
+    return LocalLab(lab._link, server)
+
+
+class LocalLab(Lab):
+    """A Lab with a server of its own; made by local()."""
+
+    def __init__(self, link: Link, server: _Server) -> None:
+        super().__init__(link)
+        self._server = server
+
+    def close(self) -> None:
+        super().close()
+        self._server.stop()
+
+    @property
+    def log(self) -> str:
+        """The last lines that the server has written."""
+        return "\n".join(self._server.lines)
+
+
+class _Server:
+    def __init__(self, command: list[str]) -> None:
+        self._keeper: subprocess.Popen[str] = subprocess.Popen(
+            ["/bin/sh", "-c", _KEEPER, "sh", *command],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            start_new_session=True,  # an interrupt at the terminal is for us alone
+        )
+        self.lines: collections.deque[str] = collections.deque(maxlen=1000)
+        assert self._keeper.stdout is not None
+        for line in self._keeper.stdout:
+            self.lines.append(line.rstrip())
+            if found := _LISTENING.search(line):
+                self.address = found[1]
+                break
+        else:
+            self._keeper.stdout.close()
+            self.stop()
+            raise Error("evod did not start: " + " ".join(self.lines))
+        threading.Thread(target=self._read_on, args=(self._keeper.stdout,), daemon=True).start()
+
+    def _read_on(self, log: IO[str]) -> None:
+        with log:
+            for line in log:
+                self.lines.append(line.rstrip())
+
+    def stop(self) -> None:
+        if self._keeper.stdin is not None and not self._keeper.stdin.closed:
+            self._keeper.stdin.close()
+        self._keeper.wait()

@@ -1,0 +1,248 @@
+"""Parameters: what the registry tells of each, and what a world has set; checked here before anything is sent."""
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+import operator
+from typing import Any, Iterator, Mapping, Union
+
+import numpy
+
+from evod.errors import Error, Violation
+from evod.v1 import commands_pb2, world_pb2
+
+Value = Union[float, int, bool, str]
+
+_KINDS = {
+    world_pb2.PARAMETER_KIND_REAL: "real",
+    world_pb2.PARAMETER_KIND_COUNT: "count",
+    world_pb2.PARAMETER_KIND_FLAG: "flag",
+    world_pb2.PARAMETER_KIND_CHOICE: "choice",
+}
+_EFFECTS = {
+    world_pb2.PARAMETER_EFFECT_NEXT_TICK: "next tick",
+    world_pb2.PARAMETER_EFFECT_NEXT_GENERATION: "next generation",
+    world_pb2.PARAMETER_EFFECT_RESET: "reset",
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Description:
+    """What the registry tells of a parameter."""
+
+    name: str
+    kind: str  #: "real", "count", "flag" or "choice"
+    unit: str  #: "px", "s", "chance"; empty for none
+    min: float  #: least and greatest value allowed; real and count
+    max: float
+    choices: tuple[str, ...]  #: choice: what it may be
+    default: Value
+    effect: str  #: when a change begins to hold: "next tick", "next generation" or "reset"
+    help: str  #: one sentence
+
+    @property
+    def allowed(self) -> str:
+        """ "0 to 1", "a whole number, 1 to 4096", "true or false", "ring, none"."""
+        if self.kind == "real":
+            return f"{number_text(self.min)} to {number_text(self.max)}"
+        if self.kind == "count":
+            return f"a whole number, {int(self.min)} to {int(self.max)}"
+        return "true or false" if self.kind == "flag" else ", ".join(self.choices)
+
+    def message(self, value: object) -> world_pb2.ParameterValue | None:
+        """The value as it is sent; None if it is not allowed."""
+        if self.kind == "choice":
+            return world_pb2.ParameterValue(choice=value) if isinstance(value, str) and value in self.choices else None
+        is_flag = isinstance(value, (bool, numpy.bool_))
+        if self.kind == "flag":
+            return world_pb2.ParameterValue(flag=bool(value)) if is_flag else None
+        if is_flag or isinstance(value, str):
+            return None
+        try:
+            if self.kind == "count":
+                count = operator.index(value)  # type: ignore[arg-type]
+                return world_pb2.ParameterValue(count=count) if self.min <= count <= self.max else None
+            real = float(value)  # type: ignore[arg-type]
+        except (TypeError, ValueError, OverflowError):
+            return None
+        return world_pb2.ParameterValue(real=real) if math.isfinite(real) and self.min <= real <= self.max else None
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter(Description):
+    """A parameter of a world."""
+
+    value: Value  #: what holds now
+    pending: Value | None  #: what will hold from the next generation or reset; None if that is `value`
+
+
+class Registry(Mapping[str, Description]):
+    """Every parameter there is, by name.
+
+    >>> import evod
+    >>> with evod.local() as lab:
+    ...     registry = lab.registry()
+    >>> registry["mutation_chance"].allowed, registry["mutation_chance"].default
+    ('0 to 1', 0.15)
+    """
+
+    def __init__(self, descriptions: Mapping[str, Description]) -> None:
+        self._descriptions = dict(descriptions)
+
+    @classmethod
+    def of(cls, message: commands_pb2.Description) -> Registry:
+        return cls({parameter.name: _description(parameter) for parameter in message.parameters})
+
+    def __getitem__(self, name: str) -> Description:
+        return self._descriptions[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._descriptions)
+
+    def __len__(self) -> int:
+        return len(self._descriptions)
+
+    def assignments(self, values: Mapping[str, object], field_prefix: str) -> list[world_pb2.ParameterAssignment]:
+        """The values as they are sent. Error: every one that is not allowed, as the server would tell."""
+        made, violations = [], []
+        for name, value in values.items():
+            description = self._descriptions.get(name)
+            if description is None:
+                violations.append(Violation(field_prefix + name, self._instead_of(name), "an unknown name"))
+            elif (message := description.message(value)) is None:
+                violations.append(Violation(field_prefix + name, description.allowed, text_of(value)))
+            else:
+                made.append(world_pb2.ParameterAssignment(name=name, value=message))
+        if violations:
+            raise Error(
+                "some parameters cannot have these values", commands_pb2.CODE_INVALID_ARGUMENT, violations
+            )
+        return made
+
+    def _instead_of(self, name: str) -> str:
+        similar = difflib.get_close_matches(name, self._descriptions, n=3)
+        return "a parameter of the registry" + (f"; did you mean {', '.join(similar)}" if similar else "")
+
+    def __repr__(self) -> str:
+        return f"<registry of {len(self)} parameters>"
+
+    def _repr_html_(self) -> str:
+        return _table_html(("name", "default", "allowed", "unit", "holds from", "meaning"), (
+            (d.name, text_of(d.default), d.allowed, d.unit, d.effect, d.help) for d in self.values()
+        ))
+
+
+class Parameters(Mapping[str, Parameter]):
+    """What a world's parameters were at a moment: values as attributes, all there is to tell of one by its name.
+
+    >>> import evod
+    >>> with evod.local() as lab:
+    ...     parameters = lab.world().get_parameters()
+    >>> parameters.population_size
+    50
+    >>> parameters["population_size"].help
+    'Organisms on each island.'
+    """
+
+    def __init__(self, registry: Registry, message: world_pb2.ParameterSet) -> None:
+        self._parameters = {
+            state.name: Parameter(
+                **_fields(registry[state.name]),
+                value=value_of(state.value),
+                pending=value_of(state.pending) if state.HasField("pending") else None,
+            )
+            for state in message.parameters
+            if state.name in registry
+        }
+        self._revision = message.revision
+
+    @property
+    def revision(self) -> int:
+        """Rises with every accepted change."""
+        return self._revision
+
+    def __getitem__(self, name: str) -> Parameter:
+        return self._parameters[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._parameters)
+
+    def __len__(self) -> int:
+        return len(self._parameters)
+
+    def __getattr__(self, name: str) -> Value:
+        if name.startswith("_") or name not in self._parameters:
+            raise AttributeError(_no_such(name, self._parameters))
+        return self._parameters[name].value
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._parameters]
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} parameters, revision {self.revision}>"
+
+    def _repr_html_(self) -> str:
+        return _table_html(("name", "value", "pending", "allowed", "unit", "holds from", "meaning"), (
+            (p.name, text_of(p.value), "" if p.pending is None else text_of(p.pending), p.allowed, p.unit, p.effect, p.help)
+            for p in self.values()
+        ))
+
+
+def value_of(message: world_pb2.ParameterValue) -> Value:
+    value: Value = getattr(message, message.WhichOneof("value") or "real")
+    return value
+
+
+def text_of(value: object) -> str:
+    """A value as the server writes it."""
+    if isinstance(value, (bool, numpy.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (float, numpy.floating)):
+        return number_text(float(value))
+    return str(value)
+
+
+def number_text(number: float) -> str:
+    """With the fewest digits that read back the same.
+
+    >>> number_text(1.0), number_text(0.001), number_text(5e5)
+    ('1', '0.001', '5e+05')
+    """
+    if not math.isfinite(number):
+        return str(number)
+    fixed = numpy.format_float_positional(number, trim="-")
+    scientific = numpy.format_float_scientific(number, trim="-", exp_digits=2)
+    return fixed if len(fixed) <= len(scientific) else scientific
+
+
+def _description(message: world_pb2.ParameterDescription) -> Description:
+    return Description(
+        name=message.name,
+        kind=_KINDS.get(message.kind, ""),
+        unit=message.unit,
+        min=message.min,
+        max=message.max,
+        choices=tuple(message.choices),
+        default=value_of(message.default_value),
+        effect=_EFFECTS.get(message.effect, ""),
+        help=message.help,
+    )
+
+
+def _fields(description: Description) -> dict[str, Any]:
+    return {field.name: getattr(description, field.name) for field in dataclasses.fields(Description)}
+
+
+def _no_such(name: str, known: Mapping[str, object]) -> str:
+    similar = difflib.get_close_matches(name, known, n=3)
+    return f"there is no parameter '{name}'" + (f"; did you mean {', '.join(similar)}" if similar else "")
+
+
+def _table_html(heading: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
+    import html
+
+    def row(cells: tuple[str, ...], kind: str) -> str:
+        return "<tr>" + "".join(f"<{kind}>{html.escape(cell)}</{kind}>" for cell in cells) + "</tr>"
+
+    return f"<table>{row(heading, 'th')}{''.join(row(cells, 'td') for cells in rows)}</table>"

@@ -1,0 +1,463 @@
+"""Plans: everything a client does that takes more than one step, written once for both faces.
+
+A plan is a generator. It yields what has to happen next, a request that is to be answered or a condition that is to come
+true, and gets the response; whoever carries it out sends, receives and waits in its own way (blocking.py, aio.py).
+"""
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, Callable, Generator, Mapping, Sequence, TypeVar, Union
+
+import numpy
+import numpy.typing
+
+from evod import pictures
+from evod.core import PICTURES_AHEAD, Core, Subscription
+from evod.errors import DamagedData, Error, refusal, wrong_argument
+from evod.generations import Generation, Population, generations_of, population_of
+from evod.parameters import Parameters, Registry
+from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
+
+T = TypeVar("T")
+
+
+@dataclasses.dataclass(frozen=True)
+class Until:
+    """Wait until it holds. in_time: within the time an answer may take; otherwise for as long as there is a server."""
+
+    holds: Callable[[], object]
+    in_time: bool = False
+
+
+Step = Union[c.Request, Until]
+Plan = Generator[Step, Any, T]
+
+TABLES = {
+    "generations": c.RUN_TABLE_GENERATIONS,
+    "organisms": c.RUN_TABLE_ORGANISMS,
+    "lineage": c.RUN_TABLE_LINEAGE,
+    "population": c.RUN_TABLE_POPULATION,
+    "events": c.RUN_TABLE_EVENTS,
+}
+FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
+DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
+
+
+def ask(**request: Any) -> Plan[c.Response]:
+    """One request, and its response. Error: it was refused."""
+    response: c.Response = yield c.Request(**request)
+    if response.status.code != c.CODE_OK:
+        raise refusal(response.status)
+    return response
+
+
+def ask_for_world(**request: Any) -> Plan[world_pb2.WorldInfo]:
+    return (yield from ask(**request)).world
+
+
+def nothing(plan: Plan[Any]) -> Plan[None]:
+    yield from plan
+
+
+class Desk:
+    """What the plans of one connection share."""
+
+    def __init__(self, core: Core) -> None:
+        self.core = core
+        self._registry: Registry | None = None
+        self._registry_of = ""  # the server's instance_id
+
+    # ---- the server -------------------------------------------------------------------------------------------------
+
+    def registry(self) -> Plan[Registry]:
+        instance = self.core.welcome.instance_id if self.core.welcome else ""
+        if self._registry is None or self._registry_of != instance:
+            description = (yield from ask(describe=c.Describe())).description
+            self._registry, self._registry_of = Registry.of(description), instance
+        return self._registry
+
+    def name_of(self, name: str | None) -> Plan[str]:
+        """Of the world that a request without a name would mean."""
+        known = [info.name for info in (yield from worlds())]
+        if name is None:
+            name = known[0] if len(known) == 1 else "default"
+        if name not in known:
+            raise Error(f"there is no world '{name}': there are {', '.join(known) or 'none'}", c.CODE_NOT_FOUND)
+        return name
+
+    # ---- parameters -------------------------------------------------------------------------------------------------
+
+    def parameters(self, world: str) -> Plan[Parameters]:
+        registry = yield from self.registry()
+        response = yield from ask(get_parameters=c.GetParameters(world=world))
+        return Parameters(registry, response.parameters)
+
+    def set_parameters(
+        self, world: str, values: Mapping[str, object], dry_run: bool, expected_revision: int | None
+    ) -> Plan[Parameters]:
+        registry = yield from self.registry()
+        request = c.SetParameters(
+            world=world,
+            parameters=registry.assignments(values, "set_parameters."),
+            dry_run=dry_run,
+            expected_revision=expected_revision,
+        )
+        return Parameters(registry, (yield from ask(set_parameters=request)).parameters)
+
+    def create_world(
+        self,
+        name: str,
+        parameters: Mapping[str, object],
+        seed: int | None,
+        population: Sequence[numpy.typing.ArrayLike] | None,
+        speed: float | str | None,
+    ) -> Plan[str]:
+        pace = None if speed is None else speed_of(speed)
+        registry = yield from self.registry()
+        request = c.CreateWorld(
+            name=name, parameters=registry.assignments(parameters, "create_world."), seed=_whole("create_world.seed", seed)
+        )
+        for island in population or ():
+            request.population.add(genes=numpy.asarray(island, "<f4").ravel())
+        world = (yield from ask_for_world(create_world=request)).name
+        if pace is not None:
+            yield from ask(set_speed=c.SetSpeed(world=world, speed=pace))
+        return world
+
+    # ---- what goes on -----------------------------------------------------------------------------------------------
+
+    def subscribe_events(self, world: str | None) -> Plan[Subscription]:
+        request = c.Request(subscribe_events=c.SubscribeEvents(world=world))
+        return (yield from self._subscribe(request))
+
+    def subscribe_snapshots(
+        self, world: str, island: int | None, rate_hz: float, view: c.View | None
+    ) -> Plan[Subscription]:
+        snapshots = c.SubscribeSnapshots(
+            world=world,
+            island=_whole("subscribe_snapshots.island", island),
+            rate_hz=_real("subscribe_snapshots.rate_hz", rate_hz),
+            codec=stream_pb2.CODEC_DELTA,
+            compression=stream_pb2.COMPRESSION_ZSTD if pictures.can_unpack else stream_pb2.COMPRESSION_NONE,
+            unacknowledged_max=PICTURES_AHEAD,
+            view=view,
+        )
+        return (yield from self._subscribe(c.Request(subscribe_snapshots=snapshots)))
+
+    def _subscribe(self, request: c.Request) -> Plan[Subscription]:
+        subscription = self.core.subscribe(request)
+        yield Until(lambda: subscription.sessions or subscription.refused, in_time=True)
+        if subscription.refused:
+            self.core.unsubscribe(subscription)
+            raise subscription.refused
+        return subscription
+
+    def run(self, world: str, generations: int | None) -> Plan[GenerationStream]:
+        request = c.Run(world=world, generations=_whole("run.generations", generations))
+        stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
+        try:
+            # A world that waits stands at the end of a generation, which has been told before.
+            last = (yield from ask(get_statistics=c.GetStatistics(world=world))).statistics.last
+            info = yield from ask_for_world(run=request)
+        except BaseException:
+            stream.close()
+            raise
+        stream.begin(info, max(info.generation, last[0].generation + 1 if last else 0))
+        return stream
+
+    def wait(self, world: str) -> Plan[world_pb2.WorldInfo]:
+        """Until it does not run."""
+        subscription = yield from self.subscribe_events(world)
+        try:
+            while True:
+                info = yield from info_of(world)
+                if info.state != world_pb2.RUN_STATE_RUNNING:
+                    return info
+                changed = False
+                while not changed:
+                    event = yield from next_event(subscription)
+                    changed = event.WhichOneof("event") not in ("generation_finished", "migration", "extinction")
+        finally:
+            self.core.unsubscribe(subscription)
+
+    def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
+        ticks = _whole("ticks", ticks) or 0
+        tick = (yield from info_of(world)).tick + ticks
+        yield from ask(run_until_tick=c.RunUntilTick(world=world, tick=tick))
+        return (yield from self.wait(world))
+
+    def frame(self, world: str, island: int) -> Plan[pictures.Frame]:
+        stream = FrameStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
+        try:
+            return (yield from stream.next())
+        finally:
+            stream.close()
+
+
+# ---- one after another ------------------------------------------------------------------------------------------------
+
+
+class EventStream:
+    """Events as they happen."""
+
+    def __init__(self, core: Core, subscription: Subscription) -> None:
+        self._core, self._subscription = core, subscription
+
+    def next(self) -> Plan[stream_pb2.Event]:
+        return (yield from next_event(self._subscription))
+
+    def close(self) -> None:
+        self._core.unsubscribe(self._subscription)
+
+
+class FrameStream:
+    """Pictures as they come; the next one is let come by taking it."""
+
+    def __init__(self, core: Core, subscription: Subscription) -> None:
+        self._core, self._subscription = core, subscription
+        self._taken: tuple[int, pictures.Frame] | None = None  # and in which session
+
+    def next(self) -> Plan[pictures.Frame]:
+        subscription = self._subscription
+        if self._taken is not None:
+            session, taken = self._taken
+            self._taken = None
+            if session == subscription.sessions:
+                self._core.acknowledge(subscription, taken)
+        yield Until(lambda: subscription.arrived or subscription.refused)
+        if not subscription.arrived:
+            raise subscription.refused or DamagedData("no picture came")
+        frame: pictures.Frame = subscription.arrived.popleft()
+        self._taken = subscription.sessions, frame
+        return frame
+
+    def set_view(self, view: c.View) -> Plan[None]:
+        self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
+        yield from ask(set_view=c.SetView(subscription_id=self._subscription.server_id or 0, view=view))
+
+    def request_keyframe(self) -> Plan[None]:
+        yield from ask(request_keyframe=c.RequestKeyframe(subscription_id=self._subscription.server_id or 0))
+
+    def close(self) -> None:
+        self._core.unsubscribe(self._subscription)
+
+
+class GenerationStream:
+    """The generations of a run as they end, each once, also those that ended while there was no line."""
+
+    def __init__(self, core: Core, world: str, subscription: Subscription) -> None:
+        self._core, self._world, self._subscription = core, world, subscription
+        self.info = world_pb2.WorldInfo()  # as it was told to run
+        self._next = 0  # generation to tell of
+        self._goal: int | None = None  # the first one not to tell of
+        self._ready: list[Generation] = []  # that come before what events tell
+        self._began = False  # the event of our own command was there: what is told from now on came of it
+        self._over = False
+
+    def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
+        self.info, self._next = info, first
+        self._goal = _goal_of(info)
+
+    def next(self) -> Plan[Generation | None]:
+        """None: the run is over."""
+        while True:
+            if self._ready:
+                generation = self._ready.pop(0)
+                self._next = generation.number + 1
+                return generation
+            if self._over or self._goal is not None and self._next >= self._goal:
+                self.close()
+                return None
+            yield from self._take((yield from next_event(self._subscription)))
+
+    def _take(self, event: stream_pb2.Event) -> Plan[None]:
+        kind = event.WhichOneof("event")
+        if kind == "events_dropped":
+            yield from self._look()
+        elif event.run_id != self.info.run_id:
+            if kind in ("world_reset", "world_deleted") and self._began:
+                raise self._gone(kind.removeprefix("world_"))
+        elif kind == "generation_finished":
+            number = event.generation_finished.statistics[0].generation
+            if number > self._next:
+                yield from self._fill(number - 1)
+            if number >= self._next:
+                self._ready.append(Generation(number, tuple(event.generation_finished.statistics)))
+        elif kind == "run_control_changed":
+            info = event.run_control_changed.world
+            self._began = self._began or _goal_of(info) == self._goal and info.state == world_pb2.RUN_STATE_RUNNING
+            if self._began:
+                self._follow(info)
+                if self._over:
+                    yield from self._fill()
+        elif kind == "run_terminated":
+            yield from self._look()
+            self._over = True
+        elif kind in ("world_reset", "world_deleted"):
+            raise self._gone(kind.removeprefix("world_"))
+
+    def _look(self) -> Plan[None]:
+        """Some events are not there: how does it stand?"""
+        try:
+            info = yield from info_of(self._world)
+        except Error as error:
+            raise self._gone("deleted") if error.code == c.CODE_NOT_FOUND else error
+        if info.run_id != self.info.run_id:
+            raise self._gone("reset")
+        self._began = True
+        self._follow(info)
+        yield from self._fill()
+
+    def _follow(self, info: world_pb2.WorldInfo) -> None:
+        goal = _goal_of(info)
+        if info.state in (world_pb2.RUN_STATE_WAITING, world_pb2.RUN_STATE_TERMINATED):
+            self._over = True
+        else:
+            self._goal = goal
+
+    def _fill(self, last: int | None = None) -> Plan[None]:
+        """With what has ended, as far as the goal."""
+        first = max(self._next, self._ready[-1].number + 1 if self._ready else 0)
+        if last is None or first <= last:
+            ended = yield from history(self._world, first, last, None)
+            self._ready += [g for g in ended if self._goal is None or g.number < self._goal]
+
+    def _gone(self, how: str) -> Error:
+        self.close()
+        return Error(f"the world '{self._world}' was {how} while it ran", c.CODE_NOT_FOUND)
+
+    def close(self) -> None:
+        self._over = True
+        self._core.unsubscribe(self._subscription)
+
+
+def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
+    yield Until(lambda: subscription.has_any or subscription.refused)
+    event = subscription.take_event()
+    if event is None:
+        raise subscription.refused or DamagedData("no event came")
+    return event
+
+
+def _goal_of(info: world_pb2.WorldInfo) -> int | None:
+    return info.run_until_generation if info.HasField("run_until_generation") else None
+
+
+# ---- queries ------------------------------------------------------------------------------------------------------------
+
+
+def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
+    known: Sequence[world_pb2.WorldInfo] = (yield from ask(list_worlds=c.ListWorlds())).worlds.worlds
+    return known
+
+
+def info_of(world: str) -> Plan[world_pb2.WorldInfo]:
+    # ListWorlds does not tell of worlds that show the past.
+    return (yield from ask(get_statistics=c.GetStatistics(world=world))).statistics.world
+
+
+def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
+    rows: list[world_pb2.GenerationStatistics] = []
+    request = c.GetHistory(
+        world=world,
+        first_generation=_whole("get_history.first_generation", first),
+        last_generation=_whole("get_history.last_generation", last),
+        island=_whole("get_history.island", island),
+    )
+    while True:
+        answer = (yield from ask(get_history=request)).history
+        rows += answer.generations
+        if not answer.HasField("next_generation"):
+            return generations_of(rows)
+        request.first_generation = answer.next_generation
+
+
+def population(world: str, island: int) -> Plan[Population]:
+    parts: list[c.Population] = []
+    first = 0
+    while True:
+        request = c.GetPopulation(world=world, island=_whole("get_population.island", island), first_organism=first)
+        part = (yield from ask(get_population=request)).population
+        if parts and part.generation != parts[-1].generation:  # another one has begun meanwhile
+            parts, first = [], 0
+            continue
+        parts.append(part)
+        first = part.first + part.count
+        if first >= part.organism_count or part.count == 0:
+            return population_of(parts)
+
+
+def export(
+    world: str, table: str, text_format: str, generation: int | None, of: tuple[int, int, int] | None
+) -> Plan[str]:
+    request = c.ExportRun(
+        world=world,
+        table=_choice("export_run.table", table, TABLES),
+        format=_choice("export_run.format", text_format, FORMATS),
+        generation=_whole("export_run.generation", generation),
+    )
+    if of is not None:
+        request.of.generation, request.of.island, request.of.organism = of
+    part = (yield from ask(export_run=request)).export_part
+    text = [part.text]
+    while not part.last:
+        part = (yield from ask(continue_export=c.ContinueExport(export_id=part.export_id))).export_part
+        text.append(part.text)
+    return b"".join(text).decode()
+
+
+# ---- arguments ----------------------------------------------------------------------------------------------------------
+
+
+def speed_of(speed: float | str) -> world_pb2.Speed:
+    if speed == "max":
+        return world_pb2.Speed(max=True)
+    if isinstance(speed, str):
+        raise wrong_argument("set_speed.speed", "0.001 to 10000, or max", speed)
+    return world_pb2.Speed(real_time_factor=_real("set_speed.speed.real_time_factor", speed))
+
+
+def moment_of(generation: int | None, tick: int | None) -> c.RunMoment:
+    return c.RunMoment(generation=_whole("generation", generation), tick=_whole("tick", tick))
+
+
+def view_of(
+    region: tuple[float, float, float, float] | None, detail: str | None, bytes_per_s_max: int | None
+) -> c.View | None:
+    """None if nothing is said."""
+    if region is None and detail is None and bytes_per_s_max is None:
+        return None
+    view = c.View(bytes_per_s_max=_whole("view.bytes_per_s_max", bytes_per_s_max))
+    if detail is not None:
+        view.detail = _choice("view.detail", detail, DETAILS)
+    if region is not None:
+        if len(region) != 4:
+            raise wrong_argument("view.region", "left, top, width and height in px", region)
+        left, top, width, height = (_real("view.region", number) for number in region)
+        view.region.CopyFrom(c.Region(left_px=left, top_px=top, width_px=width, height_px=height))
+    return view
+
+
+def _whole(field: str, number: Any) -> int | None:
+    """A number that fits into the field; more is up to the server."""
+    if number is None:
+        return None
+    bits = 32 if field.endswith((".island", "ganism")) else 64
+    if isinstance(number, (int, numpy.integer)) and not isinstance(number, bool) and 0 <= int(number) < 1 << bits:
+        return int(number)
+    raise wrong_argument(field, f"a whole number, 0 to {(1 << bits) - 1}", number)
+
+
+def _real(field: str, number: Any) -> float:
+    try:
+        if not isinstance(number, (str, bool)):
+            return float(number)
+    except (TypeError, ValueError):
+        pass
+    raise wrong_argument(field, "a number", number)
+
+
+def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:
+    if word not in choices:
+        raise wrong_argument(field, ", ".join(choices), word)
+    return choices[word]

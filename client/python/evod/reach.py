@@ -1,0 +1,85 @@
+"""What both faces know of reaching a server."""
+from __future__ import annotations
+
+import socket
+import ssl
+
+from evod.endpoint import Endpoint
+from evod.errors import NoConnection
+
+CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for the welcome
+BACKOFF_MIN_S, BACKOFF_MAX_S = 0.1, 5.0  # wait before the first new attempt; doubles each time
+
+
+def notice_silence(connection: socket.socket) -> None:
+    """Lets the machine find out that the other end is gone without a word: a cable, a suspended laptop."""
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
+        if hasattr(socket, option):  # a system without it still works
+            connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
+
+
+def reason_of(error: OSError, server: Endpoint) -> NoConnection:
+    if isinstance(error, ConnectionRefusedError):
+        return NoConnection(f"no server at {server}: start one with `evod`")
+    if isinstance(error, socket.gaierror):
+        return NoConnection(f"the host {server.host} is not known: check its name")
+    if isinstance(error, ssl.SSLCertVerificationError):
+        return NoConnection(f"no TLS with {server}: its certificate is not believed: {error.verify_message}")
+    if isinstance(error, (ssl.SSLEOFError, ConnectionResetError, BrokenPipeError)):
+        return closed_by(server)
+    if isinstance(error, TimeoutError):
+        return NoConnection(
+            f"nothing was heard from {server} within {CONNECT_TIMEOUT_S:g} s: check the address, and what lies between "
+            "here and there"
+        )
+    return NoConnection(f"the connection with {server} failed: {error.strerror or error}")
+
+
+def closed_by(server: Endpoint) -> NoConnection:
+    return NoConnection(f"the server at {server} closed the connection")
+
+
+class Line:
+    """What goes over a line, in the clear or within TLS; knows nothing of sockets."""
+
+    def __init__(self, server: Endpoint, tls: ssl.SSLContext | None) -> None:
+        self._tls: ssl.SSLObject | None = None
+        if tls is not None:
+            self._received, self._to_send = ssl.MemoryBIO(), ssl.MemoryBIO()
+            self._tls = tls.wrap_bio(self._received, self._to_send, server_hostname=server.host)
+        self._shaken = False
+        self._held = b""  # to be said once hands have been shaken
+
+    def outgoing(self, data: bytes) -> bytes:
+        """What has to be sent so that the other end gets the data; may be more than that, or less yet."""
+        if self._tls is None:
+            return data
+        self._held += data
+        if not self._shaken:
+            try:
+                self._tls.do_handshake()
+                self._shaken = True
+            except ssl.SSLWantReadError:
+                pass
+        if self._shaken and self._held:
+            self._tls.write(self._held)
+            self._held = b""
+        return self._to_send.read()
+
+    def incoming(self, data: bytes) -> bytes:
+        """What the other end says; afterwards outgoing() may have something to send. ssl.SSLError: it is not believed."""
+        if self._tls is None:
+            return data
+        self._received.write(data)
+        parts = []
+        try:
+            if not self._shaken:
+                self._tls.do_handshake()
+                self._shaken = True
+            while part := self._tls.read(256 << 10):
+                parts.append(part)
+        except (ssl.SSLWantReadError, ssl.SSLZeroReturnError):
+            pass
+        return b"".join(parts)

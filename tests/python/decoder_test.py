@@ -1,0 +1,303 @@
+"""Pictures: as the protocol's own decoder reads them, of every world and view; and what happens with bytes that lie."""
+import copy
+import random
+import struct
+import unittest
+import zlib
+
+import delta_decoder  # of the protocol's tests
+import numpy
+
+import evod
+from evod import framing, pictures
+from evod.core import Core
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
+
+BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 3000, "food_count": 400, "poison_count": 300,
+        "crate_count": 10, "obstacle_count": 5, "generation_s": 5, "respawn_s": 0.2}
+
+
+def recorded(lab, world, count, **options):
+    """Messages of pictures as they came, while the world runs."""
+    messages, take = [], lab._link.core._take_picture
+
+    def keep(message):
+        messages.append(copy.deepcopy(message))
+        take(message)
+
+    lab._link.core._take_picture = keep
+    with world.frames(120, **options) as frames:
+        world.run()
+        for _ in range(count):
+            next(frames)
+    world.pause()
+    lab._link.core._take_picture = take
+    return messages
+
+
+def unpack(data):
+    return pictures._unpack(data, 1 << 28)
+
+
+class Decoder(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with evod.local(seed=3, experiment=BUSY) as lab:
+            world = lab.world()
+            world.set_speed(3)
+            cls.deltas = recorded(lab, world, 60)
+            world.set_speed("max")
+            cls.deltas += recorded(lab, world, 60)  # over ends of generations
+            world.set_speed(3)
+            cls.full = recorded(lab, world, 20, region=(0, 0, 1200, 1200))
+            cls.dots = recorded(lab, world, 3, detail="dots")
+            cls.density = recorded(lab, world, 3, detail="density")
+
+            with world.frames(1) as frames:  # the same once more in columns
+                cls.same = next(frames)
+            found, take = [], lab._link.core._take_picture
+            lab._link.core._take_picture = lambda message: found.append(message) if message.codec == 1 else take(message)
+            lab.request(subscribe_snapshots=c.SubscribeSnapshots(world=world.name, rate_hz=1))
+            while not found:
+                world.info()
+            (cls.columns,) = found
+
+    def assert_same(self, entities, reference, columns):
+        for name in columns:
+            numpy.testing.assert_array_equal(entities._columns[name], reference[name])
+
+    def test_deltas_are_what_they_are_for_the_protocols_own_decoder(self):
+        self.assertGreater(len({message.generation for message in self.deltas}), 2)
+        self.assertGreater(sum(message.base_sequence != 0 for message in self.deltas), 50)
+        decoder, reference = pictures.FrameDecoder(), delta_decoder.Decoder(unpack)
+        for message in self.deltas:
+            if not message.base_sequence:
+                reference = delta_decoder.Decoder(unpack)
+            frame, content = decoder.decode(message), reference.decode(message)
+            self.assertEqual((frame.world, frame.width_px, frame.tick), ("default", 3000, message.tick))
+            self.assert_same(frame.organisms, content["organisms"], ("id", "x", "y", "radius", "health", "dx", "dy"))
+            self.assert_same(frame.food, content["food"], ("id", "x", "y"))
+            self.assert_same(frame.poison, content["poison"], ("id", "x", "y"))
+            self.assert_same(frame.crates, content["crates"], ("x", "y", "half_width", "half_height", "dx", "dy"))
+            self.assert_same(frame.obstacles, content["obstacles"], ("x", "y", "half_width", "half_height"))
+
+    def test_columns_show_what_deltas_show(self):
+        frame = pictures.FrameDecoder().decode(self.columns)
+        self.assertEqual((frame.tick, frame.state_hash), (self.same.tick, self.same.state_hash))
+        for kind in ("organisms", "food", "poison", "crates", "obstacles"):
+            numpy.testing.assert_array_equal(getattr(frame, kind).x_px, getattr(self.same, kind).x_px)
+            numpy.testing.assert_array_equal(getattr(frame, kind).y_px, getattr(self.same, kind).y_px)
+        numpy.testing.assert_array_equal(frame.organisms.health, self.same.organisms.health)
+        numpy.testing.assert_array_equal(frame.crates.half_width_px, self.same.crates.half_width_px)
+
+    def test_tiles_are_what_they_are_for_the_protocols_own_decoder(self):
+        for messages in (self.full, self.dots, self.density):
+            decoder, reference = pictures.FrameDecoder(), delta_decoder.TilesDecoder(unpack)
+            for message in messages:
+                frame, seen = decoder.decode(message), reference.decode(message)
+                self.assertEqual([tile.index for tile in frame.tiles], list(seen))
+                self.assertTrue(frame.tiles)
+                full = [seen[tile.index] for tile in frame.tiles if tile.detail == stream_pb2.DETAIL_FULL]
+                if full:
+                    ids = numpy.concatenate([content["organisms"]["id"] for content in full])
+                    xs = numpy.concatenate([content["organisms"]["x"] for content in full])
+                    numpy.testing.assert_array_equal(frame.organisms.id, numpy.sort(ids))
+                    numpy.testing.assert_array_equal(frame.organisms.x_px, xs[numpy.argsort(ids)] / 16)
+                for tile in frame.tiles:
+                    if tile.dots is not None:
+                        x = seen[tile.index]["food"]["x"] * (tile.side_px / 256) + tile.left_px
+                        numpy.testing.assert_allclose(tile.dots["food"][0], x)
+                    if tile.density is not None:
+                        numpy.testing.assert_array_equal(tile.density["poison"], seen[tile.index]["poison"])
+        self.assertTrue(any(tile.dots is not None for message in self.dots for tile in [message.tiles[0]] if tile.detail == 2
+                            for tile in pictures.FrameDecoder().decode(message).tiles))
+        self.assertEqual({tile.detail for message in self.density for tile in message.tiles}, {3})
+
+    def test_a_picture_does_not_change_when_the_next_one_comes(self):
+        decoder = pictures.FrameDecoder()
+        frames = [decoder.decode(message) for message in self.deltas[:30]]
+        again = pictures.FrameDecoder()
+        for frame, message in zip(frames, self.deltas):
+            numpy.testing.assert_array_equal(frame.organisms.x_px, again.decode(message).organisms.x_px)
+        with self.assertRaises(ValueError):
+            frames[0].organisms.id[0] = 7
+
+    # ---- bytes that lie ----------------------------------------------------------------------------------------------
+
+    def resealed(self, message, body):
+        """With another body, whose checksum is right."""
+        message = copy.deepcopy(message)
+        message.body, message.compression = body, stream_pb2.COMPRESSION_NONE
+        counts = pictures._counts_of(message)
+        head = struct.pack("<QQ6I", message.sequence, message.base_sequence, *counts, message.position_bytes)
+        message.checksum = zlib.crc32(head + body)
+        return message
+
+    def test_damage_of_every_kind_is_refused_or_makes_no_difference_in_size(self):
+        chance = random.Random(5)
+        base = self.deltas[0]
+        victims = [message for message in self.deltas[:4]]
+        refused = 0
+        for message in victims:
+            whole = unpack(message.body) if message.compression == 2 else message.body
+            for _ in range(300):
+                body = bytearray(whole)
+                for _ in range(chance.choice((1, 1, 3))):
+                    at = chance.randrange(len(body))
+                    body[at] = chance.choice((0, 1, 127, 128, 255, chance.randrange(256)))
+                if chance.random() < 0.3:
+                    del body[chance.randrange(len(body)):]
+                decoder = pictures.FrameDecoder()
+                for before in self.deltas[: self.deltas.index(message)]:
+                    decoder.decode(before)
+                try:
+                    frame = decoder.decode(self.resealed(message, bytes(body)))
+                except evod.DamagedData:
+                    refused += 1
+                else:
+                    self.assertEqual(len(frame.organisms), message.organism_count)
+                    self.assertLessEqual(frame.organisms.x_px.nbytes, 1 << 20)
+        self.assertGreater(refused, 100)
+        self.assertTrue(base.base_sequence == 0)
+
+    def test_every_lie_in_a_header_is_refused(self):
+        keyframe, delta = self.deltas[0], self.deltas[1]
+        self.assertNotEqual(delta.base_sequence, 0)
+        lies = {
+            "position_bytes": (0, 1, 3, 8), "codec": (0, 3), "compression": (1 if keyframe.compression == 2 else 2, 3),
+            "checksum": (0,), "organism_count": (0, 2**32 - 1), "obstacle_count": (1, 2**31), "body": (b"", b"\0" * 50),
+        }
+        for field, values in lies.items():
+            for value in values:
+                message = copy.deepcopy(keyframe)
+                setattr(message, field, value)
+                with self.assertRaises(evod.DamagedData, msg=(field, value)):
+                    pictures.FrameDecoder().decode(message)
+        with self.assertRaisesRegex(evod.DamagedData, "base_sequence"):
+            pictures.FrameDecoder().decode(delta)
+
+    def test_counts_of_what_is_not_there_take_no_memory(self):
+        keyframe = self.deltas[0]
+        endless = struct.pack("<I", 2**32 - 1)
+        for body in (b"\1\0" + b"\1" + endless + b"\0", b"\1\0" + b"\2" + endless + b"\0", b"\1\0" + b"\2" + endless + b"\x80" + endless):
+            with self.assertRaises(evod.DamagedData):
+                pictures.FrameDecoder().decode(self.resealed(keyframe, body))
+
+    def test_a_bomb_is_refused_before_it_is_unpacked(self):
+        if pictures.zstandard is None:
+            self.skipTest("python3-zstandard is not there")
+        message = copy.deepcopy(self.deltas[0])
+        message.body = pictures.zstandard.ZstdCompressor().compress(bytes(1 << 28))
+        message.compression = stream_pb2.COMPRESSION_ZSTD
+        with self.assertRaisesRegex(evod.DamagedData, "is 268435456 bytes long, not at most"):
+            pictures.FrameDecoder().decode(message)
+        for body in (b"", b"\x28\xb5\x2f\xfd", b"no zstd"):
+            message.body = body
+            with self.assertRaises(evod.DamagedData):
+                pictures.FrameDecoder().decode(message)
+
+    def test_tiles_that_lie_are_refused(self):
+        for field, value in (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999)):
+            message = copy.deepcopy(self.full[0])
+            setattr(message.tiles[0], field, value)
+            with self.assertRaises(evod.DamagedData, msg=field):
+                pictures.FrameDecoder().decode(message)
+        message = copy.deepcopy(self.full[0])
+        message.tiles.add().CopyFrom(message.tiles[0])
+        with self.assertRaisesRegex(evod.DamagedData, "rising"):
+            pictures.FrameDecoder().decode(message)
+
+
+class Streams(unittest.TestCase):
+    """The core, told of a line that damages what it carries."""
+
+    def core(self):
+        core = Core(token="", client_name="test", client_version="", server="lab:1")
+        core.opened()
+        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=2, control_frame_bytes_max=500))
+        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
+        core.outgoing()
+        return core
+
+    def test_frames_that_lie_end_the_line(self):
+        for head, what in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"), (b"EV\1\3\0\0\0\0", "channel is 3"),
+                           (b"EV\1\1\1\0\0\4", "bytes long"), (b"EV\1\1\1\0\0\0\xff", "cannot be read")):
+            with self.assertRaisesRegex(evod.DamagedData, what):
+                self.core().received(head)
+
+    def test_random_bytes_never_do_anything_else(self):
+        chance = random.Random(11)
+        for _ in range(3000):
+            core = self.core()
+            body = chance.randbytes(chance.randrange(40))
+            try:
+                core.received(b"EV\1" + bytes([chance.choice((1, 2))]) + struct.pack("<I", len(body)) + body)
+            except evod.Error:
+                pass
+
+    def test_frames_come_together_from_any_pieces(self):
+        message = session_pb2.ServerMessage(event=stream_pb2.Event(world="a", server_going_away=stream_pb2.ServerGoingAway()))
+        data = framing.encode(message.SerializeToString()) * 3
+        for size in (1, 3, 7, 1000):
+            reader, bodies = framing.FrameReader(), []
+            for at in range(0, len(data), size):
+                reader.feed(data[at:at + size])
+                bodies += [body for _, body in reader.frames()]
+            self.assertEqual(bodies, [message.SerializeToString()] * 3)
+
+    def sent(self, core):
+        reader = framing.FrameReader()
+        reader.feed(core.outgoing())
+        return [session_pb2.ClientMessage.FromString(body) for _, body in reader.frames()]
+
+    def answer(self, core, request_id, **response):
+        message = session_pb2.ServerMessage(response=c.Response(request_id=request_id, **response))
+        core.received(framing.encode(message.SerializeToString()))
+
+    def test_requests_wait_for_their_turn_and_are_sent_again_in_order(self):
+        core = self.core()
+        asked = [core.request(c.Request(pause=c.Pause(world=str(i)))) for i in range(5)]
+        self.assertEqual([message.request.request_id for message in self.sent(core)], [1, 2])
+        self.answer(core, 1)
+        self.assertTrue(asked[0].done)
+        self.assertEqual([message.request.request_id for message in self.sent(core)], [3])
+        core.lost(evod.NoConnection("gone"))
+        core.opened()
+        self.assertEqual([message.WhichOneof("message") for message in self.sent(core)], ["hello"])
+        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=9))
+        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
+        again = self.sent(core)
+        self.assertEqual([message.request.request_id for message in again], [2, 3, 4, 5])
+        self.assertEqual({message.request.client_key for message in again}, {core.client_key})
+
+    def test_what_means_nothing_in_another_session_is_not_sent_again(self):
+        core = self.core()
+        pending = core.request(c.Request(unsubscribe=c.Unsubscribe(subscription_id=1)))
+        core.lost(evod.NoConnection("gone"))
+        self.assertIsInstance(pending.error, evod.NoConnection)
+
+    def test_what_is_too_long_is_not_sent(self):
+        core = self.core()
+        with self.assertRaisesRegex(evod.Error, "bytes long; the server takes 500"):
+            core.request(c.Request(pause=c.Pause(world="x" * 500)))
+        self.assertEqual(core.outgoing(), b"")
+
+    def test_of_events_that_nobody_takes_the_newest_are_kept_and_the_loss_is_told(self):
+        core = self.core()
+        subscription = core.subscribe(c.Request(subscribe_events=c.SubscribeEvents(world="a")))
+        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
+        event = framing.encode(session_pb2.ServerMessage(event=stream_pb2.Event(
+            world="a", world_deleted=stream_pb2.WorldDeleted())).SerializeToString())
+        core.received(event * 10_002)
+        self.assertEqual(subscription.take_event().events_dropped.dropped_count, 2)
+        self.assertEqual(len(subscription.arrived), 10_000)
+
+    def test_who_is_not_held_any_more_is_unsubscribed(self):
+        core = self.core()
+        core.subscribe(c.Request(subscribe_events=c.SubscribeEvents(world="a")))
+        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
+        self.assertEqual([m.request.unsubscribe.subscription_id for m in self.sent(core) if m.request.HasField("unsubscribe")], [4])
+
+
+if __name__ == "__main__":
+    unittest.main()

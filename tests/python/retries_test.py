@@ -1,0 +1,167 @@
+"""Lines that break and servers that are killed: what was asked happens once, and what was subscribed to goes on."""
+import contextlib
+import sqlite3
+import tempfile
+import threading
+import unittest
+
+import evod
+from support import Relay, Server, until
+
+
+class Retries(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.data = folder.name
+        self.server = None
+        self.serve()
+
+    def serve(self):
+        self.server = Server("--data", self.data, "--seed", "5", "--speed", "max")
+
+    def tearDown(self):
+        if self.server.process.poll() is None:
+            self.server.kill()
+
+    def restart(self, relay):
+        self.server.kill()
+        self.serve()
+        relay.port = self.server.port
+
+    def connect(self, relay, **options):
+        lab = evod.connect(relay.address, timeout_s=60, **options)
+        self.addCleanup(lab.close)
+        self.addCleanup(relay.close)
+        return lab
+
+    def asked_of(self, lab):
+        """The ids of what was done for it; none of them twice."""
+        with contextlib.closing(sqlite3.connect(f"file:{self.data}/default.evod?mode=ro", uri=True)) as run:
+            rows = run.execute("SELECT request_id FROM journal WHERE client_key = ?", [lab.client_key]).fetchall()
+        self.assertEqual(len(rows), len(set(rows)))
+        return [row[0] for row in rows]
+
+    def test_a_command_whose_answer_is_lost_happens_once(self):
+        relay = Relay(self.server.port)
+        lab = self.connect(relay)
+        world = lab.world()
+        lab.registry()
+        lost = []
+
+        def lose_one(to_server, data):
+            if to_server or lost:
+                return False
+            lost.append(data)
+            return True
+
+        relay.at = lose_one
+        parameters = world.set(mutation_chance=0.5)
+        self.assertEqual(len(lost), 1)
+        self.assertEqual(relay.lines, 2)
+        self.assertEqual(parameters.revision, world.get_parameters().revision)
+        self.assertEqual(len(self.asked_of(lab)), 1)
+
+    def test_a_server_killed_in_the_middle_of_a_retry_does_a_command_once(self):
+        relay = Relay(self.server.port)
+        lab = self.connect(relay)
+        world = lab.world()
+        lab.registry()
+        world.run()  # so that ticks pass, and doing it twice would be seen
+        deaths = []
+
+        def kill(to_server, data):
+            """The answer is lost with the server; and so is the answer to the retry, by another kill."""
+            if to_server or len(deaths) >= 4:
+                return False
+            deaths.append(data)
+            # The first thing that a new session hears is its welcome: that arrives, and the next thing does not.
+            if len(deaths) % 2 == 0:
+                return False
+            self.restart(relay)
+            return True
+
+        relay.at = kill
+        parameters = world.set(mutation_chance=0.5)
+        self.assertEqual(len(deaths), 4)
+        self.assertEqual(parameters.mutation_chance, 0.5)
+        self.assertEqual(len(self.asked_of(lab)), 2)  # run, set_parameters
+
+    def test_killed_at_any_moment_it_does_each_command_once(self):
+        relay = Relay(self.server.port)
+        lab = self.connect(relay)
+        world = lab.world()
+        world.run()
+        done, failures, enough = [], [], threading.Event()
+
+        def work():
+            try:
+                while not enough.is_set():
+                    done.append(world.set(food_health=len(done) % 50).revision)
+            except evod.Error as error:
+                failures.append(error)
+
+        worker = threading.Thread(target=work)
+        worker.start()
+        for _ in range(4):
+            count = len(done)
+            until(lambda: len(done) > count + 3 or failures, "some more are done")
+            self.restart(relay)
+        count = len(done)
+        until(lambda: len(done) > count + 3 or failures, "it goes on")
+        enough.set()
+        worker.join()
+        self.assertEqual(failures, [])
+        self.assertEqual(done, sorted(set(done)))  # each raised the revision
+        self.assertEqual(len(self.asked_of(lab)), 1 + len(done))
+
+    def test_generations_are_told_each_once_across_a_kill(self):
+        relay = Relay(self.server.port)
+        world = self.connect(relay).world()
+        numbers = []
+        for g in world.run(generations=40):
+            numbers.append(g.number)
+            if g.number in (5, 12):
+                self.restart(relay)
+            if g.number == 20:
+                relay.cut()
+        self.assertEqual(numbers, list(range(1, 41)))
+
+    def test_frames_and_events_go_on_after_a_kill(self):
+        relay = Relay(self.server.port)
+        world = self.connect(relay).world()
+        events = world.events()
+        frames = world.frames(rate_hz=100)
+        world.run()
+        first = next(frames)
+        self.restart(relay)
+        for frame in frames:
+            if frame.generation > first.generation + 2:
+                break
+        self.assertEqual(frame.run_id, first.run_id)
+        for event in events:
+            if event.HasField("events_dropped"):
+                break
+        self.assertEqual(event.events_dropped.dropped_count, 0)
+        for event in events:
+            if event.HasField("generation_finished"):
+                break
+
+    def test_a_server_that_stays_away_is_told_of(self):
+        relay = Relay(self.server.port)
+        lab = evod.connect(relay.address, timeout_s=0.5)
+        self.addCleanup(lab.close)
+        relay.close()
+        with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1"):
+            lab.worlds()
+
+    def test_without_reconnecting_a_lost_line_is_told_of_at_once(self):
+        relay = Relay(self.server.port)
+        lab = self.connect(relay, reconnect=False)
+        relay.cut()
+        with self.assertRaisesRegex(evod.NoConnection, "closed the connection"):
+            lab.worlds()
+
+
+if __name__ == "__main__":
+    unittest.main()

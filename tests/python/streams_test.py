@@ -1,0 +1,103 @@
+"""Generations, pictures and events one after another, whoever else has a hand in it."""
+import unittest
+
+import evod
+from evod.core import PICTURES_AHEAD
+from evod.v1 import world_pb2
+
+
+def numbers(run):
+    return [g.number for g in run]
+
+
+class Generations(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.lab = evod.local(seed=42)
+        cls.addClassCleanup(cls.lab.close)
+
+    def setUp(self):
+        name = self.id().rsplit(".")[-1][:60]
+        self.world = self.lab.create_world(name, {"population_size": 12, "generation_s": 2}, seed=7, speed="max")
+        self.addCleanup(lambda: self.world.name in [x.name for x in self.lab.worlds()] and self.world.delete())
+
+    def test_each_is_told_once_by_one_run_after_another(self):
+        self.assertEqual(numbers(self.world.run(2)), [1, 2])
+        self.assertEqual(numbers(self.world.run(3)), [3, 4, 5])
+        run = self.world.run()
+        self.assertEqual([next(run).number for _ in range(2)], [6, 7])
+
+    def test_they_are_what_the_history_tells(self):
+        told = list(self.world.run(5))
+        history = self.world.history()
+        self.assertEqual([g.islands for g in told], [g.islands for g in history])
+        for g in told:
+            self.assertEqual((g.best, g.worst), (g.islands[0].fitness_best, g.islands[0].fitness_worst))
+            self.assertEqual(g.genes.tolist(), [gene.mean for gene in g.islands[0].genes])
+        self.assertEqual([g.number for g in self.world.history(2, 3)], [2, 3])
+
+    def test_those_of_several_islands_are_one(self):
+        world = self.lab.create_world("islands", {"island_count": 3, "population_size": 12, "generation_s": 2}, speed="max")
+        (g,) = world.run(1)
+        self.assertEqual([island.island for island in g.islands], [0, 1, 2])
+        self.assertEqual(g.best, max(island.fitness_best for island in g.islands))
+        self.assertAlmostEqual(g.mean, sum(island.fitness_mean for island in g.islands) / 3)
+        self.assertEqual({frame.island for _, frame in zip(range(3), world.frames())}, {0, 1, 2})
+        world.delete()
+
+    def test_a_run_that_others_end_sooner_ends(self):
+        run = self.world.run(10**6)
+        self.world.run(1)
+        self.assertEqual(numbers(run)[-1], self.world.wait().generation)
+
+    def test_a_run_that_a_criterion_ends_ends(self):
+        self.world.set(generation_limit=4)
+        self.assertEqual(numbers(self.world.run(50)), [1, 2, 3, 4])
+        self.assertEqual(self.world.info().state, world_pb2.RUN_STATE_TERMINATED)
+
+    def test_a_run_that_is_reset_or_deleted_is_told_of(self):
+        run = self.world.run()
+        self.world.reset()
+        with self.assertRaisesRegex(evod.Error, "was reset while it ran"):
+            numbers(run)
+        run = self.world.run()
+        self.world.delete()
+        with self.assertRaisesRegex(evod.Error, "was deleted while it ran"):
+            numbers(run)
+
+    def test_nobody_has_to_look(self):
+        self.world.run(3)
+        self.assertEqual(self.world.wait().generation, 3)
+
+    def test_frames_stop_coming_when_they_are_closed(self):
+        frames = self.world.frames(120)
+        next(frames)
+        frames.close()
+        self.world.run(2).wait()
+        self.assertEqual(self.lab._link.core._sights, {})
+
+    def test_who_takes_long_is_shown_fewer_and_newer(self):
+        with self.world.frames(120) as frames:
+            self.world.run()
+            next(frames)
+            while len(frames._stream._subscription.arrived) < PICTURES_AHEAD - 1:
+                self.world.info()
+            last = self.world.pause()
+            behind = []
+            while not behind or behind[-1].tick < last.tick:
+                behind.append(next(frames))
+        self.assertLessEqual(len(behind), PICTURES_AHEAD)
+        self.assertEqual([frame.tick for frame in behind], sorted(frame.tick for frame in behind))
+
+    def test_events_of_one_world_and_of_all(self):
+        events, everything = self.world.events(), self.lab.events()
+        other = self.lab.create_world("other")
+        self.world.pause()
+        other.delete()
+        self.assertEqual(next(events).WhichOneof("event"), "run_control_changed")
+        kinds = [event.WhichOneof("event") for _, event in zip(range(3), everything)]
+        self.assertEqual(kinds, ["world_created", "run_control_changed", "world_deleted"])
+
+
+if __name__ == "__main__":
+    unittest.main()

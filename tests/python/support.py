@@ -1,0 +1,102 @@
+"""Real servers for the tests of the Python package. EVOD names the program."""
+import os
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+import threading
+import time
+
+PROGRAM = os.environ["EVOD"]
+PATIENCE_S = 60
+
+
+def until(condition, what):
+    end = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        if value := condition():
+            return value
+        time.sleep(0.002)
+    raise AssertionError(f"did not happen within {PATIENCE_S} s: {what}")
+
+
+class Server:
+    """One that can be killed; evod.local() is for all else."""
+
+    def __init__(self, *options, port=0):
+        self.log = tempfile.TemporaryFile()
+        self.process = subprocess.Popen([PROGRAM, "--port", str(port), *options], stdout=self.log, stderr=self.log)
+        until(lambda: self.process.poll() is not None or "listening on" in self.output(), "ready")
+        if self.process.poll() is not None:
+            raise AssertionError("evod ended at once:\n" + self.output())
+        self.port = int(re.search(r"listening on 127\.0\.0\.1:(\d+)", self.output())[1])
+
+    def output(self):
+        return os.pread(self.log.fileno(), 1 << 20, 0).decode(errors="replace")
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(PATIENCE_S)
+        self.log.close()
+
+    def end(self):
+        self.process.send_signal(signal.SIGTERM)
+        assert self.process.wait(PATIENCE_S) == 0, self.output()
+        self.log.close()
+
+
+class Relay:
+    """Stands between a client and a server, and sees what they say; `at` may cut the line before it goes on.
+
+    at(to_server, data): called on a thread of the relay for every piece of either; True: it does not arrive, and the line
+    is cut.
+    """
+
+    def __init__(self, port, at=lambda to_server, data: False):
+        self.port, self.at = port, at  # of the server; the next line goes there
+        self.lines = 0
+        self._open = []
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.address = "127.0.0.1:%d" % self._listener.getsockname()[1]
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self):
+        while True:
+            try:
+                client, _ = self._listener.accept()
+            except OSError:
+                return
+            try:
+                server = socket.create_connection(("127.0.0.1", self.port))
+            except OSError:
+                client.close()
+                continue
+            self.lines += 1
+            self._open.append((client, server))
+            for end, other, to_server in ((client, server, True), (server, client, False)):
+                threading.Thread(target=self._carry, args=(end, other, to_server), daemon=True).start()
+
+    def _carry(self, end, other, to_server):
+        try:
+            while data := end.recv(1 << 16):
+                if self.at(to_server, data):
+                    break
+                other.sendall(data)
+        except OSError:
+            pass
+        self.cut((end, other))
+
+    def cut(self, line=None):
+        for ends in [line] if line else list(self._open):
+            for end in ends:
+                try:
+                    end.shutdown(socket.SHUT_RDWR)
+                except OSError:
+                    pass
+                end.close()
+
+    def close(self):
+        self._listener.shutdown(socket.SHUT_RDWR)  # wakes who accepts
+        self._listener.close()
+        self.cut()
