@@ -212,7 +212,7 @@ class Streams(unittest.TestCase):
     """The core, told of a line that damages what it carries."""
 
     def core(self):
-        core = Core(token="", client_name="test", client_version="", server="lab:1")
+        core = Core(token="", client_name="test", server="lab:1")
         core.opened()
         welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=2, control_frame_bytes_max=500))
         core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))

@@ -14,7 +14,7 @@ without a server. `evod.aio` has the same words for asyncio. `evod.v1` has the m
 from evod.blocking import Events, Frames, Lab, Past, Run, World, connect
 from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
 from evod.generations import Generation, Population
-from evod.local import LocalLab, local
+from evod.local_server import LocalLab, local
 from evod.parameters import Parameter, Parameters, Registry
 from evod.pictures import Boxes, Frame, Items, Organisms, Tile
 from evod.run_file import RunFile, open_run

@@ -6,7 +6,6 @@ Threads      none of its own. Any number may share a Lab: whoever waits first re
 from __future__ import annotations
 
 import contextlib
-import random
 import select
 import socket
 import ssl
@@ -26,7 +25,6 @@ from evod.plans import Plan
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 T = TypeVar("T")
-_READ_BYTES = 256 << 10
 
 
 def connect(
@@ -60,9 +58,7 @@ def connect(
     ('admin', ['default'])
     """
     where = endpoint.Endpoint.parse(server)
-    core = Core(
-        token=endpoint.token_of(token, token_file), client_name=client_name, client_version="", server=str(where)
-    )
+    core = Core(token=endpoint.token_of(token, token_file), client_name=client_name, server=where)
     link = Link(where, core, endpoint.tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
     link.open()
     return Lab(link)
@@ -85,9 +81,8 @@ class Link:
         self._told, self._tell = socket.socketpair()  # wakes who reads
         for end in (self._told, self._tell):
             end.setblocking(False)
-        self._backoff_s = reach.BACKOFF_MIN_S
-        self._retry_at = self._welcome_by = 0.0
-        self._down_since: float | None = time.monotonic()
+        self._absence = reach.Absence()
+        self._welcome_by = 0.0
 
     # ---- plans ----------------------------------------------------------------------------------------------------
 
@@ -136,8 +131,8 @@ class Link:
                 raise self.core.failed
             now = time.monotonic()
             end = deadline
-            if self._down_since is not None:
-                back_by = self._down_since + self.timeout_s
+            if self._absence.since is not None:
+                back_by = self._absence.since + self.timeout_s
                 if now >= back_by or not self._reconnect and self.core.loss:
                     raise self.core.loss or NoConnection(f"no welcome from {self.server}")
                 end = back_by if end is None else min(end, back_by)
@@ -202,7 +197,7 @@ class Link:
     def _go_on(self, most_s: float | None) -> None:
         """Connects, waits for the time to, or sends and receives once. The lock is free meanwhile."""
         if self._socket is None:
-            wait_s = self._retry_at - time.monotonic()
+            wait_s = self._absence.retry_at - time.monotonic()
             if wait_s > 0:
                 self._sleep(wait_s if most_s is None else min(wait_s, most_s))
             else:
@@ -223,7 +218,7 @@ class Link:
                 if self._told in readable:
                     self._told.recv(4096)
                 if connection in readable:
-                    data = connection.recv(_READ_BYTES)
+                    data = connection.recv(reach.READ_BYTES)
             except BlockingIOError:
                 pass
             except OSError as error:
@@ -269,14 +264,12 @@ class Link:
             said = self._line.incoming(data)
             if said:
                 self.core.received(said)
-        except ssl.SSLError as error:
+        except (ssl.SSLError, NoConnection, DamagedData) as error:
             if isinstance(error, ssl.SSLCertVerificationError):
                 self.core.failed = reach.reason_of(error, self.server)
             self._lost(reach.reason_of(error, self.server))
-        except (NoConnection, DamagedData) as error:
-            self._lost(error)
-        if self.core.connected and self._down_since is not None:
-            self._down_since, self._backoff_s = None, reach.BACKOFF_MIN_S
+        if self.core.connected:
+            self._absence.end()
 
     def _flush(self) -> None:
         """Sends what can be sent without waiting."""
@@ -296,12 +289,8 @@ class Link:
         if self._socket is not None:
             self._socket.close()
             self._socket = None
-        if self._down_since is None:
-            self._down_since = time.monotonic()
+        self._absence.begin()
         self.core.lost(error)
-        # Many clients of one server should not come back in the same instant.
-        self._retry_at = time.monotonic() + self._backoff_s * random.uniform(0.5, 1.0)
-        self._backoff_s = min(2 * self._backoff_s, reach.BACKOFF_MAX_S)
 
 
 class _Closing:

@@ -91,10 +91,10 @@ class _Sight:
 class Core:
     """See above."""
 
-    def __init__(self, *, token: str, client_name: str, client_version: str, server: str) -> None:
+    def __init__(self, *, token: str, client_name: str, server: object) -> None:
         self._hello = session_pb2.ClientMessage(
             hello=session_pb2.Hello(
-                protocol_version=PROTOCOL_VERSION, client_name=client_name, client_version=client_version, token=token
+                protocol_version=PROTOCOL_VERSION, client_name=client_name, token=token
             )
         )
         self._server = server  # where it is, for people

@@ -1,14 +1,37 @@
 """What both faces know of reaching a server."""
 from __future__ import annotations
 
+import random
 import socket
 import ssl
+import time
 
 from evod.endpoint import Endpoint
-from evod.errors import NoConnection
+from evod.errors import DamagedData, NoConnection
 
 CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for the welcome
-BACKOFF_MIN_S, BACKOFF_MAX_S = 0.1, 5.0  # wait before the first new attempt; doubles each time
+READ_BYTES = 256 << 10
+_BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before the first new attempt; doubles each time
+
+
+class Absence:
+    """For how long there has been no server, and when to try again; times as of time.monotonic()."""
+
+    def __init__(self) -> None:
+        self.since: float | None = time.monotonic()  # None: there is one
+        self.retry_at = 0.0
+        self._backoff_s = _BACKOFF_MIN_S
+
+    def begin(self) -> None:
+        """There is no line, or not another one."""
+        now = time.monotonic()
+        self.since = now if self.since is None else self.since
+        # Many clients of one server should not come back in the same instant.
+        self.retry_at = now + self._backoff_s * random.uniform(0.5, 1.0)
+        self._backoff_s = min(2 * self._backoff_s, _BACKOFF_MAX_S)
+
+    def end(self) -> None:
+        self.since, self._backoff_s = None, _BACKOFF_MIN_S
 
 
 def notice_silence(connection: socket.socket) -> None:
@@ -20,7 +43,9 @@ def notice_silence(connection: socket.socket) -> None:
             connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
 
 
-def reason_of(error: OSError, server: Endpoint) -> NoConnection:
+def reason_of(error: Exception, server: Endpoint) -> NoConnection | DamagedData:
+    if isinstance(error, (NoConnection, DamagedData)):
+        return error
     if isinstance(error, ConnectionRefusedError):
         return NoConnection(f"no server at {server}: start one with `evod`")
     if isinstance(error, socket.gaierror):
@@ -34,7 +59,7 @@ def reason_of(error: OSError, server: Endpoint) -> NoConnection:
             f"nothing was heard from {server} within {CONNECT_TIMEOUT_S:g} s: check the address, and what lies between "
             "here and there"
         )
-    return NoConnection(f"the connection with {server} failed: {error.strerror or error}")
+    return NoConnection(f"the connection with {server} failed: {getattr(error, 'strerror', None) or error}")
 
 
 def closed_by(server: Endpoint) -> NoConnection:

@@ -16,10 +16,9 @@ import numpy.typing
 
 from evod.errors import DamagedData, Error
 from evod.program import program_of
-from evod.tables import frame_of, pandas
+from evod.tables import GENE_NAMES, frame_of, pandas
 from evod.v1 import commands_pb2
 
-GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius")
 _CAUSES = ("alive", "starved", "poisoned")
 
 
@@ -57,7 +56,7 @@ class RunFile:
             self.about: Mapping[str, str] = {key: value for key, value in self._rows("SELECT key, value FROM run")}
             self.name, self.run_id = self.about["name"], self.about["run_id"]
             self.seed = int(self.about["seed"])
-        except (sqlite3.DatabaseError, KeyError, ValueError):
+        except (DamagedData, KeyError, ValueError):
             self._database.close()
             raise DamagedData(f"{self.path} is no run file") from None
 
@@ -156,7 +155,7 @@ class RunFile:
         """The genes of one generation, otherwise of the last that has begun; another world can begin with them."""
         parts = []
         for island, genes in enumerate(self.genes(generation)):
-            columns = dict(zip(GENE_NAMES, genes.astype(float).T))
+            columns = dict(zip(GENE_NAMES, genes.T))
             parts.append(pandas().DataFrame({"island": island, "organism": numpy.arange(len(genes)), **columns}))
         return pandas().concat(parts, ignore_index=True)
 
@@ -250,7 +249,7 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
 
 def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: bytes) -> dict[str, Any]:
     """How they began."""
-    chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1).astype(float)
+    chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)
     if parents:
         first, second = _array(parents, "<u4", 2 * count).reshape(count, 2).T.astype(float)
         ids = numpy.arange(count)

@@ -4,7 +4,11 @@ from __future__ import annotations
 import io
 from typing import Any
 
+import numpy
+
 from evod.errors import Error
+
+GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radius", "poison_radius")
 
 
 def pandas() -> Any:
@@ -17,6 +21,7 @@ def pandas() -> Any:
 
 def frame_of(text: str) -> Any:
     """Of CSV as evod writes it."""
-    # The parser that reads every digit; a name may be "NA" or a number.
-    words = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
-    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=words)
+    # The parser that reads every digit; a name may look like a number; genes are written with a 32-bit float's digits.
+    kinds: dict[str, Any] = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
+    kinds |= {name: numpy.float32 for name in GENE_NAMES}
+    return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds)

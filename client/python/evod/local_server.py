@@ -43,20 +43,7 @@ def local(
     ...     lab.world().parameters.population_size
     20
     """
-    command = [program_of(program), "--port", "0"]
-    command += ["--keep-nothing"] if data is None else ["--data", os.fspath(data)]
-    command += ["--speed", str(speed)]
-    command += [] if seed is None else ["--seed", str(seed)]
-    command += [] if threads is None else ["--threads", str(threads)]
-    with tempfile.TemporaryDirectory(prefix="evod-") as folder:
-        if isinstance(experiment, Mapping):
-            path = os.path.join(folder, "default.json")  # worlds are called after their file
-            with open(path, "w", encoding="utf-8") as file:
-                json.dump(dict(experiment), file)
-            command += ["--experiment", path]
-        elif experiment is not None:
-            command += ["--experiment", os.fspath(experiment)]
-        server = _Server(command)
+    server = start(seed, experiment, data, speed, threads, program)
     try:
         lab = connect(server.address, timeout_s=timeout_s, client_name="evod.local")
     except BaseException:
@@ -68,7 +55,7 @@ def local(
 class LocalLab(Lab):
     """A Lab with a server of its own; made by local()."""
 
-    def __init__(self, link: Link, server: _Server) -> None:
+    def __init__(self, link: Link, server: Server) -> None:
         super().__init__(link)
         self._server = server
 
@@ -82,7 +69,34 @@ class LocalLab(Lab):
         return "\n".join(self._server.lines)
 
 
-class _Server:
+def start(
+    seed: int | None,
+    experiment: str | os.PathLike[str] | Mapping[str, object] | None,
+    data: str | os.PathLike[str] | None,
+    speed: float | str,
+    threads: int | None,
+    program: str | os.PathLike[str] | None,
+) -> Server:
+    """Starts a server, as local() does, and waits until it listens."""
+    command = [program_of(program), "--port", "0"]
+    command += ["--keep-nothing"] if data is None else ["--data", os.fspath(data)]
+    command += ["--speed", str(speed)]
+    command += [] if seed is None else ["--seed", str(seed)]
+    command += [] if threads is None else ["--threads", str(threads)]
+    with tempfile.TemporaryDirectory(prefix="evod-") as folder:
+        if isinstance(experiment, Mapping):
+            path = os.path.join(folder, "default.json")  # worlds are called after their file
+            with open(path, "w", encoding="utf-8") as file:
+                json.dump(dict(experiment), file)
+            command += ["--experiment", path]
+        elif experiment is not None:
+            command += ["--experiment", os.fspath(experiment)]
+        return Server(command)
+
+
+class Server:
+    """One that ends when we do."""
+
     def __init__(self, command: list[str]) -> None:
         self._keeper: subprocess.Popen[str] = subprocess.Popen(
             ["/bin/sh", "-c", _KEEPER, "sh", *command],

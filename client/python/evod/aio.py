@@ -1,0 +1,633 @@
+"""The asyncio face: the same words as the plain one's, and what they answer is awaited.
+
+    async with evod.aio.connect("host:7744", token="…") as lab:
+        world = await lab.world("default")
+        await world.set(mutation_chance=0.1)
+        async for g in world.run(generations=50):
+            print(g.best, g.mean)
+
+Threads      all on the event loop that it was connected on.
+"""
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import inspect
+import os
+import socket
+import ssl
+import time
+from typing import Any, AsyncIterator, Callable, Coroutine, Generator, Generic, Mapping, Protocol, Sequence, TypeVar
+
+import numpy.typing
+
+from evod import blocking, endpoint, local_server, plans, reach
+from evod.core import Core
+from evod.errors import DamagedData, NoConnection, Timeout, Error
+from evod.generations import Generation, Population
+from evod.parameters import Parameters, Registry
+from evod.pictures import Frame
+from evod.plans import Plan
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
+
+T = TypeVar("T")
+
+
+class _Closable(Protocol):
+    async def close(self) -> None: ...
+
+
+S = TypeVar("S", bound=_Closable)
+
+
+class Opening(Generic[S]):
+    """Something that has to be awaited before it is there: with `await`, at the beginning of an `async with`, which closes
+    it at its end, or by the `async for` that goes through it."""
+
+    def __init__(self, coroutine: Coroutine[Any, Any, S]) -> None:
+        self._coroutine = coroutine
+        self._opened: S | None = None
+
+    def __await__(self) -> Generator[Any, None, S]:
+        return self._coroutine.__await__()
+
+    async def __aenter__(self) -> S:
+        self._opened = await self._coroutine
+        return self._opened
+
+    async def __aexit__(self, *_: object) -> None:
+        assert self._opened is not None
+        await self._opened.close()
+
+
+class OpeningStream(Opening[S], Generic[S, T]):
+    async def __aiter__(self) -> AsyncIterator[T]:
+        stream: Any = await self._coroutine
+        try:
+            async for item in stream:
+                yield item
+        finally:
+            await stream.close()
+
+
+def connect(
+    server: str = "localhost",
+    *,
+    token: str | None = None,
+    token_file: str | None = None,
+    tls: bool = False,
+    ca: str | None = None,
+    cert: str | None = None,
+    key: str | None = None,
+    timeout_s: float = 30.0,
+    reconnect: bool = True,
+    client_name: str = "evod for Python",
+) -> Opening[Lab]:
+    """As evod.connect()."""
+
+    async def open_lab() -> Lab:
+        where = endpoint.Endpoint.parse(server)
+        core = Core(token=endpoint.token_of(token, token_file), client_name=client_name, server=where)
+        link = Link(where, core, endpoint.tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
+        await link.open()
+        return Lab(link)
+
+    return Opening(open_lab())
+
+
+def local(
+    *,
+    seed: int | None = None,
+    experiment: str | os.PathLike[str] | Mapping[str, object] | None = None,
+    data: str | os.PathLike[str] | None = None,
+    speed: float | str = "max",
+    threads: int | None = None,
+    program: str | os.PathLike[str] | None = None,
+    timeout_s: float = 30.0,
+) -> Opening[LocalLab]:
+    """As evod.local().
+
+    >>> import asyncio, evod.aio
+    >>> async def main():
+    ...     async with evod.aio.local(seed=42) as lab:
+    ...         world = await lab.world()
+    ...         async for g in world.run(generations=2):
+    ...             print(g)
+    >>> asyncio.run(main())
+    generation 1: best 337.6, mean 71.1, 25 of 50 alive
+    generation 2: best 294.4, mean 84.7, 27 of 50 alive
+    """
+
+    async def open_lab() -> LocalLab:
+        server = await asyncio.to_thread(local_server.start, seed, experiment, data, speed, threads, program)
+        try:
+            lab = await connect(server.address, timeout_s=timeout_s, client_name="evod.aio.local")
+        except BaseException:
+            server.stop()
+            raise
+        return LocalLab(lab._link, server)
+
+    return Opening(open_lab())
+
+
+class Link:
+    """Carries out plans on an event loop."""
+
+    def __init__(
+        self, server: endpoint.Endpoint, core: Core, tls: ssl.SSLContext | None, *, timeout_s: float, reconnect: bool
+    ) -> None:
+        self.server, self.core, self.timeout_s = server, core, timeout_s
+        self._tls, self._reconnect = tls, reconnect
+        self._line = reach.Line(server, None)
+        self._writer: asyncio.StreamWriter | None = None
+        self._absence = reach.Absence()
+        self._waiting: set[asyncio.Future[None]] = set()
+        self._keeper: asyncio.Task[None] | None = None
+
+    # ---- plans ----------------------------------------------------------------------------------------------------
+
+    async def perform(self, plan: Plan[T]) -> T:
+        try:
+            step = next(plan)
+            while True:
+                try:
+                    result = await self._do(step)
+                except Error as error:
+                    step = plan.throw(error)
+                else:
+                    step = plan.send(result)
+        except StopIteration as done:
+            value: T = done.value
+            return value
+        finally:
+            plan.close()
+            self._flush()
+
+    async def tell(self, change: Callable[[], None]) -> None:
+        change()
+        self._flush()
+
+    async def _do(self, step: plans.Step) -> c.Response | None:
+        if isinstance(step, plans.Until):
+            await self._wait(step.holds, self.timeout_s if step.in_time else None)
+            return None
+        pending = self.core.request(step)
+        try:
+            await self._wait(lambda: pending.done, self.timeout_s)
+        finally:
+            self.core.forget(pending)
+        if pending.error is not None:
+            raise pending.error
+        return pending.response
+
+    async def _wait(self, holds: Callable[[], object], timeout_s: float | None) -> None:
+        deadline = None if timeout_s is None else time.monotonic() + timeout_s
+        self._flush()
+        while not holds():
+            if self.core.failed is not None:
+                raise self.core.failed
+            now = time.monotonic()
+            end = deadline
+            if self._absence.since is not None:
+                back_by = self._absence.since + self.timeout_s
+                if now >= back_by or not self._reconnect and self.core.loss:
+                    raise self.core.loss or NoConnection(f"no welcome from {self.server}")
+                end = back_by if end is None else min(end, back_by)
+            if deadline is not None and now >= deadline:
+                raise Timeout(f"no answer within {timeout_s:g} s")
+            changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+            self._waiting.add(changed)
+            await asyncio.wait([changed], timeout=None if end is None else end - now)
+            self._waiting.discard(changed)
+
+    def _tell_all(self) -> None:
+        for waiting in self._waiting:
+            if not waiting.done():
+                waiting.set_result(None)
+
+    # ---- the line -------------------------------------------------------------------------------------------------
+
+    async def open(self) -> None:
+        self._keeper = asyncio.create_task(self._keep())
+        try:
+            while not self.core.connected:
+                if self.core.loss is not None:
+                    raise self.core.failed or self.core.loss
+                changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+                self._waiting = {changed}
+                await changed
+        except BaseException:
+            await self.close()
+            raise
+
+    async def close(self) -> None:
+        if self.core.failed is None:
+            self.core.close()
+        self._tell_all()
+        if self._keeper is not None:
+            self._keeper.cancel()
+            await asyncio.wait([self._keeper])
+
+    async def _keep(self) -> None:
+        """Reads, and connects again, until it is of no use any more."""
+        while self.core.failed is None:
+            try:
+                await self._serve_a_line()
+            except (OSError, NoConnection, DamagedData, TimeoutError) as error:
+                reason = reach.reason_of(error, self.server)
+                if isinstance(error, ssl.SSLCertVerificationError):
+                    self.core.failed = reason
+                self._absence.begin()
+                self.core.lost(reason)
+                self._tell_all()
+            await asyncio.sleep(max(0.0, self._absence.retry_at - time.monotonic()))
+
+    async def _serve_a_line(self) -> None:
+        async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
+            reader, writer = await asyncio.open_connection(self.server.host, self.server.port, limit=4 * reach.READ_BYTES)
+        try:
+            connection: socket.socket = writer.get_extra_info("socket")
+            reach.notice_silence(connection)
+            self._writer, self._line = writer, reach.Line(self.server, self._tls)
+            self.core.opened()
+            self._flush()
+            async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
+                while not self.core.connected:
+                    self._take(await reader.read(reach.READ_BYTES))
+            self._absence.end()
+            self._tell_all()
+            while True:
+                self._take(await reader.read(reach.READ_BYTES))
+                self._tell_all()
+        finally:
+            self._writer = None
+            writer.close()
+            with contextlib.suppress(OSError):
+                await writer.wait_closed()
+
+    def _take(self, data: bytes) -> None:
+        if not data:
+            raise reach.closed_by(self.server)
+        said = self._line.incoming(data)
+        if said:
+            self.core.received(said)
+        self._flush()
+
+    def _flush(self) -> None:
+        if self._writer is not None:
+            to_send = self._line.outgoing(self.core.outgoing())
+            if to_send:
+                self._writer.write(to_send)
+
+
+class _Closing:
+    async def close(self) -> None:
+        raise NotImplementedError
+
+    async def __aenter__(self: T) -> T:
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        await self.close()
+
+
+class Lab(_Closing):
+    """As evod.Lab, and what it answers is awaited."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._desk = plans.Desk(link.core)
+
+    def __repr__(self) -> str:
+        return f"<evod at {self.address}>"
+
+    async def close(self) -> None:
+        await self._link.close()
+
+    @property
+    def address(self) -> str:
+        return str(self._link.server)
+
+    @property
+    def welcome(self) -> session_pb2.Welcome:
+        return self._link.core.welcome or session_pb2.Welcome()
+
+    @property
+    def client_key(self) -> str:
+        return self._link.core.client_key
+
+    @property
+    def role(self) -> str:
+        return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
+
+    async def request(self, **request: Any) -> c.Response:
+        return await self._link.perform(plans.ask(**request))
+
+    async def worlds(self) -> Sequence[world_pb2.WorldInfo]:
+        return await self._link.perform(plans.worlds())
+
+    async def world(self, name: str | None = None) -> World:
+        return World(self, await self._link.perform(self._desk.name_of(name)))
+
+    async def create_world(
+        self,
+        name: str,
+        parameters: Mapping[str, object] | None = None,
+        *,
+        seed: int | None = None,
+        population: Sequence[numpy.typing.ArrayLike] | None = None,
+        speed: float | str | None = None,
+    ) -> World:
+        plan = self._desk.create_world(name, parameters or {}, seed, population, speed)
+        return World(self, await self._link.perform(plan))
+
+    async def registry(self) -> Registry:
+        return await self._link.perform(self._desk.registry())
+
+    async def describe(self) -> c.Description:
+        return (await self.request(describe=c.Describe())).description
+
+    async def metrics(self) -> c.Metrics:
+        return (await self.request(get_metrics=c.GetMetrics())).metrics
+
+    def events(self) -> OpeningStream[Events, stream_pb2.Event]:
+        return _events(self._link, self._desk.subscribe_events(None))
+
+    async def shut_down(self) -> None:
+        await self.request(shut_down=c.ShutDown())
+
+
+class LocalLab(Lab):
+    """As evod.LocalLab, and what it answers is awaited."""
+
+    def __init__(self, link: Link, server: local_server.Server) -> None:
+        super().__init__(link)
+        self._server = server
+
+    async def close(self) -> None:
+        await super().close()
+        await asyncio.to_thread(self._server.stop)
+
+    @property
+    def log(self) -> str:
+        return "\n".join(self._server.lines)
+
+
+class World:
+    """As evod.World, and what it answers is awaited."""
+
+    def __init__(self, lab: Lab, name: str) -> None:
+        self._lab, self._name = lab, name
+        self._link, self._desk = lab._link, lab._desk
+
+    @property
+    def name(self) -> str:
+        return self._name
+
+    @property
+    def lab(self) -> Lab:
+        return self._lab
+
+    def __repr__(self) -> str:
+        return f"<world {self.name} at {self._lab.address}>"
+
+    async def _command(self, **request: Any) -> world_pb2.WorldInfo:
+        return await self._link.perform(plans.ask_for_world(**request))
+
+    async def get_parameters(self) -> Parameters:
+        return await self._link.perform(self._desk.parameters(self.name))
+
+    async def set(
+        self,
+        values: Mapping[str, object] | None = None,
+        /,
+        *,
+        dry_run: bool = False,
+        expected_revision: int | None = None,
+        **more: object,
+    ) -> Parameters:
+        plan = self._desk.set_parameters(self.name, {**(values or {}), **more}, dry_run, expected_revision)
+        return await self._link.perform(plan)
+
+    def run(self, generations: int | None = None) -> OpeningStream[Run, Generation]:
+        async def open_run() -> Run:
+            return Run(self._link, await self._link.perform(self._desk.run(self.name, generations)))
+
+        return OpeningStream(open_run())
+
+    async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
+        return await self._command(run_until_tick=c.RunUntilTick(world=self.name, tick=tick))
+
+    async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
+        return await self._link.perform(self._desk.step(self.name, ticks))
+
+    async def wait(self) -> world_pb2.WorldInfo:
+        return await self._link.perform(self._desk.wait(self.name))
+
+    async def pause(self) -> world_pb2.WorldInfo:
+        return await self._command(pause=c.Pause(world=self.name))
+
+    async def resume(self) -> world_pb2.WorldInfo:
+        return await self._command(resume=c.Resume(world=self.name))
+
+    async def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
+        return await self._command(set_speed=c.SetSpeed(world=self.name, speed=plans.speed_of(speed)))
+
+    async def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
+        return await self._command(reset_world=c.ResetWorld(world=self.name, seed=seed))
+
+    async def release_lease(self) -> world_pb2.WorldInfo:
+        return await self._command(release_lease=c.ReleaseLease(world=self.name))
+
+    async def renew_lease(self) -> None:
+        await self._link.perform(plans.ask(renew_lease=c.RenewLease(world=self.name)))
+
+    async def fork(self, name: str, at_generation: int | None = None) -> World:
+        request = c.ForkWorld(world=self.name, name=name, at_generation=at_generation)
+        return World(self._lab, (await self._command(fork_world=request)).name)
+
+    async def delete(self) -> None:
+        await self._link.perform(plans.ask(delete_world=c.DeleteWorld(world=self.name)))
+
+    async def info(self) -> world_pb2.WorldInfo:
+        return await self._link.perform(plans.info_of(self.name))
+
+    async def frame(self, island: int = 0) -> Frame:
+        return await self._link.perform(self._desk.frame(self.name, island))
+
+    def frames(
+        self,
+        rate_hz: float = 30.0,
+        *,
+        island: int | None = None,
+        region: tuple[float, float, float, float] | None = None,
+        detail: str | None = None,
+        bytes_per_s_max: int | None = None,
+    ) -> OpeningStream[Frames, Frame]:
+        async def open_frames() -> Frames:
+            view = plans.view_of(region, detail, bytes_per_s_max)
+            plan = self._desk.subscribe_snapshots(self.name, island, rate_hz, view)
+            return Frames(self._link, plans.FrameStream(self._link.core, await self._link.perform(plan)))
+
+        return OpeningStream(open_frames())
+
+    def events(self) -> OpeningStream[Events, stream_pb2.Event]:
+        return _events(self._link, self._desk.subscribe_events(self.name))
+
+    async def statistics(self) -> c.Statistics:
+        return (await self._link.perform(plans.ask(get_statistics=c.GetStatistics(world=self.name)))).statistics
+
+    async def history(
+        self, first: int | None = None, last: int | None = None, *, island: int | None = None
+    ) -> list[Generation]:
+        return await self._link.perform(plans.history(self.name, first, last, island))
+
+    async def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
+        request = c.GetOrganism(world=self.name, island=island, organism=organism)
+        return (await self._link.perform(plans.ask(get_organism=request))).organism
+
+    async def population(self, island: int = 0) -> Population:
+        return await self._link.perform(plans.population(self.name, island))
+
+    async def breeding(
+        self,
+        island: int = 0,
+        generation: int | None = None,
+        *,
+        first_contender: int = 0,
+        first_pick: int = 0,
+        first_descendant: int = 0,
+    ) -> c.Breeding:
+        request = c.GetBreeding(
+            world=self.name,
+            island=island,
+            generation=generation,
+            first_contender=first_contender,
+            first_pick=first_pick,
+            first_descendant=first_descendant,
+        )
+        return (await self._link.perform(plans.ask(get_breeding=request))).breeding
+
+    async def motion(self, island: int = 0) -> c.Motion:
+        return (await self._link.perform(plans.ask(get_motion=c.GetMotion(world=self.name, island=island)))).motion
+
+    def open_past(self, generation: int | None = None, tick: int | None = None) -> Opening[Past]:
+        async def open_it() -> Past:
+            at = plans.moment_of(generation, tick) if (generation, tick) != (None, None) else None
+            return Past(self._lab, (await self._command(open_past=c.OpenPast(world=self.name, at=at))).name)
+
+        return Opening(open_it())
+
+    async def export(
+        self,
+        table: str,
+        format: str = "csv",
+        *,
+        generation: int | None = None,
+        of: tuple[int, int, int] | None = None,
+    ) -> str:
+        return await self._link.perform(plans.export(self.name, table, format, generation, of))
+
+    async def table(self, table: str, *, generation: int | None = None, of: tuple[int, int, int] | None = None) -> Any:
+        from evod.tables import frame_of
+
+        return frame_of(await self.export(table, generation=generation, of=of))
+
+
+class Past(World, _Closing):
+    """As evod.Past, and what it answers is awaited."""
+
+    async def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
+        return await self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
+
+    async def close(self) -> None:
+        await self._link.perform(plans.ask(close_past=c.ClosePast(world=self.name)))
+
+
+class _Stream(_Closing):
+    def __init__(self, link: Link, stream: Any) -> None:
+        self._link, self._stream = link, stream
+
+    async def close(self) -> None:
+        await self._link.tell(self._stream.close)
+
+
+class Run(_Stream):
+    """As evod.Run, for `async for`."""
+
+    _stream: plans.GenerationStream
+
+    @property
+    def info(self) -> world_pb2.WorldInfo:
+        return self._stream.info
+
+    def __aiter__(self) -> Run:
+        return self
+
+    async def __anext__(self) -> Generation:
+        generation = await self._link.perform(self._stream.next())
+        if generation is None:
+            raise StopAsyncIteration
+        return generation
+
+    async def wait(self) -> Generation | None:
+        last = None
+        async for last in self:
+            pass
+        return last
+
+
+class Frames(_Stream):
+    """As evod.Frames, for `async for`."""
+
+    _stream: plans.FrameStream
+
+    def __aiter__(self) -> Frames:
+        return self
+
+    async def __anext__(self) -> Frame:
+        return await self._link.perform(self._stream.next())
+
+    async def set_view(
+        self,
+        region: tuple[float, float, float, float] | None = None,
+        detail: str | None = None,
+        bytes_per_s_max: int | None = None,
+    ) -> None:
+        view = plans.view_of(region, detail, bytes_per_s_max) or c.View()
+        await self._link.perform(self._stream.set_view(view))
+
+    async def request_keyframe(self) -> None:
+        await self._link.perform(self._stream.request_keyframe())
+
+
+class Events(_Stream):
+    """As evod.Events, for `async for`."""
+
+    _stream: plans.EventStream
+
+    def __aiter__(self) -> Events:
+        return self
+
+    async def __anext__(self) -> stream_pb2.Event:
+        return await self._link.perform(self._stream.next())
+
+
+def _events(link: Link, plan: Plan[Any]) -> OpeningStream[Events, stream_pb2.Event]:
+    async def open_events() -> Events:
+        return Events(link, plans.EventStream(link.core, await link.perform(plan)))
+
+    return OpeningStream(open_events())
+
+
+def _say_what_the_plain_face_says() -> None:
+    """Without its examples, which do not await anything."""
+    for ours, plain in ((Lab, blocking.Lab), (LocalLab, local_server.LocalLab), (World, blocking.World),
+                        (Past, blocking.Past), (Run, blocking.Run), (Frames, blocking.Frames), (Events, blocking.Events),
+                        (_Stream, blocking._Stream)):  # fmt: skip
+        for name, member in vars(ours).items():
+            if not name.startswith("_") and inspect.isfunction(member):
+                member.__doc__ = (getattr(plain, name).__doc__ or "").partition(">>>")[0].rstrip()
+
+
+_say_what_the_plain_face_says()

@@ -1,0 +1,103 @@
+"""The asyncio face: the same words, and the same reliability."""
+import asyncio
+import inspect
+import tempfile
+import unittest
+
+import evod
+import evod.aio
+from evod.v1 import commands_pb2 as c
+from support import Relay, Server
+from walk import asked_kinds, walk_all
+
+
+class Faces(unittest.TestCase):
+    def test_both_have_the_same_words(self):
+        for name in ("Lab", "LocalLab", "World", "Past", "Run", "Frames", "Events"):
+            plain, awaited = getattr(evod, name), getattr(evod.aio, name)
+            words = {word for word in dir(plain) if not word.startswith("_")} - {"parameters"}  # attributes cannot wait
+            self.assertEqual(words, {word for word in dir(awaited) if not word.startswith("_")}, name)
+            for word in words:
+                ours, theirs = getattr(plain, word), getattr(awaited, word)
+                if callable(ours):
+                    self.assertEqual(list(inspect.signature(ours).parameters.values()),
+                                     [p for p in inspect.signature(theirs).parameters.values()], f"{name}.{word}")
+                    self.assertTrue(theirs.__doc__ or not ours.__doc__, f"{name}.{word}")
+        for word in ("connect", "local"):
+            self.assertEqual(list(inspect.signature(getattr(evod, word)).parameters.values()),
+                             list(inspect.signature(getattr(evod.aio, word)).parameters.values()))
+
+
+class Awaited(unittest.IsolatedAsyncioTestCase):
+    async def test_every_kind_of_request_can_be_asked(self):
+        with tempfile.TemporaryDirectory() as data:
+            async with evod.aio.local(seed=1, data=data) as lab:
+                kinds = asked_kinds(lab)
+                await walk_all(lab)
+        self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields))
+
+    async def test_many_things_go_on_at_once(self):
+        async with evod.aio.local(seed=42) as lab:
+            world = await lab.world()
+
+            async def ticks():
+                return [(await anext(frames)).tick for _ in range(20)]
+
+            async with world.frames(120) as frames, world.run() as run:
+                seen, ended, *asked = await asyncio.gather(
+                    ticks(), self.first_of(run, 20), *(world.organism(i % 50) for i in range(200)))
+            self.assertEqual(seen, sorted(seen))
+            self.assertEqual(ended, list(range(1, 21)))
+            self.assertEqual([organism.id for organism in asked], [i % 50 for i in range(200)])
+
+    async def first_of(self, run, count):
+        return [(await anext(run)).number for _ in range(count)]
+
+    async def test_a_wait_that_is_given_up_leaves_the_rest_alone(self):
+        async with evod.aio.local() as lab:
+            world = await lab.world()
+            async with world.events() as events:
+                with self.assertRaises(TimeoutError):
+                    async with asyncio.timeout(0.05):
+                        await anext(events)
+                await world.pause()
+                self.assertEqual((await anext(events)).WhichOneof("event"), "run_control_changed")
+
+    async def test_it_goes_on_across_a_kill(self):
+        with tempfile.TemporaryDirectory() as data:
+            options = ["--data", data, "--seed", "5", "--speed", "max"]
+            server = await asyncio.to_thread(Server, *options)
+            relay = Relay(server.port)
+            async with evod.aio.connect(relay.address) as lab:
+                world, numbers = await lab.world(), []
+                async for g in world.run(generations=30):
+                    numbers.append(g.number)
+                    if g.number in (5, 12):
+                        server.kill()
+                        server = await asyncio.to_thread(Server, *options)
+                        relay.port = server.port
+                    if g.number == 20:
+                        relay.cut()
+                revision = (await world.set(mutation_chance=0.5)).revision
+                self.assertEqual((await world.get_parameters()).revision, revision)
+            self.assertEqual(numbers, list(range(1, 31)))
+            relay.close()
+            server.kill()
+
+    async def test_no_server_is_told_of(self):
+        with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1:1: start one with `evod`"):
+            await evod.aio.connect("127.0.0.1:1")
+
+    async def test_closing_ends_what_waits(self):
+        async with evod.aio.local() as server:
+            lab = await evod.aio.connect(server.address)
+            events = await lab.events()
+            waiting = asyncio.create_task(anext(events))
+            await asyncio.sleep(0)
+            await lab.close()
+            with self.assertRaisesRegex(evod.NoConnection, "closed here"):
+                await waiting
+
+
+if __name__ == "__main__":
+    unittest.main()
