@@ -18,9 +18,16 @@ from evod.local_server import LocalLab, local
 from evod.parameters import Parameter, Parameters, Registry
 from evod.pictures import Boxes, Frame, Items, Organisms, Tile
 from evod.run_file import RunFile, open_run
+from evod.tables import GENE_NAMES
+from evod.v1.world_pb2 import (
+    RUN_STATE_PAUSED as PAUSED,
+    RUN_STATE_RUNNING as RUNNING,
+    RUN_STATE_TERMINATED as TERMINATED,
+    RUN_STATE_WAITING as WAITING,
+)
 
 __all__ = [
-    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "Generation", "Items", "Lab", "LocalLab", "NoConnection",
-    "Organisms", "Parameter", "Parameters", "Past", "Population", "Registry", "Run", "RunFile", "Tile", "Timeout",
-    "Violation", "World", "connect", "local", "open_run",
+    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab", "LocalLab",
+    "NoConnection", "Organisms", "PAUSED", "Parameter", "Parameters", "Past", "Population", "RUNNING", "Registry", "Run", "RunFile", "TERMINATED",
+    "Tile", "Timeout", "Violation", "WAITING", "World", "connect", "local", "open_run",
 ]  # fmt: skip

@@ -534,6 +534,33 @@ class World:
         return frame_of(await self.export(table, generation=generation, of=of))
 
 
+    async def plot(self, island: int = 0, ax: Any = None) -> Any:
+        return (await self.frame(island)).plot(ax)
+
+    async def plot_fitness(self, ax: Any = None) -> Any:
+        from evod import plotting
+
+        columns = plotting.columns_of(await self.history(), (await self.info()).gene_names)
+        return plotting.plot_fitness(columns, ax)
+
+    async def plot_genes(self, ax: Any = None) -> Any:
+        from evod import plotting
+
+        names = (await self.info()).gene_names
+        return plotting.plot_genes(plotting.columns_of(await self.history(), names), names, ax)
+
+    async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
+        from evod import plotting
+
+        seen: list[Frame] = []
+        async with self.frames(rate_hz, island=island) as frames:
+            async for frame in frames:
+                seen.append(frame)
+                if len(seen) >= count or frame.state != world_pb2.RUN_STATE_RUNNING:
+                    break
+        return plotting.animation_of(seen, 1000 / rate_hz)
+
+
 class Past(World, _Closing):
     """As evod.Past, and what it answers is awaited."""
 

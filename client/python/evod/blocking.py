@@ -655,6 +655,45 @@ class World:
 
         return frame_of(self.export(table, generation=generation, of=of))
 
+    # ---- pictures -------------------------------------------------------------------------------------------------
+
+    def plot(self, island: int = 0, ax: Any = None) -> Any:
+        """Draws an island as it is now with matplotlib, into new axes or those that are given; returns them.
+
+        >>> import evod
+        >>> with evod.local(seed=1) as lab:
+        ...     axes = lab.world().plot()
+        >>> axes.get_title()
+        'default, generation 1, 50 alive, 0 s'
+        """
+        return self.frame(island).plot(ax)
+
+    def plot_fitness(self, ax: Any = None) -> Any:
+        """Draws the fitness of the generations that have ended."""
+        from evod import plotting
+
+        return plotting.plot_fitness(plotting.columns_of(self.history(), self.info().gene_names), ax)
+
+    def plot_genes(self, ax: Any = None) -> Any:
+        """Draws the genes of the generations that have ended."""
+        from evod import plotting
+
+        names = self.info().gene_names
+        return plotting.plot_genes(plotting.columns_of(self.history(), names), names, ax)
+
+    def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
+        """Watches an island for so many pictures, or until it does not run, and gives a matplotlib animation of them, which
+        notebooks play."""
+        from evod import plotting
+
+        seen: list[Frame] = []
+        with self.frames(rate_hz, island=island) as frames:
+            for frame in frames:
+                seen.append(frame)
+                if len(seen) >= count or frame.state != world_pb2.RUN_STATE_RUNNING:
+                    break
+        return plotting.animation_of(seen, 1000 / rate_hz)
+
 
 class Past(World, _Closing):
     """A world that shows the past of another one; made by World.open_past(), gone with close() or the connection."""

@@ -153,6 +153,12 @@ class Frame:
     obstacles: Boxes
     tiles: tuple[Tile, ...] = ()  #: of a view; entities are then those of the tiles at DETAIL_FULL
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws it with matplotlib, into new axes or those that are given; returns them."""
+        from evod import plotting
+
+        return plotting.plot_frame(self, ax)
+
     def __repr__(self) -> str:
         return (
             f"<frame of {self.world}: island {self.island}, generation {self.generation}, tick {self.tick}, "

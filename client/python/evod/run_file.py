@@ -14,6 +14,7 @@ import google.protobuf.message
 import numpy
 import numpy.typing
 
+from evod import plotting
 from evod.errors import DamagedData, Error
 from evod.program import program_of
 from evod.tables import GENE_NAMES, frame_of, pandas
@@ -206,6 +207,20 @@ class RunFile:
         if done.returncode != 0:
             raise Error(done.stderr.strip().removeprefix("evod: ") or "evod export failed")
         return frame_of(done.stdout)
+
+    # ---- pictures --------------------------------------------------------------------------------------------------
+
+    def plot_fitness(self, ax: Any = None) -> Any:
+        """Draws the best and the mean fitness of each generation with matplotlib; returns the axes."""
+        return plotting.plot_fitness(self.generations(), ax)
+
+    def plot_genes(self, ax: Any = None) -> Any:
+        """Draws the mean and the spread of each gene."""
+        return plotting.plot_genes(self.generations(), GENE_NAMES, ax)
+
+    def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
+        """Draws who came of whom; of: one organism (generation, island, id) and its ancestors."""
+        return plotting.plot_lineage(self.lineage(of), ax)
 
     # ---- within ----------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,36 @@
+"""Compares methods of selection: the mean fitness of several runs each, and a band that has the mean of all runs with 95 %
+confidence.
+
+    compare_selection.py [--generations N] [--seeds N] [--output FILE]
+"""
+import argparse
+
+import matplotlib.pyplot as plt
+import numpy
+
+import evod
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--generations", type=int, default=40)
+parser.add_argument("--seeds", type=int, default=10)
+parser.add_argument("--output", default="compare_selection.png")
+options = parser.parse_args()
+
+with evod.local() as lab:
+    for method in lab.registry()["selection"].choices:
+        runs = []
+        for seed in range(1, options.seeds + 1):
+            world = lab.create_world("run", {"selection": method}, seed=seed, speed="max")
+            runs.append([generation.mean for generation in world.run(options.generations)])
+            world.delete()
+        fitness = numpy.array(runs)  # by seed and generation
+        mean, error = fitness.mean(axis=0), fitness.std(axis=0, ddof=1) / numpy.sqrt(options.seeds)
+        print(f"{method}: {mean[-1]:.1f} ± {1.96 * error[-1]:.1f}")
+        number = numpy.arange(1, options.generations + 1)
+        plt.plot(number, mean, label=method)
+        plt.fill_between(number, mean - 1.96 * error, mean + 1.96 * error, alpha=0.2, linewidth=0)
+
+plt.xlabel("generation")
+plt.ylabel(f"mean fitness of {options.seeds} runs")
+plt.legend(frameon=False)
+plt.savefig(options.output)

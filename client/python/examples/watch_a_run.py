@@ -1,0 +1,29 @@
+"""Watches a world run: how many are alive, where their food is, and what each generation comes to.
+
+    watch_a_run.py [HOST:PORT] [--generations N]      without an address, on a server of its own
+"""
+import argparse
+
+import numpy
+
+import evod
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("server", nargs="?", help="HOST:PORT of a server that you may control")
+parser.add_argument("--generations", type=int, default=3)
+options = parser.parse_args()
+
+with evod.connect(options.server) if options.server else evod.local(seed=42, speed=40) as lab:
+    world = lab.world()
+    run = world.run(generations=options.generations)
+    with world.frames(rate_hz=5) as frames:
+        for frame in frames:
+            organisms, food = frame.organisms, frame.food
+            away_px = numpy.hypot(organisms.x_px[:, None] - food.x_px, organisms.y_px[:, None] - food.y_px)
+            if away_px.size:
+                print(f"generation {frame.generation}, {frame.generation_tick / 60:4.1f} s: {len(organisms)} alive, "
+                      f"mean health {organisms.health.mean():5.1f}, food {away_px.min(axis=1).mean():4.0f} px away")
+            if frame.state != evod.RUNNING:
+                break
+    for generation in run:
+        print(generation)

@@ -1,0 +1,113 @@
+"""What it costs to go through the Python package, on a real evod: generations beside `evod run`, and pictures as arrays.
+
+    PYTHONPATH=build/release/python python_cost.py EVOD [--rounds N] [--seconds S] [--organisms N] [--json]
+
+Generations: the same hundred of the default world, on one thread, first by `evod run`, then by World.run() with something
+called for each; of many rounds, one after the other in each. Whatever starting takes is left out of both. Pictures: as they
+come to one connection from a world that runs as fast as it can, every column turned to px; a subscription is given 120 a
+second at most, so there are several. And the same pictures from memory, which is the package alone.
+"""
+import argparse
+import copy
+import statistics
+import subprocess
+import time
+
+from bench_client import benchmark_world, print_figures, spread
+
+import evod
+from evod import framing
+from evod.pictures import FrameDecoder
+from evod.v1 import stream_pb2
+
+GENERATIONS, SUBSCRIPTIONS = 100, 4
+
+
+def by_program(program, seed):
+    def run_s(generations):
+        began = time.perf_counter()
+        command = [program, "run", "--seed", str(seed), "--generations", str(generations), "--threads", "1"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return time.perf_counter() - began
+
+    return run_s(1 + GENERATIONS) - run_s(1)
+
+
+def by_package(program, seed):
+    best = []
+    with evod.local(seed=seed, threads=1, program=program) as lab:
+        run = lab.world().run(1 + GENERATIONS)
+        next(run)
+        began = time.perf_counter()
+        for g in run:
+            best.append((g.best, g.mean))
+        elapsed_s = time.perf_counter() - began
+    assert len(best) == GENERATIONS
+    return elapsed_s
+
+
+def generations(program, rounds):
+    pairs = [(by_program(program, seed), by_package(program, seed)) for seed in range(1, rounds + 1)]
+    return {"evod run, s": spread([a for a, _ in pairs]), "package, s": spread([b for _, b in pairs]),
+            "package / evod run": spread([b / a for a, b in pairs])}
+
+
+def look_at(frame):
+    """Every column there is."""
+    kinds = (frame.organisms, frame.food, frame.poison)
+    return sum(float(kind.x_px[0] + kind.y_px[0]) for kind in kinds) + float(
+        frame.organisms.radius_px[0] + frame.organisms.health[0])
+
+
+def pictures(program, organisms, seconds):
+    messages = []
+    with evod.local(seed=1, program=program, experiment=benchmark_world(organisms)) as lab:
+        world, core = lab.world(), lab._link.core
+        streams = [world.frames(120) for _ in range(SUBSCRIPTIONS)]
+        world.run()
+        for stream in streams:
+            next(stream)
+        began, tick, count = time.perf_counter(), next(streams[0]).tick, 0
+        while time.perf_counter() < began + seconds:
+            for stream in streams:
+                frame = next(stream)
+                look_at(frame)
+                count += 1
+        come_per_s = count / (time.perf_counter() - began)
+        ticks_per_s = (frame.tick - tick) / (time.perf_counter() - began)
+        for stream in streams:
+            stream.close()
+        take = core._take_picture
+        core._take_picture = lambda message: (messages.append(copy.deepcopy(message)), take(message))
+        with world.frames(120) as frames:
+            while len(messages) < 200:
+                next(frames)
+    last = messages[-1].subscription_id  # what comes of the others was on its way
+    messages = [message for message in messages if message.subscription_id == last]
+    data = [framing.encode(message.SerializeToString()) for message in messages]
+    decoder, reader = FrameDecoder(), framing.FrameReader()
+    began = time.perf_counter()
+    for one in data:
+        reader.feed(one)
+        for _, body in reader.frames():
+            look_at(decoder.decode(stream_pb2.SnapshotFrame.FromString(body)))
+    alone_per_s = len(data) / (time.perf_counter() - began)
+    return {"frames come per s": come_per_s, "ticks per s meanwhile": ticks_per_s, "frames decoded per s, alone": alone_per_s,
+            "kB of a frame": statistics.mean(map(len, data)) / 1e3}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("evod", help="the program")
+    parser.add_argument("--rounds", type=int, default=9)
+    parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--organisms", type=int, default=10_000)
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    options = parser.parse_args()
+    print_figures({"generations": generations(options.evod, options.rounds),
+                   f"pictures of {options.organisms} organisms": pictures(options.evod, options.organisms, options.seconds)},
+                  options.json)
+
+
+if __name__ == "__main__":
+    main()

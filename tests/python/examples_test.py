@@ -1,0 +1,89 @@
+"""The examples in small, and the pictures."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy
+
+import evod
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "client" / "python" / "examples"
+SMALL = {
+    "watch_a_run": ["--generations", "1"],
+    "change_at_generation_20": ["--generations", "22"],
+    "compare_selection": ["--generations", "2", "--seeds", "2"],
+    "sweep_heat_map": ["--generations", "2", "--seeds", "2", "--steps", "2"],
+    "fork": ["--generations", "6"],
+    "follow_a_lineage": ["--generations", "4"],
+}
+SAYS = {
+    "watch_a_run": "mean health",
+    "change_at_generation_20": "generation 22: best",
+    "compare_selection": "truncation: ",
+    "sweep_heat_map": "mutation_chance 0.40:",
+    "fork": "generation 3 of both is the same",
+    "follow_a_lineage": "of generation 1",
+}
+
+
+class Examples(unittest.TestCase):
+    def test_there_is_no_other(self):
+        self.assertEqual({path.stem for path in EXAMPLES.glob("*.py")}, set(SMALL))
+
+
+def _runs(name):
+    def test(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, EXAMPLES / f"{name}.py", *SMALL[name]], cwd=folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(SAYS[name], done.stdout)
+            pictures = list(pathlib.Path(folder).iterdir())
+            self.assertEqual(len(pictures), name != "watch_a_run")
+            for picture in pictures:
+                self.assertGreater(picture.stat().st_size, 5000)
+    return test
+
+
+for _name in SMALL:
+    setattr(Examples, f"test_{_name}", _runs(_name))
+
+
+class Pictures(unittest.TestCase):
+    def test_a_world_is_drawn_where_it_is(self):
+        with evod.local(seed=3, experiment={"crate_count": 3, "obstacle_count": 2}) as lab:
+            frame = lab.world().frame()
+        axes = frame.plot()
+        obstacles, crates, food, poison, organisms = axes.collections
+        numpy.testing.assert_array_equal(organisms.get_offsets()[:, 0], frame.organisms.x_px)
+        numpy.testing.assert_array_equal(organisms.get_array(), frame.organisms.health)
+        self.assertEqual([len(x.get_offsets()) for x in (food, poison)], [len(frame.food), len(frame.poison)])
+        self.assertEqual([len(x.get_paths()) for x in (obstacles, crates)], [2, 3])
+        left = crates.get_paths()[0].vertices[:, 0].min()
+        self.assertEqual(left, frame.crates.x_px[0] - frame.crates.half_width_px[0])
+        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((0, frame.width_px), (frame.height_px, 0)))
+
+    def test_curves_are_what_the_statistics_tell_over_all_islands(self):
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2}
+        with evod.local(seed=3, experiment=experiment) as lab:
+            world = lab.world()
+            with self.assertRaisesRegex(evod.Error, "no generation has ended yet"):
+                world.plot_fitness()
+            told = list(world.run(3))
+            mean, best = world.plot_fitness().lines
+            numpy.testing.assert_allclose(mean.get_ydata(), [g.mean for g in told])
+            numpy.testing.assert_allclose(best.get_ydata(), [g.best for g in told])
+            genes = world.plot_genes().lines
+            numpy.testing.assert_allclose([line.get_ydata() for line in genes], numpy.array([g.genes for g in told]).T)
+
+    def test_a_notebook_plays_a_world(self):
+        with evod.local(seed=3, speed=10) as lab:
+            world = lab.world()
+            self.assertIn("</script>", world.animate(3)._repr_html_())  # stands still: one picture
+            world.run()
+            self.assertIn("frames[2]", world.animate(3)._repr_html_())
+
+
+if __name__ == "__main__":
+    unittest.main()
