@@ -3,16 +3,20 @@
     PYTHONPATH=build/release/python python_cost.py EVOD [--rounds N] [--seconds S] [--organisms N] [--json]
 
 Generations: the same hundred of the default world, on one thread, first by `evod run`, then by World.run() with something
-called for each; of many rounds, one after the other in each. Whatever starting takes is left out of both. Pictures: as they
+called for each; of many rounds, one after the other in each. Whatever starting takes is left out of both. Where other
+programs keep the machine from resting, the processor seconds of what simulates tell more than the clock. Pictures: as they
 come to one connection from a world that runs as fast as it can, every column turned to px; a subscription is given 120 a
 second at most, so there are several. And the same pictures from memory, which is the package alone.
 """
 import argparse
 import copy
+import pathlib
+import resource
 import statistics
 import subprocess
 import time
 
+import numpy
 from bench_client import benchmark_world, print_figures, spread
 
 import evod
@@ -24,32 +28,53 @@ GENERATIONS, SUBSCRIPTIONS = 100, 4
 
 
 def by_program(program, seed):
+    """Seconds by the clock, and processor seconds."""
     def run_s(generations):
-        began = time.perf_counter()
+        def now():
+            used = resource.getrusage(resource.RUSAGE_CHILDREN)
+            return numpy.array((time.perf_counter(), used.ru_utime + used.ru_stime))
+
+        began = now()
         command = [program, "run", "--seed", str(seed), "--generations", str(generations), "--threads", "1"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return time.perf_counter() - began
+        return now() - began
 
     return run_s(1 + GENERATIONS) - run_s(1)
 
 
+def simulation_s(lab):
+    """Processor seconds of the thread that simulates."""
+    keeper = lab._server._keeper.pid
+    with open(f"/proc/{keeper}/task/{keeper}/children") as children:
+        tasks = pathlib.Path("/proc") / children.read().split()[0] / "task"
+    (task,) = (task for task in tasks.iterdir() if (task / "comm").read_text().strip() == "simulation")
+    return int((task / "schedstat").read_text().split()[0]) / 1e9
+
+
 def by_package(program, seed):
+    """The same, and the processor seconds of this program."""
     best = []
     with evod.local(seed=seed, threads=1, program=program) as lab:
         run = lab.world().run(1 + GENERATIONS)
         next(run)
-        began = time.perf_counter()
+
+        def now():
+            return numpy.array((time.perf_counter(), simulation_s(lab), time.process_time()))
+
+        began = now()
         for g in run:
             best.append((g.best, g.mean))
-        elapsed_s = time.perf_counter() - began
+        took = now() - began
     assert len(best) == GENERATIONS
-    return elapsed_s
+    return took
 
 
 def generations(program, rounds):
     pairs = [(by_program(program, seed), by_package(program, seed)) for seed in range(1, rounds + 1)]
-    return {"evod run, s": spread([a for a, _ in pairs]), "package, s": spread([b for _, b in pairs]),
-            "package / evod run": spread([b / a for a, b in pairs])}
+    return {"evod run, s": spread([a[0] for a, _ in pairs]), "package, s": spread([b[0] for _, b in pairs]),
+            "package / evod run": spread([b[0] / a[0] for a, b in pairs]),
+            "package / evod run, processor s of what simulates": spread([b[1] / a[1] for a, b in pairs]),
+            "Python, processor ms of a generation": spread([1e3 * b[2] / GENERATIONS for _, b in pairs])}
 
 
 def look_at(frame):
