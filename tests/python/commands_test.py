@@ -6,6 +6,7 @@ import subprocess
 import tempfile
 import threading
 import unittest
+from unittest import mock
 
 import numpy
 
@@ -170,7 +171,8 @@ class Reaching(unittest.TestCase):
                 evod.connect("127.0.0.1:%d" % other.getsockname()[1])
 
     def test_a_local_server_ends_with_its_program_however_that_ends(self):
-        script = "import evod, os, signal; lab = evod.local(); print(lab.address, flush=True); os.kill(os.getpid(), signal.SIGKILL)"
+        script = ("import evod, os, signal; lab = evod.local(); print(lab.address, flush=True); "
+                  "os.kill(os.getpid(), signal.SIGKILL)")
         done = subprocess.run(["/usr/bin/python3", "-c", script], capture_output=True, text=True)
         until(lambda: self.is_gone(done.stdout.strip()), "the server is gone")
 
@@ -219,6 +221,20 @@ class Access(unittest.TestCase):
             evod.connect(address, token="")
         self.assertEqual(raised.exception.code_name, "UNAUTHENTICATED")
 
+    def test_a_token_that_is_revoked_ends_what_waits(self):
+        token = self.token("otto", "admin")
+        lab = evod.connect(self.serve("--require-token"), token=token)
+        self.addCleanup(lab.close)
+        waiting = lab.world().events()
+        subprocess.run([PROGRAM, "token", "revoke", "otto", *self.options], check=True, capture_output=True)
+        with self.assertRaises(evod.NoConnection) as raised:
+            next(waiting)
+        self.assertEqual(raised.exception.code_name, "UNAUTHENTICATED")
+
+    def test_a_local_server_needs_none_of_it(self):
+        with mock.patch.dict(os.environ, EVOD_TOKEN="nobody's", EVOD_CA="/no/such.pem"):
+            evod.local().close()
+
     def test_tls_and_certificates_of_both_ends(self):
         subprocess.run([PROGRAM, "certificate", "localhost"], cwd=self.folder, check=True, capture_output=True)
         ca, key = str(self.folder / "evod.crt"), str(self.folder / "evod.key")
@@ -226,6 +242,8 @@ class Access(unittest.TestCase):
         address = self.serve(*secured, "--seed", "1")
         with evod.connect(address, ca=ca) as lab, lab.world().frames() as frames:
             self.assertEqual(len(next(frames).organisms), 50)
+        with mock.patch.dict(os.environ, EVOD_CA=ca):
+            evod.connect(address).close()
         with self.assertRaisesRegex(evod.NoConnection, "its certificate is not believed"):
             evod.connect(address, tls=True)
         with self.assertRaisesRegex(evod.Error, "no-such.pem cannot be used for TLS: No such file"):

@@ -179,7 +179,8 @@ class Decoder(unittest.TestCase):
     def test_counts_of_what_is_not_there_take_no_memory(self):
         keyframe = self.deltas[0]
         endless = struct.pack("<I", 2**32 - 1)
-        for body in (b"\1\0" + b"\1" + endless + b"\0", b"\1\0" + b"\2" + endless + b"\0", b"\1\0" + b"\2" + endless + b"\x80" + endless):
+        for section in (b"\1" + endless + b"\0", b"\2" + endless + b"\0", b"\2" + endless + b"\x80" + endless):
+            body = b"\1\0" + section
             with self.assertRaises(evod.DamagedData):
                 pictures.FrameDecoder().decode(self.resealed(keyframe, body))
 
@@ -197,7 +198,8 @@ class Decoder(unittest.TestCase):
                 pictures.FrameDecoder().decode(message)
 
     def test_tiles_that_lie_are_refused(self):
-        for field, value in (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999)):
+        lies = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
+        for field, value in lies:
             message = copy.deepcopy(self.full[0])
             setattr(message.tiles[0], field, value)
             with self.assertRaises(evod.DamagedData, msg=field):
@@ -220,7 +222,8 @@ class Streams(unittest.TestCase):
         return core
 
     def test_frames_that_lie_end_the_line(self):
-        for head, what in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"), (b"EV\1\3\0\0\0\0", "channel is 3"),
+        for head, what in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"),
+                           (b"EV\1\3\0\0\0\0", "channel is 3"),
                            (b"EV\1\1\1\0\0\4", "bytes long"), (b"EV\1\1\1\0\0\0\xff", "cannot be read")):
             with self.assertRaisesRegex(evod.DamagedData, what):
                 self.core().received(head)
@@ -296,7 +299,8 @@ class Streams(unittest.TestCase):
         core = self.core()
         core.subscribe(c.Request(subscribe_events=c.SubscribeEvents(world="a")))
         self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
-        self.assertEqual([m.request.unsubscribe.subscription_id for m in self.sent(core) if m.request.HasField("unsubscribe")], [4])
+        (unsubscribed,) = [message.request for message in self.sent(core) if message.request.HasField("unsubscribe")]
+        self.assertEqual(unsubscribed.unsubscribe.subscription_id, 4)
 
 
 if __name__ == "__main__":

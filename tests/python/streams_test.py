@@ -70,7 +70,8 @@ class Generations(unittest.TestCase):
         self.assertEqual(self.world.wait().generation, 3)
 
     def test_frames_stop_coming_when_they_are_closed(self):
-        frames = self.world.frames(120)
+        frames = self.world.frames(10**6)
+        self.assertEqual(frames.rate_hz, self.lab.describe().limits.snapshot_rate_hz_max)
         next(frames)
         frames.close()
         self.world.run(2).wait()

@@ -27,7 +27,8 @@ from evod.v1.world_pb2 import (
 )
 
 __all__ = [
-    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab", "LocalLab",
-    "NoConnection", "Organisms", "PAUSED", "Parameter", "Parameters", "Past", "Population", "RUNNING", "Registry", "Run", "RunFile", "TERMINATED",
-    "Tile", "Timeout", "Violation", "WAITING", "World", "connect", "local", "open_run",
+    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab",
+    "LocalLab", "NoConnection", "Organisms", "Parameter", "Parameters", "Past", "PAUSED", "Population", "Registry",
+    "Run", "RunFile", "RUNNING", "TERMINATED", "Tile", "Timeout", "Violation", "WAITING", "World", "connect",
+    "local", "open_run",
 ]  # fmt: skip

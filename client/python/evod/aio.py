@@ -121,7 +121,7 @@ def local(
     async def open_lab() -> LocalLab:
         server = await asyncio.to_thread(local_server.start, seed, experiment, data, speed, threads, program)
         try:
-            lab = await connect(server.address, timeout_s=timeout_s, client_name="evod.aio.local")
+            lab = await connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.aio.local")
         except BaseException:
             server.stop()
             raise
@@ -197,8 +197,10 @@ class Link:
                 raise Timeout(f"no answer within {timeout_s:g} s")
             changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
             self._waiting.add(changed)
-            await asyncio.wait([changed], timeout=None if end is None else end - now)
-            self._waiting.discard(changed)
+            try:
+                await asyncio.wait([changed], timeout=None if end is None else end - now)
+            finally:
+                self._waiting.discard(changed)
 
     def _tell_all(self) -> None:
         for waiting in self._waiting:
@@ -614,6 +616,10 @@ class Frames(_Stream):
 
     async def __anext__(self) -> Frame:
         return await self._link.perform(self._stream.next())
+
+    @property
+    def rate_hz(self) -> float:
+        return self._stream.rate_hz
 
     async def set_view(
         self,

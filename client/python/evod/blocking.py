@@ -44,7 +44,7 @@ def connect(
 
     token, token_file    who comes: a token, or a file with one that nobody else can read; else the environment's EVOD_TOKEN.
     tls                  TLS with a server whose certificate this system trusts.
-    ca                   TLS; PEM file of who vouches for the server: its own evod.crt, perhaps.
+    ca                   TLS; PEM file of who vouches for the server: its own evod.crt, perhaps; else the environment's EVOD_CA.
     cert, key            TLS; PEM files of a certificate of ours, for servers that want one.
     timeout_s            how long an answer may take, and how long a server may be away.
     reconnect            whether a line that broke is to be opened again.
@@ -787,6 +787,11 @@ class Frames(_Stream):
 
     def __next__(self) -> Frame:
         return self._link.perform(self._stream.next())
+
+    @property
+    def rate_hz(self) -> float:
+        """So many pictures a second are sent at most: what was asked for, or what the server gives."""
+        return self._stream.rate_hz
 
     def set_view(
         self,

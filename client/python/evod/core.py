@@ -58,6 +58,7 @@ class Subscription:
         self.pending: Pending | None = None
         self.refused: Error | None = None  # the server's last word
         self.sessions = 0  # in which it was accepted
+        self.rate_hz = 0.0  # pictures: that holds
         self.ended = False
         self.arrived: collections.deque[Any] = collections.deque()  # events or pictures.Frame, the oldest first
         self._lost = 0  # events that were not kept
@@ -315,6 +316,7 @@ class Core:
         else:
             subscription.pending, subscription.refused = None, None
             subscription.server_id = server_id
+            subscription.rate_hz = response.subscription.rate_hz
             subscription.sessions += 1
             self._of_server_id[server_id] = weakref.ref(subscription)
             if subscription.sessions > 1 and pending.kind == "subscribe_events":

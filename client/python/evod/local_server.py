@@ -5,6 +5,7 @@ import collections
 import json
 import os
 import re
+import signal
 import subprocess
 import tempfile
 import threading
@@ -14,6 +15,7 @@ from evod.blocking import Lab, Link, connect
 from evod.errors import Error
 from evod.program import program_of
 
+_END_S = 30  # for a server to write down its runs; then it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
 # Stands between us and the server, and stops it when we are gone, however we went: our end of its input is closed then.
 _KEEPER = '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"'
@@ -45,7 +47,7 @@ def local(
     """
     server = start(seed, experiment, data, speed, threads, program)
     try:
-        lab = connect(server.address, timeout_s=timeout_s, client_name="evod.local")
+        lab = connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.local")
     except BaseException:
         server.stop()
         raise
@@ -128,4 +130,8 @@ class Server:
     def stop(self) -> None:
         if self._keeper.stdin is not None and not self._keeper.stdin.closed:
             self._keeper.stdin.close()
-        self._keeper.wait()
+        try:
+            self._keeper.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(self._keeper.pid, signal.SIGKILL)
+            self._keeper.wait()

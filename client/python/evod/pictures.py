@@ -188,6 +188,8 @@ class FrameDecoder:
                 field: getattr(message, field)
                 for field in ("world", "run_id", "island_count", "width_px", "height_px", "item_radius_px")
             }
+        live = world_pb2.LiveStatistics()  # of its own, so that the picture does not hold the whole message
+        live.CopyFrom(message.live)
         return Frame(
             **self._same,
             island=message.island,
@@ -197,7 +199,7 @@ class FrameDecoder:
             simulated_s=message.simulated_s,
             state=message.state,
             state_hash=message.state_hash,
-            live=message.live,
+            live=live,
             ticks_per_s=message.ticks_per_s,
             slowed=message.slowed,
             sequence=message.sequence,

@@ -235,6 +235,10 @@ class FrameStream:
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
         yield from ask(set_view=c.SetView(subscription_id=self._subscription.server_id or 0, view=view))
 
+    @property
+    def rate_hz(self) -> float:
+        return self._subscription.rate_hz
+
     def request_keyframe(self) -> Plan[None]:
         yield from ask(request_keyframe=c.RequestKeyframe(subscription_id=self._subscription.server_id or 0))
 
