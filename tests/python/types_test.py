@@ -1,0 +1,76 @@
+"""What a type checker sees: mypy, as strict as it can be, over the package and over a program that uses it."""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import evod
+
+PACKAGE = pathlib.Path(evod.__file__).parent.parent
+CONFIGURATION = pathlib.Path(__file__).resolve().parents[2] / "client" / "python" / "pyproject.toml"
+PROGRAM = '''
+from typing import Any, assert_type
+import evod, evod.aio
+from evod.v1 import stream_pb2
+
+with evod.connect("host", token="") as lab:
+    assert_type(lab, evod.Lab)
+    world = lab.world()
+    for g in world.run(generations=5):
+        assert_type(g.best, float)
+    for frame in world.frames():
+        assert_type(frame, evod.Frame)
+        assert_type(frame.organisms, evod.Organisms)
+    assert_type(world.get_parameters()["mutation_chance"].allowed, str)
+
+async def main() -> None:
+    async with evod.aio.connect("host") as lab:
+        assert_type(lab, evod.aio.Lab)
+        world = await lab.world()
+        async for g in world.run(generations=5):
+            assert_type(g, evod.Generation)
+        async with world.frames() as frames:
+            assert_type(await anext(frames), evod.Frame)
+        assert_type(await world.run(1), evod.aio.Run)
+'''
+
+
+@unittest.skipUnless(shutil.which("mypy"), "mypy is not there")
+class Types(unittest.TestCase):
+    def mypy(self, *arguments):
+        command = ["mypy", "--config-file", CONFIGURATION, "--cache-dir", PACKAGE.parent / "mypy_cache", *arguments]
+        done = subprocess.run(command, cwd=PACKAGE, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_the_package(self):
+        self.mypy()
+
+    def test_a_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "program.py"
+            program.write_text(PROGRAM)
+            self.mypy(program)
+
+
+class Optional(unittest.TestCase):
+    """Without the packages that it can do without."""
+
+    def run_without(self, package, program):
+        whole = f"import sys; sys.modules[{package!r}] = None; import evod\nwith evod.local(seed=1) as lab:\n" \
+                f"    world = lab.world()\n    {program}"
+        return subprocess.run([sys.executable, "-c", whole], capture_output=True, text=True)
+
+    def test_pictures_come_without_zstandard(self):
+        done = self.run_without("zstandard", "print(len(next(world.frames()).organisms))")
+        self.assertEqual(done.stdout, "50\n", done.stderr)
+
+    def test_what_is_missing_is_named(self):
+        for package, program in (("pandas", "evod.tables.frame_of('')"), ("matplotlib", "world.plot()")):
+            done = self.run_without(package, program)
+            self.assertIn(f"need the package {package}: install it, python3-{package} on Debian", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
