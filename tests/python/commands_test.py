@@ -1,7 +1,10 @@
 """Everything that can be asked, from the plain face; wrong input; access."""
 import concurrent.futures
+import contextlib
 import os
 import pathlib
+import resource
+import socket
 import subprocess
 import tempfile
 import threading
@@ -122,6 +125,16 @@ class Commands(unittest.TestCase):
             self.assertEqual(seen.result(), sorted(seen.result()))
         world.delete()
 
+    def test_files_with_large_numbers_are_no_matter(self):
+        limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (min(2000, limits[1]), limits[1]))
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_NOFILE, limits)
+        with contextlib.ExitStack() as files:
+            for _ in range(1100):
+                files.enter_context(open("/dev/null"))
+            with evod.connect(self.lab.address) as lab:
+                self.assertEqual([info.name for info in lab.worlds()], ["default"])
+
     def test_closing_ends_what_waits(self):
         lab = evod.connect(self.lab.address)
         events, failures = lab.world().events(), []
@@ -160,7 +173,6 @@ class Reaching(unittest.TestCase):
             evod.local(experiment={"population_size": 0})
 
     def test_what_is_no_evod_is_told_of_and_not_tried_again(self):
-        import socket
         with socket.create_server(("127.0.0.1", 0)) as other:
             def greet():
                 with other.accept()[0] as line:

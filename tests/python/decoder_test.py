@@ -204,6 +204,11 @@ class Decoder(unittest.TestCase):
             setattr(message.tiles[0], field, value)
             with self.assertRaises(evod.DamagedData, msg=field):
                 pictures.FrameDecoder().decode(message)
+        for length in (0, -1, float("nan"), float("inf"), 1e300):
+            message = copy.deepcopy(self.full[0])
+            message.width_px = length
+            with self.assertRaisesRegex(evod.DamagedData, "px long"):
+                pictures.FrameDecoder().decode(message)
         message = copy.deepcopy(self.full[0])
         message.tiles.add().CopyFrom(message.tiles[0])
         with self.assertRaisesRegex(evod.DamagedData, "rising"):

@@ -570,7 +570,7 @@ class Past(World, _Closing):
         return await self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
 
     async def close(self) -> None:
-        await self._link.perform(plans.ask(close_past=c.ClosePast(world=self.name)))
+        await self._link.perform(plans.close_past(self.name))
 
 
 class _Stream(_Closing):

@@ -6,7 +6,7 @@ Threads      none of its own. Any number may share a Lab: whoever waits first re
 from __future__ import annotations
 
 import contextlib
-import select
+import selectors
 import socket
 import ssl
 import threading
@@ -25,6 +25,8 @@ from evod.plans import Plan
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 T = TypeVar("T")
+#: Of few sockets, whatever their numbers.
+_Selector = getattr(selectors, "PollSelector", selectors.SelectSelector)
 
 
 def connect(
@@ -209,15 +211,13 @@ class Link:
                 self._lost(reach.reason_of(TimeoutError(), self.server))
                 return
             most_s = wait_s if most_s is None else min(wait_s, most_s)
-        connection, writes = self._socket, [self._socket] if self._to_send else []
+        connection = self._socket
+        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if self._to_send else 0)
         data: bytes | None = None
         lost: Error | None = None
         with self._unlocked():
             try:
-                readable, _, _ = select.select([connection, self._told], writes, [], most_s)
-                if self._told in readable:
-                    self._told.recv(4096)
-                if connection in readable:
+                if self._wait_for(connection, events, most_s):
                     data = connection.recv(reach.READ_BYTES)
             except BlockingIOError:
                 pass
@@ -233,8 +233,18 @@ class Link:
 
     def _sleep(self, wait_s: float) -> None:
         with self._unlocked():
-            if select.select([self._told], [], [], wait_s)[0]:
-                self._told.recv(4096)
+            self._wait_for(None, 0, wait_s)
+
+    def _wait_for(self, connection: socket.socket | None, events: int, most_s: float | None) -> bool:
+        """Until it can be written to or read from, or we are woken. Whether it can be read from."""
+        with _Selector() as selector:
+            selector.register(self._told, selectors.EVENT_READ)
+            if connection is not None:
+                selector.register(connection, events)
+            readable = [key.fileobj for key, ready in selector.select(most_s) if ready & selectors.EVENT_READ]
+        if self._told in readable:
+            self._told.recv(4096)
+        return connection in readable
 
     def _connect(self) -> None:
         with self._unlocked():
@@ -703,7 +713,7 @@ class Past(World, _Closing):
         return self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
 
     def close(self) -> None:
-        self._link.perform(plans.ask(close_past=c.ClosePast(world=self.name)))
+        self._link.perform(plans.close_past(self.name))
 
 
 class LiveParameters(Mapping[str, Any]):

@@ -37,6 +37,7 @@ _SIZES: dict[str, tuple[str, ...]] = {
 _HAVE_IDS = frozenset(("organisms", "food", "poison"))
 _MOVE = frozenset(("organisms", "crates"))
 _COUNTS = ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")
+_LENGTH_PX_MAX = 1e7  # of an island; evod's parameters allow less
 _DENSITY_CELLS = (1, 2, 4, 8, 16)
 can_unpack = zstandard is not None  #: whether compressed pictures can be read
 
@@ -215,6 +216,9 @@ class FrameDecoder:
     def _decode_tiles(self, message: stream_pb2.SnapshotFrame) -> tuple[Content, tuple[Tile, ...]]:
         before, self._tiles = self._tiles, {}
         side = message.tile_px
+        for length in (message.width_px, message.height_px):
+            if not 0 < length <= _LENGTH_PX_MAX:
+                raise DamagedData(f"an island is {length} px long")
         in_row, in_column = (max(1, -int(-length // side)) for length in (message.width_px, message.height_px))
         full: dict[int, _Deltas] = {}
         contents: list[Content] = []

@@ -347,6 +347,14 @@ def _goal_of(info: world_pb2.WorldInfo) -> int | None:
     return info.run_until_generation if info.HasField("run_until_generation") else None
 
 
+def close_past(world: str) -> Plan[None]:
+    try:
+        yield from ask(close_past=c.ClosePast(world=world))
+    except Error as error:
+        if error.code != c.CODE_NOT_FOUND:  # gone with the session that it belonged to
+            raise
+
+
 # ---- queries ------------------------------------------------------------------------------------------------------------
 
 
