@@ -6,6 +6,7 @@ import threading
 import unittest
 
 import evod
+from evod.v1 import commands_pb2 as c
 from support import Relay, Server, until
 
 
@@ -67,7 +68,7 @@ class Retries(unittest.TestCase):
         lab = self.connect(relay)
         world = lab.world()
         lab.registry()
-        world.run()  # so that ticks pass, and doing it twice would be seen
+        lab.request(run=c.Run())  # ticks pass; and no events come
         deaths = []
 
         def kill(to_server, data):
