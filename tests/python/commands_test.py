@@ -95,7 +95,15 @@ class Commands(unittest.TestCase):
         self.refused(lambda: world.frames(detail="all"), "view.detail")
         self.refused(lambda: world.frames(region=(0, 0, 1)), "view.region")
         self.refused(lambda: world.export("organism"), "export_run.table")
-        self.refused(lambda: world.step(-1), "ticks")
+        self.refused(lambda: world.step(-1), "run_until_tick.tick")
+        self.refused(lambda: world.step("one"), "run_until_tick.tick")
+        self.refused(lambda: world.organism(-1, island=2**32), "get_organism.organism", "get_organism.island")
+        self.refused(lambda: world.reset(seed=2**64), "reset_world.seed")
+        self.refused(lambda: world.fork(7), "fork_world.name")
+        self.refused(lambda: world.history(first=0.5), "get_history.first_generation")
+        self.refused(lambda: world.export("lineage", of=(1, -1, 2)), "export_run.of.island")
+        self.refused(lambda: world.frames(region=(0, 0, "1", 1)), "view.region.width_px")
+        self.refused(lambda: world.frames(bytes_per_s_max=-1), "view.bytes_per_s_max")
         with self.assertRaisesRegex(evod.Error, "NOT_FOUND: there is no world 'nowhere': there are default"):
             self.lab.world("nowhere")
         with self.assertRaises(evod.Error) as raised:

@@ -323,7 +323,7 @@ class Lab(_Closing):
         return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
 
     async def request(self, **request: Any) -> c.Response:
-        return await self._link.perform(plans.ask(**request))
+        return await self._link.perform(plans.answer_to(c.Request(**request)))
 
     async def worlds(self) -> Sequence[world_pb2.WorldInfo]:
         return await self._link.perform(plans.worlds())
@@ -347,16 +347,16 @@ class Lab(_Closing):
         return await self._link.perform(self._desk.registry())
 
     async def describe(self) -> c.Description:
-        return (await self.request(describe=c.Describe())).description
+        return (await self._link.perform(plans.ask("describe"))).description
 
     async def metrics(self) -> c.Metrics:
-        return (await self.request(get_metrics=c.GetMetrics())).metrics
+        return (await self._link.perform(plans.ask("get_metrics"))).metrics
 
     def events(self) -> OpeningStream[Events, stream_pb2.Event]:
         return _events(self._link, self._desk.subscribe_events(None))
 
     async def shut_down(self) -> None:
-        await self.request(shut_down=c.ShutDown())
+        await self._link.perform(plans.ask("shut_down"))
 
 
 class LocalLab(Lab):
@@ -393,8 +393,8 @@ class World:
     def __repr__(self) -> str:
         return f"<world {self.name} at {self._lab.address}>"
 
-    async def _command(self, **request: Any) -> world_pb2.WorldInfo:
-        return await self._link.perform(plans.ask_for_world(**request))
+    async def _command(self, kind: str, /, **fields: Any) -> world_pb2.WorldInfo:
+        return await self._link.perform(plans.ask_for_world(kind, world=self.name, **fields))
 
     async def get_parameters(self) -> Parameters:
         return await self._link.perform(self._desk.parameters(self.name))
@@ -418,7 +418,7 @@ class World:
         return OpeningStream(open_run())
 
     async def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
-        return await self._command(run_until_tick=c.RunUntilTick(world=self.name, tick=tick))
+        return await self._command("run_until_tick", tick=tick)
 
     async def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
         return await self._link.perform(self._desk.step(self.name, ticks))
@@ -427,29 +427,28 @@ class World:
         return await self._link.perform(self._desk.wait(self.name))
 
     async def pause(self) -> world_pb2.WorldInfo:
-        return await self._command(pause=c.Pause(world=self.name))
+        return await self._command("pause")
 
     async def resume(self) -> world_pb2.WorldInfo:
-        return await self._command(resume=c.Resume(world=self.name))
+        return await self._command("resume")
 
     async def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
-        return await self._command(set_speed=c.SetSpeed(world=self.name, speed=plans.speed_of(speed)))
+        return await self._command("set_speed", speed=plans.speed_of(speed))
 
     async def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
-        return await self._command(reset_world=c.ResetWorld(world=self.name, seed=seed))
+        return await self._command("reset_world", seed=seed)
 
     async def release_lease(self) -> world_pb2.WorldInfo:
-        return await self._command(release_lease=c.ReleaseLease(world=self.name))
+        return await self._command("release_lease")
 
     async def renew_lease(self) -> None:
-        await self._link.perform(plans.ask(renew_lease=c.RenewLease(world=self.name)))
+        await self._link.perform(plans.ask("renew_lease", world=self.name))
 
     async def fork(self, name: str, at_generation: int | None = None) -> World:
-        request = c.ForkWorld(world=self.name, name=name, at_generation=at_generation)
-        return World(self._lab, (await self._command(fork_world=request)).name)
+        return World(self._lab, (await self._command("fork_world", name=name, at_generation=at_generation)).name)
 
     async def delete(self) -> None:
-        await self._link.perform(plans.ask(delete_world=c.DeleteWorld(world=self.name)))
+        await self._link.perform(plans.ask("delete_world", world=self.name))
 
     async def info(self) -> world_pb2.WorldInfo:
         return await self._link.perform(plans.info_of(self.name))
@@ -477,7 +476,7 @@ class World:
         return _events(self._link, self._desk.subscribe_events(self.name))
 
     async def statistics(self) -> c.Statistics:
-        return (await self._link.perform(plans.ask(get_statistics=c.GetStatistics(world=self.name)))).statistics
+        return (await self._link.perform(plans.ask("get_statistics", world=self.name))).statistics
 
     async def history(
         self, first: int | None = None, last: int | None = None, *, island: int | None = None
@@ -485,8 +484,7 @@ class World:
         return await self._link.perform(plans.history(self.name, first, last, island))
 
     async def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
-        request = c.GetOrganism(world=self.name, island=island, organism=organism)
-        return (await self._link.perform(plans.ask(get_organism=request))).organism
+        return (await self._link.perform(plans.ask("get_organism", world=self.name, island=island, organism=organism))).organism
 
     async def population(self, island: int = 0) -> Population:
         return await self._link.perform(plans.population(self.name, island))
@@ -500,7 +498,8 @@ class World:
         first_pick: int = 0,
         first_descendant: int = 0,
     ) -> c.Breeding:
-        request = c.GetBreeding(
+        plan = plans.ask(
+            "get_breeding",
             world=self.name,
             island=island,
             generation=generation,
@@ -508,15 +507,15 @@ class World:
             first_pick=first_pick,
             first_descendant=first_descendant,
         )
-        return (await self._link.perform(plans.ask(get_breeding=request))).breeding
+        return (await self._link.perform(plan)).breeding
 
     async def motion(self, island: int = 0) -> c.Motion:
-        return (await self._link.perform(plans.ask(get_motion=c.GetMotion(world=self.name, island=island)))).motion
+        return (await self._link.perform(plans.ask("get_motion", world=self.name, island=island))).motion
 
     def open_past(self, generation: int | None = None, tick: int | None = None) -> Opening[Past]:
         async def open_it() -> Past:
-            at = plans.moment_of(generation, tick) if (generation, tick) != (None, None) else None
-            return Past(self._lab, (await self._command(open_past=c.OpenPast(world=self.name, at=at))).name)
+            at = plans.moment_of("open_past.at.", generation, tick) if (generation, tick) != (None, None) else None
+            return Past(self._lab, (await self._command("open_past", at=at)).name)
 
         return Opening(open_it())
 
@@ -567,7 +566,7 @@ class Past(World, _Closing):
     """As evod.Past, and what it answers is awaited."""
 
     async def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
-        return await self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
+        return await self._command("seek", to=plans.moment_of("seek.to.", generation, tick))
 
     async def close(self) -> None:
         await self._link.perform(plans.close_past(self.name))

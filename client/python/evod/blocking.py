@@ -358,7 +358,7 @@ class Lab(_Closing):
         ...     lab.request(run_until_tick=commands_pb2.RunUntilTick(tick=60)).applied_tick
         0
         """
-        return self._link.perform(plans.ask(**request))
+        return self._link.perform(plans.answer_to(c.Request(**request)))
 
     # ---- worlds ---------------------------------------------------------------------------------------------------
 
@@ -403,11 +403,11 @@ class Lab(_Closing):
 
     def describe(self) -> c.Description:
         """The messages it knows, the registry and the limits, as they are told."""
-        return self.request(describe=c.Describe()).description
+        return self._link.perform(plans.ask("describe")).description
 
     def metrics(self) -> c.Metrics:
         """What the server counts and measures."""
-        return self.request(get_metrics=c.GetMetrics()).metrics
+        return self._link.perform(plans.ask("get_metrics")).metrics
 
     def events(self) -> Events:
         """Events of all worlds, from now on."""
@@ -415,7 +415,7 @@ class Lab(_Closing):
 
     def shut_down(self) -> None:
         """Ends the server: what was asked is still answered, all runs are written down."""
-        self.request(shut_down=c.ShutDown())
+        self._link.perform(plans.ask("shut_down"))
 
 
 class World:
@@ -436,8 +436,8 @@ class World:
     def __repr__(self) -> str:
         return f"<world {self.name} at {self._lab.address}>"
 
-    def _command(self, **request: Any) -> world_pb2.WorldInfo:
-        return self._link.perform(plans.ask_for_world(**request))
+    def _command(self, kind: str, /, **fields: Any) -> world_pb2.WorldInfo:
+        return self._link.perform(plans.ask_for_world(kind, world=self.name, **fields))
 
     # ---- parameters -----------------------------------------------------------------------------------------------
 
@@ -494,7 +494,7 @@ class World:
 
     def run_until_tick(self, tick: int) -> world_pb2.WorldInfo:
         """Runs until so many ticks of the run are over, then pauses. Answered at once: wait() waits for it."""
-        return self._command(run_until_tick=c.RunUntilTick(world=self.name, tick=tick))
+        return self._command("run_until_tick", tick=tick)
 
     def step(self, ticks: int = 1) -> world_pb2.WorldInfo:
         """Runs so many ticks and waits for it.
@@ -512,36 +512,35 @@ class World:
 
     def pause(self) -> world_pb2.WorldInfo:
         """Stands still; what it was told to run for is remembered."""
-        return self._command(pause=c.Pause(world=self.name))
+        return self._command("pause")
 
     def resume(self) -> world_pb2.WorldInfo:
         """Goes on with what it was told to run for."""
-        return self._command(resume=c.Resume(world=self.name))
+        return self._command("resume")
 
     def set_speed(self, speed: float | str) -> world_pb2.WorldInfo:
         """Simulated seconds per second, 0.001 to 10,000, or "max"."""
-        return self._command(set_speed=c.SetSpeed(world=self.name, speed=plans.speed_of(speed)))
+        return self._command("set_speed", speed=plans.speed_of(speed))
 
     def reset(self, seed: int | None = None) -> world_pb2.WorldInfo:
         """The run begins again at generation 1, with the same seed or another one; it waits."""
-        return self._command(reset_world=c.ResetWorld(world=self.name, seed=seed))
+        return self._command("reset_world", seed=seed)
 
     def release_lease(self) -> world_pb2.WorldInfo:
         """A world that was lent by run_until_tick() or step() goes on."""
-        return self._command(release_lease=c.ReleaseLease(world=self.name))
+        return self._command("release_lease")
 
     def renew_lease(self) -> None:
         """It stays lent for as long again."""
-        self._link.perform(plans.ask(renew_lease=c.RenewLease(world=self.name)))
+        self._link.perform(plans.ask("renew_lease", world=self.name))
 
     def fork(self, name: str, at_generation: int | None = None) -> World:
         """A second world, from the first moment of a generation, or from now; it waits. Nothing happens to this one."""
-        request = c.ForkWorld(world=self.name, name=name, at_generation=at_generation)
-        return World(self._lab, self._command(fork_world=request).name)
+        return World(self._lab, self._command("fork_world", name=name, at_generation=at_generation).name)
 
     def delete(self) -> None:
         """The world is gone."""
-        self._link.perform(plans.ask(delete_world=c.DeleteWorld(world=self.name)))
+        self._link.perform(plans.ask("delete_world", world=self.name))
 
     # ---- looking --------------------------------------------------------------------------------------------------
 
@@ -589,7 +588,7 @@ class World:
 
     def statistics(self) -> c.Statistics:
         """How each island is doing now, and what the last generation came to."""
-        return self._link.perform(plans.ask(get_statistics=c.GetStatistics(world=self.name))).statistics
+        return self._link.perform(plans.ask("get_statistics", world=self.name)).statistics
 
     def history(
         self, first: int | None = None, last: int | None = None, *, island: int | None = None
@@ -599,8 +598,7 @@ class World:
 
     def organism(self, organism: int, island: int = 0) -> world_pb2.OrganismInfo:
         """Genes, place, health and parents of one organism, by its id, and what it is about to do."""
-        request = c.GetOrganism(world=self.name, island=island, organism=organism)
-        return self._link.perform(plans.ask(get_organism=request)).organism
+        return self._link.perform(plans.ask("get_organism", world=self.name, island=island, organism=organism)).organism
 
     def population(self, island: int = 0) -> Population:
         """Genes, parents and choices of all organisms of the generation that runs, as arrays.
@@ -623,7 +621,8 @@ class World:
         first_descendant: int = 0,
     ) -> c.Breeding:
         """How a generation was bred: the very picks, pairs, cuts and mutations. Without a number the last that has bred."""
-        request = c.GetBreeding(
+        plan = plans.ask(
+            "get_breeding",
             world=self.name,
             island=island,
             generation=generation,
@@ -631,17 +630,17 @@ class World:
             first_pick=first_pick,
             first_descendant=first_descendant,
         )
-        return self._link.perform(plans.ask(get_breeding=request)).breeding
+        return self._link.perform(plan).breeding
 
     def motion(self, island: int = 0) -> c.Motion:
         """How its bodies move: energy, momentum, overlaps."""
-        return self._link.perform(plans.ask(get_motion=c.GetMotion(world=self.name, island=island))).motion
+        return self._link.perform(plans.ask("get_motion", world=self.name, island=island)).motion
 
     def open_past(self, generation: int | None = None, tick: int | None = None) -> Past:
         """Its past, as a world beside it: from a generation, a tick of it, or a tick of the run; without a number from the
         beginning. The server has to keep its runs."""
-        at = plans.moment_of(generation, tick) if (generation, tick) != (None, None) else None
-        return Past(self._lab, self._command(open_past=c.OpenPast(world=self.name, at=at)).name)
+        at = plans.moment_of("open_past.at.", generation, tick) if (generation, tick) != (None, None) else None
+        return Past(self._lab, self._command("open_past", at=at).name)
 
     def export(
         self,
@@ -710,7 +709,7 @@ class Past(World, _Closing):
 
     def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
         """To a generation, a tick of it, or a tick of the run; without a number to the last moment that is known."""
-        return self._command(seek=c.Seek(world=self.name, to=plans.moment_of(generation, tick)))
+        return self._command("seek", to=plans.moment_of("seek.to.", generation, tick))
 
     def close(self) -> None:
         self._link.perform(plans.close_past(self.name))

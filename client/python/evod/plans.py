@@ -8,17 +8,20 @@ from __future__ import annotations
 import dataclasses
 from typing import Any, Callable, Generator, Mapping, Sequence, TypeVar, Union
 
+import google.protobuf.descriptor
+import google.protobuf.message
 import numpy
 import numpy.typing
 
 from evod import pictures
 from evod.core import PICTURES_AHEAD, Core, Subscription
-from evod.errors import DamagedData, Error, refusal, wrong_argument
+from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
 from evod.parameters import Parameters, Registry
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
 T = TypeVar("T")
+M = TypeVar("M", bound=google.protobuf.message.Message)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,6 +35,15 @@ class Until:
 Step = Union[c.Request, Until]
 Plan = Generator[Step, Any, T]
 
+_F = google.protobuf.descriptor.FieldDescriptor
+_ALLOWED = {
+    _F.TYPE_UINT32: f"a whole number, 0 to {2**32 - 1}",
+    _F.TYPE_UINT64: f"a whole number, 0 to {2**64 - 1}",
+    _F.TYPE_DOUBLE: "a number",
+    _F.TYPE_BOOL: "true or false",
+    _F.TYPE_STRING: "text",
+}
+
 TABLES = {
     "generations": c.RUN_TABLE_GENERATIONS,
     "organisms": c.RUN_TABLE_ORGANISMS,
@@ -43,20 +55,22 @@ FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
 DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
 
 
-def ask(**request: Any) -> Plan[c.Response]:
-    """One request, and its response. Error: it was refused."""
-    response: c.Response = yield c.Request(**request)
+def answer_to(request: c.Request) -> Plan[c.Response]:
+    """Error: it was refused."""
+    response: c.Response = yield request
     if response.status.code != c.CODE_OK:
         raise refusal(response.status)
     return response
 
 
-def ask_for_world(**request: Any) -> Plan[world_pb2.WorldInfo]:
-    return (yield from ask(**request)).world
+def ask(kind: str, /, **fields: Any) -> Plan[c.Response]:
+    """A request by its name in the protocol. Error: a field cannot have such a value, or it was refused."""
+    message = made(type(getattr(c.Request(), kind)), f"{kind}.", **fields)
+    return (yield from answer_to(c.Request(**{kind: message})))
 
 
-def nothing(plan: Plan[Any]) -> Plan[None]:
-    yield from plan
+def ask_for_world(kind: str, /, **fields: Any) -> Plan[world_pb2.WorldInfo]:
+    return (yield from ask(kind, **fields)).world
 
 
 class Desk:
@@ -72,7 +86,7 @@ class Desk:
     def registry(self) -> Plan[Registry]:
         instance = self.core.welcome.instance_id if self.core.welcome else ""
         if self._registry is None or self._registry_of != instance:
-            description = (yield from ask(describe=c.Describe())).description
+            description = (yield from ask("describe")).description
             self._registry, self._registry_of = Registry.of(description), instance
         return self._registry
 
@@ -89,20 +103,20 @@ class Desk:
 
     def parameters(self, world: str) -> Plan[Parameters]:
         registry = yield from self.registry()
-        response = yield from ask(get_parameters=c.GetParameters(world=world))
-        return Parameters(registry, response.parameters)
+        return Parameters(registry, (yield from ask("get_parameters", world=world)).parameters)
 
     def set_parameters(
         self, world: str, values: Mapping[str, object], dry_run: bool, expected_revision: int | None
     ) -> Plan[Parameters]:
         registry = yield from self.registry()
-        request = c.SetParameters(
+        response = yield from ask(
+            "set_parameters",
             world=world,
             parameters=registry.assignments(values, "set_parameters."),
             dry_run=dry_run,
             expected_revision=expected_revision,
         )
-        return Parameters(registry, (yield from ask(set_parameters=request)).parameters)
+        return Parameters(registry, response.parameters)
 
     def create_world(
         self,
@@ -114,14 +128,16 @@ class Desk:
     ) -> Plan[str]:
         pace = None if speed is None else speed_of(speed)
         registry = yield from self.registry()
-        request = c.CreateWorld(
-            name=name, parameters=registry.assignments(parameters, "create_world."), seed=_whole("create_world.seed", seed)
+        info = yield from ask_for_world(
+            "create_world",
+            name=name,
+            parameters=registry.assignments(parameters, "create_world."),
+            seed=seed,
+            population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
         )
-        for island in population or ():
-            request.population.add(genes=numpy.asarray(island, "<f4").ravel())
-        world = (yield from ask_for_world(create_world=request)).name
+        world = info.name
         if pace is not None:
-            yield from ask(set_speed=c.SetSpeed(world=world, speed=pace))
+            yield from ask("set_speed", world=world, speed=pace)
         return world
 
     # ---- what goes on -----------------------------------------------------------------------------------------------
@@ -133,10 +149,12 @@ class Desk:
     def subscribe_snapshots(
         self, world: str, island: int | None, rate_hz: float, view: c.View | None
     ) -> Plan[Subscription]:
-        snapshots = c.SubscribeSnapshots(
+        snapshots = made(
+            c.SubscribeSnapshots,
+            "subscribe_snapshots.",
             world=world,
-            island=_whole("subscribe_snapshots.island", island),
-            rate_hz=_real("subscribe_snapshots.rate_hz", rate_hz),
+            island=island,
+            rate_hz=rate_hz,
             codec=stream_pb2.CODEC_DELTA,
             compression=stream_pb2.COMPRESSION_ZSTD if pictures.can_unpack else stream_pb2.COMPRESSION_NONE,
             unacknowledged_max=PICTURES_AHEAD,
@@ -153,12 +171,11 @@ class Desk:
         return subscription
 
     def run(self, world: str, generations: int | None) -> Plan[GenerationStream]:
-        request = c.Run(world=world, generations=_whole("run.generations", generations))
         stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
         try:
             # A world that waits stands at the end of a generation, which has been told before.
-            last = (yield from ask(get_statistics=c.GetStatistics(world=world))).statistics.last
-            info = yield from ask_for_world(run=request)
+            last = (yield from ask("get_statistics", world=world)).statistics.last
+            info = yield from ask_for_world("run", world=world, generations=generations)
         except BaseException:
             stream.close()
             raise
@@ -181,9 +198,9 @@ class Desk:
             self.core.unsubscribe(subscription)
 
     def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
-        ticks = _whole("ticks", ticks) or 0
+        ticks = made(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
         tick = (yield from info_of(world)).tick + ticks
-        yield from ask(run_until_tick=c.RunUntilTick(world=world, tick=tick))
+        yield from ask("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
     def frame(self, world: str, island: int) -> Plan[pictures.Frame]:
@@ -233,14 +250,14 @@ class FrameStream:
 
     def set_view(self, view: c.View) -> Plan[None]:
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
-        yield from ask(set_view=c.SetView(subscription_id=self._subscription.server_id or 0, view=view))
+        yield from ask("set_view", subscription_id=self._subscription.server_id, view=view)
 
     @property
     def rate_hz(self) -> float:
         return self._subscription.rate_hz
 
     def request_keyframe(self) -> Plan[None]:
-        yield from ask(request_keyframe=c.RequestKeyframe(subscription_id=self._subscription.server_id or 0))
+        yield from ask("request_keyframe", subscription_id=self._subscription.server_id)
 
     def close(self) -> None:
         self._core.unsubscribe(self._subscription)
@@ -349,7 +366,7 @@ def _goal_of(info: world_pb2.WorldInfo) -> int | None:
 
 def close_past(world: str) -> Plan[None]:
     try:
-        yield from ask(close_past=c.ClosePast(world=world))
+        yield from ask("close_past", world=world)
     except Error as error:
         if error.code != c.CODE_NOT_FOUND:  # gone with the session that it belonged to
             raise
@@ -359,37 +376,31 @@ def close_past(world: str) -> Plan[None]:
 
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
-    known: Sequence[world_pb2.WorldInfo] = (yield from ask(list_worlds=c.ListWorlds())).worlds.worlds
+    known: Sequence[world_pb2.WorldInfo] = (yield from ask("list_worlds")).worlds.worlds
     return known
 
 
 def info_of(world: str) -> Plan[world_pb2.WorldInfo]:
     # ListWorlds does not tell of worlds that show the past.
-    return (yield from ask(get_statistics=c.GetStatistics(world=world))).statistics.world
+    return (yield from ask("get_statistics", world=world)).statistics.world
 
 
 def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
     rows: list[world_pb2.GenerationStatistics] = []
-    request = c.GetHistory(
-        world=world,
-        first_generation=_whole("get_history.first_generation", first),
-        last_generation=_whole("get_history.last_generation", last),
-        island=_whole("get_history.island", island),
-    )
     while True:
-        answer = (yield from ask(get_history=request)).history
+        told = yield from ask("get_history", world=world, first_generation=first, last_generation=last, island=island)
+        answer = told.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
             return generations_of(rows)
-        request.first_generation = answer.next_generation
+        first = answer.next_generation
 
 
 def population(world: str, island: int) -> Plan[Population]:
     parts: list[c.Population] = []
     first = 0
     while True:
-        request = c.GetPopulation(world=world, island=_whole("get_population.island", island), first_organism=first)
-        part = (yield from ask(get_population=request)).population
+        part = (yield from ask("get_population", world=world, island=island, first_organism=first)).population
         if parts and part.generation != parts[-1].generation:  # another one has begun meanwhile
             parts, first = [], 0
             continue
@@ -402,18 +413,21 @@ def population(world: str, island: int) -> Plan[Population]:
 def export(
     world: str, table: str, text_format: str, generation: int | None, of: tuple[int, int, int] | None
 ) -> Plan[str]:
-    request = c.ExportRun(
+    organism = None
+    if of is not None:
+        organism = made(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
+    response = yield from ask(
+        "export_run",
         world=world,
         table=_choice("export_run.table", table, TABLES),
         format=_choice("export_run.format", text_format, FORMATS),
-        generation=_whole("export_run.generation", generation),
+        generation=generation,
+        of=organism,
     )
-    if of is not None:
-        request.of.generation, request.of.island, request.of.organism = of
-    part = (yield from ask(export_run=request)).export_part
+    part = response.export_part
     text = [part.text]
     while not part.last:
-        part = (yield from ask(continue_export=c.ContinueExport(export_id=part.export_id))).export_part
+        part = (yield from ask("continue_export", export_id=part.export_id)).export_part
         text.append(part.text)
     return b"".join(text).decode()
 
@@ -421,16 +435,32 @@ def export(
 # ---- arguments ----------------------------------------------------------------------------------------------------------
 
 
+def made(message: type[M], field_prefix: str, /, **fields: Any) -> M:
+    """A message of those fields; what is None is absent. Error: every field that cannot have its value."""
+    try:
+        whole: M = message(**fields)
+        return whole
+    except (TypeError, ValueError):
+        violations = []
+    for name, value in fields.items():
+        try:
+            message(**{name: value})
+        except (TypeError, ValueError):
+            allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "something else")
+            violations.append(Violation(field_prefix + name, allowed, str(value)))
+    raise Error("the request is wrong", c.CODE_INVALID_ARGUMENT, violations)
+
+
 def speed_of(speed: float | str) -> world_pb2.Speed:
     if speed == "max":
         return world_pb2.Speed(max=True)
     if isinstance(speed, str):
         raise wrong_argument("set_speed.speed", "0.001 to 10000, or max", speed)
-    return world_pb2.Speed(real_time_factor=_real("set_speed.speed.real_time_factor", speed))
+    return made(world_pb2.Speed, "set_speed.speed.", real_time_factor=speed)
 
 
-def moment_of(generation: int | None, tick: int | None) -> c.RunMoment:
-    return c.RunMoment(generation=_whole("generation", generation), tick=_whole("tick", tick))
+def moment_of(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
+    return made(c.RunMoment, field_prefix, generation=generation, tick=tick)
 
 
 def view_of(
@@ -439,34 +469,14 @@ def view_of(
     """None if nothing is said."""
     if region is None and detail is None and bytes_per_s_max is None:
         return None
-    view = c.View(bytes_per_s_max=_whole("view.bytes_per_s_max", bytes_per_s_max))
-    if detail is not None:
-        view.detail = _choice("view.detail", detail, DETAILS)
+    part = None
     if region is not None:
-        if len(region) != 4:
+        names = ("left_px", "top_px", "width_px", "height_px")
+        if len(region) != len(names):
             raise wrong_argument("view.region", "left, top, width and height in px", region)
-        left, top, width, height = (_real("view.region", number) for number in region)
-        view.region.CopyFrom(c.Region(left_px=left, top_px=top, width_px=width, height_px=height))
-    return view
-
-
-def _whole(field: str, number: Any) -> int | None:
-    """A number that fits into the field; more is up to the server."""
-    if number is None:
-        return None
-    bits = 32 if field.endswith((".island", "ganism")) else 64
-    if isinstance(number, (int, numpy.integer)) and not isinstance(number, bool) and 0 <= int(number) < 1 << bits:
-        return int(number)
-    raise wrong_argument(field, f"a whole number, 0 to {(1 << bits) - 1}", number)
-
-
-def _real(field: str, number: Any) -> float:
-    try:
-        if not isinstance(number, (str, bool)):
-            return float(number)
-    except (TypeError, ValueError):
-        pass
-    raise wrong_argument(field, "a number", number)
+        part = made(c.Region, "view.region.", **dict(zip(names, region)))
+    wanted = None if detail is None else _choice("view.detail", detail, DETAILS)
+    return made(c.View, "view.", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:
