@@ -21,7 +21,7 @@ from bench_client import benchmark_world, print_figures, spread
 
 import evod
 from evod import framing
-from evod.pictures import FrameDecoder
+from evod.picture_decoder import FrameDecoder
 from evod.v1 import stream_pb2
 
 GENERATIONS, SUBSCRIPTIONS = 100, 4

@@ -12,8 +12,8 @@ import evod
 
 
 def load_tests(loader, tests, pattern):
-    for module in pkgutil.iter_modules(evod.__path__, "evod."):
-        if module.name != "evod.v1":
+    for module in pkgutil.walk_packages(evod.__path__, "evod."):
+        if not module.name.startswith("evod.v1"):
             suite = doctest.DocTestSuite(importlib.import_module(module.name))
             tests.addTest(suite)
     return tests

@@ -11,7 +11,7 @@
 `evod.local()` starts a private server and stops it; notebooks need nothing else. `evod.open_run("x.evod")` reads a run file
 without a server. `evod.aio` has the same words for asyncio. `evod.v1` has the messages of the protocol.
 """
-from evod.blocking import Events, Frames, Lab, Past, Run, World, connect
+from evod.lab import Events, Frames, Lab, Past, Run, World, connect
 from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
 from evod.generations import Generation, Population
 from evod.local_server import LocalLab, local

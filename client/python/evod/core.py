@@ -20,8 +20,9 @@ from typing import Any, Iterator
 
 import google.protobuf.message
 
-from evod import framing, pictures
+from evod import framing, picture_decoder
 from evod.errors import DamagedData, Error, NoConnection, refusal
+from evod.pictures import Frame
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
 
 PROTOCOL_VERSION = 1
@@ -60,7 +61,7 @@ class Subscription:
         self.sessions = 0  # in which it was accepted
         self.rate_hz = 0.0  # pictures: that holds
         self.ended = False
-        self.arrived: collections.deque[Any] = collections.deque()  # events or pictures.Frame, the oldest first
+        self.arrived: collections.deque[Any] = collections.deque()  # events or Frame, the oldest first
         self._lost = 0  # events that were not kept
 
     def take_event(self) -> stream_pb2.Event | None:
@@ -84,7 +85,7 @@ class Subscription:
 class _Sight:
     """What is seen of one island for one subscription of this session."""
 
-    decoder: pictures.FrameDecoder = dataclasses.field(default_factory=pictures.FrameDecoder)
+    decoder: picture_decoder.FrameDecoder = dataclasses.field(default_factory=picture_decoder.FrameDecoder)
     keyframe_needed: bool = False
     keyframe_requests: int = 0  # since a picture could be decoded
 
@@ -215,7 +216,7 @@ class Core:
         if subscription.server_id is not None:
             self._unsubscribe_from(subscription.server_id)
 
-    def acknowledge(self, subscription: Subscription, frame: pictures.Frame) -> None:
+    def acknowledge(self, subscription: Subscription, frame: Frame) -> None:
         """The picture has been dealt with: another one may come."""
         if subscription.server_id is not None and frame.sequence:
             self._send(

@@ -11,7 +11,8 @@ import tempfile
 import threading
 from typing import IO, Mapping
 
-from evod.blocking import Lab, Link, connect
+from evod.lab import Lab, connect
+from evod.link import Link
 from evod.errors import Error
 from evod.program import program_of
 

@@ -1,7 +1,7 @@
 """Plans: everything a client does that takes more than one step, written once for both faces.
 
 A plan is a generator. It yields what has to happen next, a request that is to be answered or a condition that is to come
-true, and gets the response; whoever carries it out sends, receives and waits in its own way (blocking.py, aio.py).
+true, and gets the response; whoever carries it out sends, receives and waits in its own way (link.py, aio/link.py).
 """
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ import google.protobuf.message
 import numpy
 import numpy.typing
 
-from evod import pictures
+from evod import picture_decoder
 from evod.core import PICTURES_AHEAD, Core, Subscription
 from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
 from evod.parameters import Parameters, Registry
+from evod.pictures import Frame
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
 T = TypeVar("T")
@@ -156,7 +157,7 @@ class Desk:
             island=island,
             rate_hz=rate_hz,
             codec=stream_pb2.CODEC_DELTA,
-            compression=stream_pb2.COMPRESSION_ZSTD if pictures.can_unpack else stream_pb2.COMPRESSION_NONE,
+            compression=stream_pb2.COMPRESSION_ZSTD if picture_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
             unacknowledged_max=PICTURES_AHEAD,
             view=view,
         )
@@ -203,7 +204,7 @@ class Desk:
         yield from ask("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
-    def frame(self, world: str, island: int) -> Plan[pictures.Frame]:
+    def frame(self, world: str, island: int) -> Plan[Frame]:
         stream = FrameStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
         try:
             return (yield from stream.next())
@@ -232,9 +233,9 @@ class FrameStream:
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
-        self._taken: tuple[int, pictures.Frame] | None = None  # and in which session
+        self._taken: tuple[int, Frame] | None = None  # and in which session
 
-    def next(self) -> Plan[pictures.Frame]:
+    def next(self) -> Plan[Frame]:
         subscription = self._subscription
         if self._taken is not None:
             session, taken = self._taken
@@ -244,7 +245,7 @@ class FrameStream:
         yield Until(lambda: subscription.arrived or subscription.refused)
         if not subscription.arrived:
             raise subscription.refused or DamagedData("no picture came")
-        frame: pictures.Frame = subscription.arrived.popleft()
+        frame: Frame = subscription.arrived.popleft()
         self._taken = subscription.sessions, frame
         return frame
 

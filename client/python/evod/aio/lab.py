@@ -1,29 +1,19 @@
-"""The asyncio face: the same words as the plain one's, and what they answer is awaited.
-
-    async with evod.aio.connect("host:7744", token="…") as lab:
-        world = await lab.world("default")
-        await world.set(mutation_chance=0.1)
-        async for g in world.run(generations=50):
-            print(g.best, g.mean)
-
-Threads      all on the event loop that it was connected on.
-"""
+"""Labs, worlds, and what comes of them, as evod.lab has them; what they answer is awaited."""
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import inspect
 import os
-import socket
-import ssl
-import time
-from typing import Any, AsyncIterator, Callable, Coroutine, Generator, Generic, Mapping, Protocol, Sequence, TypeVar
+from typing import Any, Mapping, Sequence, TypeVar
 
 import numpy.typing
 
-from evod import blocking, endpoint, local_server, plans, reach
+from evod import lab as plain
+from evod import local_server, plans
+from evod.aio.link import Link
+from evod.aio.opening import Opening, OpeningStream
 from evod.core import Core
-from evod.errors import DamagedData, NoConnection, Timeout, Error
+from evod.endpoint import Endpoint, tls_context, token_of
 from evod.generations import Generation, Population
 from evod.parameters import Parameters, Registry
 from evod.pictures import Frame
@@ -31,43 +21,6 @@ from evod.plans import Plan
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 T = TypeVar("T")
-
-
-class _Closable(Protocol):
-    async def close(self) -> None: ...
-
-
-S = TypeVar("S", bound=_Closable)
-
-
-class Opening(Generic[S]):
-    """Something that has to be awaited before it is there: with `await`, at the beginning of an `async with`, which closes
-    it at its end, or by the `async for` that goes through it."""
-
-    def __init__(self, coroutine: Coroutine[Any, Any, S]) -> None:
-        self._coroutine = coroutine
-        self._opened: S | None = None
-
-    def __await__(self) -> Generator[Any, None, S]:
-        return self._coroutine.__await__()
-
-    async def __aenter__(self) -> S:
-        self._opened = await self._coroutine
-        return self._opened
-
-    async def __aexit__(self, *_: object) -> None:
-        assert self._opened is not None
-        await self._opened.close()
-
-
-class OpeningStream(Opening[S], Generic[S, T]):
-    async def __aiter__(self) -> AsyncIterator[T]:
-        stream: Any = await self._coroutine
-        try:
-            async for item in stream:
-                yield item
-        finally:
-            await stream.close()
 
 
 def connect(
@@ -86,9 +39,9 @@ def connect(
     """As evod.connect()."""
 
     async def open_lab() -> Lab:
-        where = endpoint.Endpoint.parse(server)
-        core = Core(token=endpoint.token_of(token, token_file), client_name=client_name, server=where)
-        link = Link(where, core, endpoint.tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
+        where = Endpoint.parse(server)
+        core = Core(token=token_of(token, token_file), client_name=client_name, server=where)
+        link = Link(where, core, tls_context(tls, ca, cert, key), timeout_s=timeout_s, reconnect=reconnect)
         await link.open()
         return Lab(link)
 
@@ -128,158 +81,6 @@ def local(
         return LocalLab(lab._link, server)
 
     return Opening(open_lab())
-
-
-class Link:
-    """Carries out plans on an event loop."""
-
-    def __init__(
-        self, server: endpoint.Endpoint, core: Core, tls: ssl.SSLContext | None, *, timeout_s: float, reconnect: bool
-    ) -> None:
-        self.server, self.core, self.timeout_s = server, core, timeout_s
-        self._tls, self._reconnect = tls, reconnect
-        self._line = reach.Line(server, None)
-        self._writer: asyncio.StreamWriter | None = None
-        self._absence = reach.Absence()
-        self._waiting: set[asyncio.Future[None]] = set()
-        self._keeper: asyncio.Task[None] | None = None
-
-    # ---- plans ----------------------------------------------------------------------------------------------------
-
-    async def perform(self, plan: Plan[T]) -> T:
-        try:
-            step = next(plan)
-            while True:
-                try:
-                    result = await self._do(step)
-                except Error as error:
-                    step = plan.throw(error)
-                else:
-                    step = plan.send(result)
-        except StopIteration as done:
-            value: T = done.value
-            return value
-        finally:
-            plan.close()
-            self._flush()
-
-    async def tell(self, change: Callable[[], None]) -> None:
-        change()
-        self._flush()
-
-    async def _do(self, step: plans.Step) -> c.Response | None:
-        if isinstance(step, plans.Until):
-            await self._wait(step.holds, self.timeout_s if step.in_time else None)
-            return None
-        pending = self.core.request(step)
-        try:
-            await self._wait(lambda: pending.done, self.timeout_s)
-        finally:
-            self.core.forget(pending)
-        if pending.error is not None:
-            raise pending.error
-        return pending.response
-
-    async def _wait(self, holds: Callable[[], object], timeout_s: float | None) -> None:
-        deadline = None if timeout_s is None else time.monotonic() + timeout_s
-        self._flush()
-        while not holds():
-            if self.core.failed is not None:
-                raise self.core.failed
-            now = time.monotonic()
-            end = deadline
-            if self._absence.since is not None:
-                back_by = self._absence.since + self.timeout_s
-                if now >= back_by or not self._reconnect and self.core.loss:
-                    raise self.core.loss or NoConnection(f"no welcome from {self.server}")
-                end = back_by if end is None else min(end, back_by)
-            if deadline is not None and now >= deadline:
-                raise Timeout(f"no answer within {timeout_s:g} s")
-            changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-            self._waiting.add(changed)
-            try:
-                await asyncio.wait([changed], timeout=None if end is None else end - now)
-            finally:
-                self._waiting.discard(changed)
-
-    def _tell_all(self) -> None:
-        for waiting in self._waiting:
-            if not waiting.done():
-                waiting.set_result(None)
-
-    # ---- the line -------------------------------------------------------------------------------------------------
-
-    async def open(self) -> None:
-        self._keeper = asyncio.create_task(self._keep())
-        try:
-            while not self.core.connected:
-                if self.core.loss is not None:
-                    raise self.core.failed or self.core.loss
-                changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-                self._waiting = {changed}
-                await changed
-        except BaseException:
-            await self.close()
-            raise
-
-    async def close(self) -> None:
-        if self.core.failed is None:
-            self.core.close()
-        self._tell_all()
-        if self._keeper is not None:
-            self._keeper.cancel()
-            await asyncio.wait([self._keeper])
-
-    async def _keep(self) -> None:
-        """Reads, and connects again, until it is of no use any more."""
-        while self.core.failed is None:
-            try:
-                await self._serve_a_line()
-            except (OSError, NoConnection, DamagedData, TimeoutError) as error:
-                reason = reach.reason_of(error, self.server)
-                if isinstance(error, ssl.SSLCertVerificationError):
-                    self.core.failed = reason
-                self._absence.begin()
-                self.core.lost(reason)
-                self._tell_all()
-            await asyncio.sleep(max(0.0, self._absence.retry_at - time.monotonic()))
-
-    async def _serve_a_line(self) -> None:
-        async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
-            reader, writer = await asyncio.open_connection(self.server.host, self.server.port, limit=4 * reach.READ_BYTES)
-        try:
-            connection: socket.socket = writer.get_extra_info("socket")
-            reach.notice_silence(connection)
-            self._writer, self._line = writer, reach.Line(self.server, self._tls)
-            self.core.opened()
-            self._flush()
-            async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
-                while not self.core.connected:
-                    self._take(await reader.read(reach.READ_BYTES))
-            self._absence.end()
-            self._tell_all()
-            while True:
-                self._take(await reader.read(reach.READ_BYTES))
-                self._tell_all()
-        finally:
-            self._writer = None
-            writer.close()
-            with contextlib.suppress(OSError):
-                await writer.wait_closed()
-
-    def _take(self, data: bytes) -> None:
-        if not data:
-            raise reach.closed_by(self.server)
-        said = self._line.incoming(data)
-        if said:
-            self.core.received(said)
-        self._flush()
-
-    def _flush(self) -> None:
-        if self._writer is not None:
-            to_send = self._line.outgoing(self.core.outgoing())
-            if to_send:
-                self._writer.write(to_send)
 
 
 class _Closing:
@@ -654,12 +455,12 @@ def _events(link: Link, plan: Plan[Any]) -> OpeningStream[Events, stream_pb2.Eve
 
 def _say_what_the_plain_face_says() -> None:
     """Without its examples, which do not await anything."""
-    for ours, plain in ((Lab, blocking.Lab), (LocalLab, local_server.LocalLab), (World, blocking.World),
-                        (Past, blocking.Past), (Run, blocking.Run), (Frames, blocking.Frames), (Events, blocking.Events),
-                        (_Stream, blocking._Stream)):  # fmt: skip
+    for ours, theirs in ((Lab, plain.Lab), (LocalLab, local_server.LocalLab), (World, plain.World),
+                        (Past, plain.Past), (Run, plain.Run), (Frames, plain.Frames), (Events, plain.Events),
+                        (_Stream, plain._Stream)):  # fmt: skip
         for name, member in vars(ours).items():
             if not name.startswith("_") and inspect.isfunction(member):
-                member.__doc__ = (getattr(plain, name).__doc__ or "").partition(">>>")[0].rstrip()
+                member.__doc__ = (getattr(theirs, name).__doc__ or "").partition(">>>")[0].rstrip()
 
 
 _say_what_the_plain_face_says()
