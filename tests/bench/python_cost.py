@@ -1,6 +1,6 @@
 """What it costs to go through the Python package, on a real evod: generations beside `evod run`, and pictures as arrays.
 
-    PYTHONPATH=build/release/python python_cost.py EVOD [--rounds N] [--seconds S] [--organisms N] [--json]
+    python_cost.py EVOD PACKAGE [--rounds N] [--seconds S] [--organisms N] [--json]
 
 Generations: the same hundred of the default world, on one thread, first by `evod run`, then by World.run() with something
 called for each; of many rounds, one after the other in each. Whatever starting takes is left out of both. Where other
@@ -14,15 +14,26 @@ import pathlib
 import resource
 import statistics
 import subprocess
+import sys
 import time
 
 import numpy
-from bench_client import benchmark_world, print_figures, spread
 
-import evod
-from evod import framing
-from evod.picture_decoder import FrameDecoder
-from evod.v1 import stream_pb2
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("evod", help="the program")
+parser.add_argument("package", help="where the Python package is: build/release/python")
+parser.add_argument("--rounds", type=int, default=9)
+parser.add_argument("--seconds", type=float, default=10)
+parser.add_argument("--organisms", type=int, default=10_000)
+parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+options = parser.parse_args()
+sys.path.insert(0, options.package)
+
+import evod  # noqa: E402
+from bench_client import benchmark_world, print_figures, spread  # noqa: E402
+from evod import framing  # noqa: E402
+from evod.picture_decoder import FrameDecoder  # noqa: E402
+from evod.v1 import stream_pb2  # noqa: E402
 
 GENERATIONS, SUBSCRIPTIONS = 100, 4
 
@@ -71,10 +82,10 @@ def by_package(program, seed):
 
 def generations(program, rounds):
     pairs = [(by_program(program, seed), by_package(program, seed)) for seed in range(1, rounds + 1)]
-    return {"evod run, s": spread([a[0] for a, _ in pairs]), "package, s": spread([b[0] for _, b in pairs]),
-            "package / evod run": spread([b[0] / a[0] for a, b in pairs]),
-            "package / evod run, processor s of what simulates": spread([b[1] / a[1] for a, b in pairs]),
-            "Python, processor ms of a generation": spread([1e3 * b[2] / GENERATIONS for _, b in pairs])}
+    return {"evod_run_s": spread([a[0] for a, _ in pairs]), "package_s": spread([b[0] for _, b in pairs]),
+            "ratio": spread([b[0] / a[0] for a, b in pairs]),
+            "ratio_of_processor_s_of_what_simulates": spread([b[1] / a[1] for a, b in pairs]),
+            "python_processor_ms_a_generation": spread([1e3 * b[2] / GENERATIONS for _, b in pairs])}
 
 
 def look_at(frame):
@@ -117,22 +128,9 @@ def pictures(program, organisms, seconds):
         for _, body in reader.frames():
             look_at(decoder.decode(stream_pb2.SnapshotFrame.FromString(body)))
     alone_per_s = len(data) / (time.perf_counter() - began)
-    return {"frames come per s": come_per_s, "ticks per s meanwhile": ticks_per_s, "frames decoded per s, alone": alone_per_s,
-            "kB of a frame": statistics.mean(map(len, data)) / 1e3}
+    return {"organisms": organisms, "come_per_s": come_per_s, "ticks_per_s": ticks_per_s, "decoded_alone_per_s": alone_per_s,
+            "frame_bytes": statistics.mean(map(len, data))}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("evod", help="the program")
-    parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--seconds", type=float, default=10)
-    parser.add_argument("--organisms", type=int, default=10_000)
-    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
-    options = parser.parse_args()
-    print_figures({"generations": generations(options.evod, options.rounds),
-                   f"pictures of {options.organisms} organisms": pictures(options.evod, options.organisms, options.seconds)},
-                  options.json)
-
-
-if __name__ == "__main__":
-    main()
+print_figures({"generations": generations(options.evod, options.rounds),
+               "pictures": pictures(options.evod, options.organisms, options.seconds)}, options.json)

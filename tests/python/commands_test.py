@@ -272,6 +272,8 @@ class Access(unittest.TestCase):
             evod.connect(address, key=key)
         with self.assertRaises(evod.NoConnection):
             evod.connect(address)
+        with evod.local() as clear, self.assertRaisesRegex(evod.NoConnection, "no TLS with .*: wrong version number"):
+            evod.connect(clear.address, tls=True)
 
     def test_a_server_that_wants_a_certificate(self):
         subprocess.run([PROGRAM, "certificate", "localhost"], cwd=self.folder, check=True, capture_output=True)

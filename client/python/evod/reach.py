@@ -54,6 +54,8 @@ def reason_of(error: Exception, server: Endpoint) -> NoConnection | DamagedData:
         return NoConnection(f"no TLS with {server}: its certificate is not believed: {error.verify_message}")
     if isinstance(error, (ssl.SSLEOFError, ConnectionResetError, BrokenPipeError)):
         return closed_by(server)
+    if isinstance(error, ssl.SSLError):
+        return NoConnection(f"no TLS with {server}: {(error.reason or str(error)).replace('_', ' ').lower()}")
     if isinstance(error, TimeoutError):
         return NoConnection(
             f"nothing was heard from {server} within {CONNECT_TIMEOUT_S:g} s: check the address, and what lies between "

@@ -308,6 +308,20 @@ class Page:
                        count(round(row["keyframe_bytes"])) if row.get("keyframes") else "", digits(row["server_ms"]),
                        decoding(row)] for row in self.results["stream"]])
 
+    def package(self):
+        generations, pictures = self.results["package"]["generations"], self.results["package"]["pictures"]
+        organisms = count(pictures["organisms"])
+        return table(["", "median (least – greatest)"], [
+            ["100 generations by `evod run`, s", with_spread(generations["evod_run_s"])],
+            ["the same by `World.run()`, s", with_spread(generations["package_s"])],
+            ["ratio of the two", with_spread(generations["ratio"])],
+            ["ratio of the processor time of what simulates",
+             with_spread(generations["ratio_of_processor_s_of_what_simulates"])],
+            ["Python's own processor time of a generation, ms",
+             with_spread(generations["python_processor_ms_a_generation"])],
+            [f"pictures of {organisms} organisms that come as arrays, a second", digits(pictures["come_per_s"])],
+            ["the same from memory", digits(pictures["decoded_alone_per_s"])]])
+
     def drawing(self):
         def own(row):
             return digits(row["own_ms"]) if "own_ms" in row else ""

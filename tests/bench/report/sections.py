@@ -198,6 +198,12 @@ def stream(bench):
     return of_server(bench, "stream_cost.py")
 
 
+def package(bench):
+    quick = ["--rounds", 3, "--seconds", 2, "--organisms", 2_000] if bench.quick else []
+    return programs.run_json(python, bench.root / "tests/bench/python_cost.py", bench.program("evod"),
+                             bench.build / "python", "--json", *quick)
+
+
 def evod_run(bench, *arguments):
     """One `evod run`: what its last lines say, and the most memory it took."""
     with tempfile.TemporaryFile("w+") as text:
@@ -231,7 +237,7 @@ def whole_program(bench):
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
               "agreement": agreement, "instruction_sets": instruction_sets, "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
-              "server": server, "stream": stream, "drawing": drawing}
+              "server": server, "stream": stream, "package": package, "drawing": drawing}
 
 
 def columns():
