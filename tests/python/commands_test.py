@@ -67,6 +67,10 @@ class Commands(unittest.TestCase):
         error = self.refused(lambda: world.set(wrong), *(f"set_parameters.{name}" for name in wrong))
         self.assertNotIn("set_parameters", kinds)
         self.assertEqual(error.code_name, "INVALID_ARGUMENT")
+        got = {violation.field: violation.got for violation in error.violations}
+        for name, text in {"respawn": "'yes'", "mutation_step": "True", "survivors": "'half'", "population_size": "2.5",
+                           "mutation_chance": "1.5", "selection": "best"}.items():
+            self.assertEqual(got[f"set_parameters.{name}"], text)
         by_name = {"mutation_chance": w.ParameterValue(real=1.5), "selection": w.ParameterValue(choice="best")}
         assignments = [w.ParameterAssignment(name=name, value=value) for name, value in by_name.items()]
         told = self.refused(lambda: self.lab.request(set_parameters=c.SetParameters(parameters=assignments)),

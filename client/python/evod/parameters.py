@@ -50,6 +50,12 @@ class Description:
             return f"a whole number, {int(self.min)} to {int(self.max)}"
         return "true or false" if self.kind == "flag" else ", ".join(self.choices)
 
+    def got(self, value: object) -> str:
+        """A value that is not allowed: as the server writes it if it is of the right kind, otherwise as Python does."""
+        kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
+        right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
+        return text_of(value) if right_kind else repr(value)
+
     def message(self, value: object) -> world_pb2.ParameterValue | None:
         """The value as it is sent; None if it is not allowed."""
         if self.kind == "choice":
@@ -111,7 +117,7 @@ class Registry(Mapping[str, Description]):
             if description is None:
                 violations.append(Violation(field_prefix + name, self._instead_of(name), "an unknown name"))
             elif (message := description.message(value)) is None:
-                violations.append(Violation(field_prefix + name, description.allowed, text_of(value)))
+                violations.append(Violation(field_prefix + name, description.allowed, description.got(value)))
             else:
                 made.append(world_pb2.ParameterAssignment(name=name, value=message))
         if violations:
