@@ -50,6 +50,16 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(ended, list(range(1, 21)))
             self.assertEqual([organism.id for organism in asked], [i % 50 for i in range(200)])
 
+    async def test_more_can_be_asked_at_once_than_a_server_takes(self):
+        async with evod.aio.local() as lab:
+            world = await lab.world()
+
+            async def ask():
+                return [(await world.set(food_health=value)).revision for value in range(5)]
+
+            revisions = await asyncio.gather(*(ask() for _ in range(50)))
+            self.assertEqual(len({revision for told in revisions for revision in told}), 50 * 5)
+
     async def first_of(self, run, count):
         return [(await anext(run)).number for _ in range(count)]
 

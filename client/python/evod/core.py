@@ -236,7 +236,8 @@ class Core:
         """Sends what has not been sent, as far as the server's limit on unanswered requests goes."""
         if not self.connected or self.welcome is None:
             return
-        most = self.welcome.limits.requests_in_flight_max or 32
+        # An answer counts for the server until it knows that it has been sent: we may have it, and ask again, before that.
+        most = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
         for of_first in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
                 if len(self._in_flight) >= most:

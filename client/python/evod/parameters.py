@@ -5,7 +5,7 @@ import dataclasses
 import difflib
 import math
 import operator
-from typing import Any, Iterator, Mapping, Union
+from typing import Iterator, Mapping, Union
 
 import numpy
 
@@ -152,15 +152,8 @@ class Parameters(Mapping[str, Parameter]):
     """
 
     def __init__(self, registry: Registry, message: world_pb2.ParameterSet) -> None:
-        self._parameters = {
-            state.name: Parameter(
-                **_fields(registry[state.name]),
-                value=value_of(state.value),
-                pending=value_of(state.pending) if state.HasField("pending") else None,
-            )
-            for state in message.parameters
-            if state.name in registry
-        }
+        self._registry = registry
+        self._states = {state.name: state for state in message.parameters if state.name in registry}
         self._revision = message.revision
 
     @property
@@ -169,21 +162,28 @@ class Parameters(Mapping[str, Parameter]):
         return self._revision
 
     def __getitem__(self, name: str) -> Parameter:
-        return self._parameters[name]
+        state = self._states[name]
+        return Parameter(
+            **vars(self._registry[name]),
+            value=value_of(state.value),
+            pending=value_of(state.pending) if state.HasField("pending") else None,
+        )
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._parameters)
+        return iter(self._states)
 
     def __len__(self) -> int:
-        return len(self._parameters)
+        return len(self._states)
 
     def __getattr__(self, name: str) -> Value:
-        if name.startswith("_") or name not in self._parameters:
-            raise AttributeError(_no_such(name, self._parameters))
-        return self._parameters[name].value
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._states:
+            raise AttributeError(_no_such(name, self._states))
+        return value_of(self._states[name].value)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._parameters]
+        return [*super().__dir__(), *self._states]
 
     def __repr__(self) -> str:
         return f"<{len(self)} parameters, revision {self.revision}>"
@@ -234,10 +234,6 @@ def _description(message: world_pb2.ParameterDescription) -> Description:
         effect=_EFFECTS.get(message.effect, ""),
         help=message.help,
     )
-
-
-def _fields(description: Description) -> dict[str, Any]:
-    return {field.name: getattr(description, field.name) for field in dataclasses.fields(Description)}
 
 
 def _no_such(name: str, known: Mapping[str, object]) -> str:
