@@ -1,4 +1,4 @@
-"""Makes the message classes of evod.v1 with protoc while the package is built; all else is told in pyproject.toml.
+"""Makes the message classes of evod.v1 with protoc, and version.py, while the package is built; pyproject.toml tells the rest.
 
 They are made from the proto folder of evod's sources. $PROTOC names another protoc than the one on the path.
 """
@@ -18,7 +18,9 @@ sources = here.parent.parent
 class BuildWithMessages(build_py):
     def run(self) -> None:
         super().run()
-        make_messages(here if self.editable_mode else pathlib.Path(self.build_lib))
+        folder = here if self.editable_mode else pathlib.Path(self.build_lib)
+        make_messages(folder)
+        (folder / "evod" / "version.py").write_text(f'"""Made by setup.py."""\n__version__ = "{version()}"\n')
 
 
 def make_messages(folder: pathlib.Path) -> None:

@@ -39,7 +39,28 @@ def unpack(data):
     return picture_decoder._unpack(data, 1 << 28)
 
 
-class Decoder(unittest.TestCase):
+class Told(unittest.TestCase):
+    """What a core is told, and says."""
+
+    def core(self):
+        core = Core(token="", client_name="test", server="lab:1")
+        core.opened()
+        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=4, control_frame_bytes_max=500))
+        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
+        core.outgoing()
+        return core
+
+    def sent(self, core):
+        reader = framing.FrameReader()
+        reader.feed(core.outgoing())
+        return [session_pb2.ClientMessage.FromString(body) for _, body in reader.frames()]
+
+    def answer(self, core, request_id, **response):
+        message = session_pb2.ServerMessage(response=c.Response(request_id=request_id, **response))
+        core.received(framing.encode(message.SerializeToString()))
+
+
+class Decoder(Told):
     @classmethod
     def setUpClass(cls):
         with evod.local(seed=3, experiment=BUSY) as lab:
@@ -196,6 +217,28 @@ class Decoder(unittest.TestCase):
             with self.assertRaises(evod.DamagedData):
                 picture_decoder.FrameDecoder().decode(message)
 
+    def test_after_a_damaged_picture_a_keyframe_is_asked_for_once_and_waited_for(self):
+        core = self.core()
+        subscription = core.subscribe(c.Request(subscribe_snapshots=c.SubscribeSnapshots(world="a", rate_hz=1)))
+        self.answer(core, 1, subscription=c.Subscription(subscription_id=4, rate_hz=1))
+        self.sent(core)
+        keyframe, *deltas = (copy.deepcopy(message) for message in self.deltas[:4])
+        for message in (keyframe, *deltas):
+            message.subscription_id = 4
+
+        def come(message):
+            body = message.SerializeToString()
+            core.received(b"EV\1\2" + struct.pack("<I", len(body)) + body)
+            said = self.sent(core)
+            return len(subscription.arrived), [message.request.WhichOneof("request") or "acknowledged" for message in said]
+
+        self.assertEqual(come(keyframe), (1, []))  # is acknowledged when it is taken
+        deltas[0].checksum ^= 1
+        self.assertEqual(sorted(come(deltas[0])[1]), ["acknowledged", "request_keyframe"])
+        self.assertEqual(come(deltas[1]), (1, ["acknowledged"]))
+        self.assertEqual(come(keyframe), (2, []))
+        self.assertEqual(core.damaged_picture_count, 1)
+
     def test_tiles_that_lie_are_refused(self):
         lies = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
         for field, value in lies:
@@ -214,16 +257,8 @@ class Decoder(unittest.TestCase):
             picture_decoder.FrameDecoder().decode(message)
 
 
-class Streams(unittest.TestCase):
+class Streams(Told):
     """The core, told of a line that damages what it carries."""
-
-    def core(self):
-        core = Core(token="", client_name="test", server="lab:1")
-        core.opened()
-        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=4, control_frame_bytes_max=500))
-        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
-        core.outgoing()
-        return core
 
     def test_frames_that_lie_end_the_line(self):
         for head, what in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"),
@@ -251,15 +286,6 @@ class Streams(unittest.TestCase):
                 reader.feed(data[at:at + size])
                 bodies += [body for _, body in reader.frames()]
             self.assertEqual(bodies, [message.SerializeToString()] * 3)
-
-    def sent(self, core):
-        reader = framing.FrameReader()
-        reader.feed(core.outgoing())
-        return [session_pb2.ClientMessage.FromString(body) for _, body in reader.frames()]
-
-    def answer(self, core, request_id, **response):
-        message = session_pb2.ServerMessage(response=c.Response(request_id=request_id, **response))
-        core.received(framing.encode(message.SerializeToString()))
 
     def test_requests_wait_for_their_turn_and_are_sent_again_in_order(self):
         core = self.core()

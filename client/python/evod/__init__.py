@@ -25,10 +25,11 @@ from evod.v1.world_pb2 import (
     RUN_STATE_TERMINATED as TERMINATED,
     RUN_STATE_WAITING as WAITING,
 )
+from evod.version import __version__
 
 __all__ = [
     "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab",
     "LocalLab", "NoConnection", "Organisms", "Parameter", "Parameters", "Past", "PAUSED", "Population", "Registry",
     "Run", "RunFile", "RUNNING", "TERMINATED", "Tile", "Timeout", "Violation", "WAITING", "World", "connect",
-    "local", "open_run",
+    "__version__", "local", "open_run",
 ]  # fmt: skip

@@ -24,6 +24,7 @@ from evod import framing, picture_decoder
 from evod.errors import DamagedData, Error, NoConnection, refusal
 from evod.pictures import Frame
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
+from evod.version import __version__
 
 PROTOCOL_VERSION = 1
 EVENTS_KEPT = 10_000
@@ -96,17 +97,16 @@ class Core:
     def __init__(self, *, token: str, client_name: str, server: object) -> None:
         self._hello = session_pb2.ClientMessage(
             hello=session_pb2.Hello(
-                protocol_version=PROTOCOL_VERSION, client_name=client_name, token=token
+                protocol_version=PROTOCOL_VERSION, client_name=client_name, client_version=__version__, token=token
             )
         )
         self._server = server  # where it is, for people
         self.client_key = secrets.token_hex(16)
         self.welcome: session_pb2.Welcome | None = None  # of the last server
         self.connected = False  # welcomed, on the line there is now
-        self.sessions = 0
         self.failed: Error | None = None  # why there will be no other session
         self.loss: Error | None = None  # why there is no line, after one was lost
-        self.damaged_pictures = 0
+        self.damaged_picture_count = 0  # thrown away because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
         self._last_request_id = 0
@@ -274,7 +274,6 @@ class Core:
             )
             raise self.failed
         self.welcome, self.connected, self.loss = message.welcome, True, None
-        self.sessions += 1
         # What was subscribed before comes first, so that nobody misses what the requests bring about.
         for subscription in self._live_subscriptions():
             self._ask_for(subscription)
@@ -359,7 +358,7 @@ class Core:
             try:
                 frame = sight.decoder.decode(message)
             except DamagedData:
-                self.damaged_pictures += 1
+                self.damaged_picture_count += 1
                 sight.keyframe_needed = True
                 # A server whose keyframes are damaged too is not asked again and again.
                 if message.codec == stream_pb2.CODEC_DELTA and sight.keyframe_requests < _KEYFRAME_REQUESTS_MAX:

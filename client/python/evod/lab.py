@@ -96,6 +96,11 @@ class Lab(_Closing):
         return self._link.core.client_key
 
     @property
+    def damaged_picture_count(self) -> int:
+        """Pictures that were thrown away because they could not be decoded; others were asked for."""
+        return self._link.core.damaged_picture_count
+
+    @property
     def role(self) -> str:
         """What we may do there: "viewer", "controller" or "admin"."""
         return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()

@@ -120,6 +120,10 @@ class Lab(_Closing):
         return self._link.core.client_key
 
     @property
+    def damaged_picture_count(self) -> int:
+        return self._link.core.damaged_picture_count
+
+    @property
     def role(self) -> str:
         return str(session_pb2.Role.Name(self.welcome.role)).removeprefix("ROLE_").lower()
 
