@@ -200,6 +200,15 @@ class Reaching(unittest.TestCase):
         done = subprocess.run(["/usr/bin/python3", "-c", script], capture_output=True, text=True)
         until(lambda: self.is_gone(done.stdout.strip()), "the server is gone")
 
+    def test_a_local_server_that_is_forgotten_ends_but_not_before(self):
+        lab = evod.local(experiment={"population_size": numpy.int64(7)})
+        address, run = lab.address, lab.world().run(1)
+        del lab
+        self.assertEqual(next(run).organism_count, 7)
+        self.assertFalse(self.is_gone(address))
+        del run
+        until(lambda: self.is_gone(address), "the server is gone")
+
     def is_gone(self, address):
         try:
             evod.connect(address).close()

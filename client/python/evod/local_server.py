@@ -9,11 +9,14 @@ import signal
 import subprocess
 import tempfile
 import threading
+import weakref
 from typing import IO, Mapping
 
+import numpy
+
+from evod.errors import Error, wrong_argument
 from evod.lab import Lab, connect
 from evod.link import Link
-from evod.errors import Error
 from evod.program import program_of
 
 _END_S = 30  # for a server to write down its runs; then it is killed
@@ -32,7 +35,8 @@ def local(
     program: str | os.PathLike[str] | None = None,
     timeout_s: float = 30.0,
 ) -> LocalLab:
-    """Starts a server of your own at a free port, and connects with it; close() stops it, as does the end of the program.
+    """Starts a server of your own at a free port, and connects with it. close() stops it; so does who forgets it, and the end
+    of the program.
 
     seed         of its world; otherwise drawn by chance.
     experiment   its parameters: an experiment file, or a mapping of names to values; otherwise the default world.
@@ -61,6 +65,7 @@ class LocalLab(Lab):
     def __init__(self, link: Link, server: Server) -> None:
         super().__init__(link)
         self._server = server
+        weakref.finalize(link, server.end)  # all that comes of the lab holds the link: nobody can use it any more
 
     def close(self) -> None:
         super().close()
@@ -90,11 +95,17 @@ def start(
         if isinstance(experiment, Mapping):
             path = os.path.join(folder, "default.json")  # worlds are called after their file
             with open(path, "w", encoding="utf-8") as file:
-                json.dump(dict(experiment), file)
+                json.dump(dict(experiment), file, default=_plain)
             command += ["--experiment", path]
         elif experiment is not None:
             command += ["--experiment", os.fspath(experiment)]
         return Server(command)
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, numpy.generic):
+        return value.item()
+    raise wrong_argument("experiment", "numbers, text, true and false", repr(value))
 
 
 class Server:
@@ -127,10 +138,15 @@ class Server:
         with log:
             for line in log:
                 self.lines.append(line.rstrip())
+        self._keeper.wait()
 
-    def stop(self) -> None:
+    def end(self) -> None:
+        """Does not wait for it."""
         if self._keeper.stdin is not None and not self._keeper.stdin.closed:
             self._keeper.stdin.close()
+
+    def stop(self) -> None:
+        self.end()
         try:
             self._keeper.wait(_END_S)
         except subprocess.TimeoutExpired:
