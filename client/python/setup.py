@@ -1,4 +1,5 @@
-"""Makes the message classes of evod.v1 with protoc, and version.py, while the package is built; pyproject.toml tells the rest.
+"""Makes the message classes of evod.v1 with protoc, and version.py, while the package is built; pyproject.toml tells all
+else.
 
 They are made from the proto folder of evod's sources. $PROTOC names another protoc than the one on the path.
 """

@@ -79,8 +79,8 @@ def tls_context(
 ) -> ssl.SSLContext | None:
     """None: in the clear. TLS with `tls`, and wherever a file is named.
 
-    ca: PEM file of who vouches for the server; else the environment's EVOD_CA, else those that the system trusts. cert, key: PEM files of a certificate
-    of ours, for servers that want one; the key may be in the same file.
+    ca         PEM file of who vouches for the server; else the environment's EVOD_CA, else those that the system trusts.
+    cert, key  PEM files of a certificate of ours, for servers that want one; the key may be in the same file.
     """
     if key is not None and cert is None:
         raise Error("key is given without cert: a key is of a certificate")
