@@ -94,6 +94,14 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             relay.close()
             server.kill()
 
+    async def test_a_fault_ends_what_waits(self):
+        async with evod.aio.local() as lab:
+            events = await lab.events()
+            lab._link.core._take_event = lambda event: 1 // 0
+            with self.assertRaisesRegex(evod.Error, "the client has a fault: ZeroDivisionError"):
+                await lab.create_world("any")
+                await anext(events)
+
     async def test_no_server_is_told_of(self):
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1:1: start one with `evod`"):
             await evod.aio.connect("127.0.0.1:1")

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import threading
 import unittest
+from signal import SIGINT
 from unittest import mock
 
 import numpy
@@ -146,6 +147,21 @@ class Commands(unittest.TestCase):
                 files.enter_context(open("/dev/null"))
             with evod.connect(self.lab.address) as lab:
                 self.assertEqual([info.name for info in lab.worlds()], ["default"])
+
+    def test_an_interrupt_leaves_the_connection_whole(self):
+        events = self.lab.world().events()
+        for _ in range(3):
+            def interrupt():
+                until(lambda: self.lab._link._reading, "it waits")
+                os.kill(os.getpid(), SIGINT)
+
+            waits = threading.Thread(target=interrupt)
+            waits.start()
+            with self.assertRaises(KeyboardInterrupt):
+                next(events)
+            waits.join()
+            self.assertEqual([info.name for info in self.lab.worlds()], ["default"])
+        events.close()
 
     def test_closing_ends_what_waits(self):
         lab = evod.connect(self.lab.address)

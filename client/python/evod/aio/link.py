@@ -130,6 +130,11 @@ class Link:
                 self._absence.begin()
                 self.core.lost(reason)
                 self._tell_all()
+            except Exception as error:  # nobody is to wait for ever, on account of a fault in here
+                self.core.failed = Error(f"the client has a fault: {error!r}")
+                self.core.lost(self.core.failed)
+                self._tell_all()
+                raise
             await asyncio.sleep(max(0.0, self._absence.retry_at - time.monotonic()))
 
     async def _serve_a_line(self) -> None:
