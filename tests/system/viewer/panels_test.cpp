@@ -2,6 +2,7 @@
 // has.
 //
 // Runs under Xvfb.
+#include "tests/support/waiting.h"
 #include "tests/system/viewer/support/processes.h"
 
 #include <SFML/Graphics/Image.hpp>
@@ -302,6 +303,7 @@ TEST_F(PanelsTest, APanelLeavesTheTimeLineFree) {
     run.mutable_run_until_tick()->set_world("default");
     run.mutable_run_until_tick()->set_tick(30);
     server.ask(run);
+    ASSERT_TRUE(wait_until([&] { return server.state().tick() == 30; })); // else the line's middle is an earlier tick
     for (const char* when : {"wait widget left/Present\nkey F8\n", "key F8\nwait widget left/Present\n"}) {
         const Ran ran = play(server.address() + " --past 1 --size 1280x720",
                              std::string{"wait picture\n"} + when + "click \"left/time line\"\nwait tick 10\nquit\n");

@@ -353,6 +353,8 @@ TEST_F(WatchTest, WithoutAConnectionItDoesNotSayThatTheWorldRuns) {
 TEST_F(WatchTest, AReplayThatIsOverSaysSoAndIsNotRun) {
     Watch watch{wanted()};
     auto session = begin(watch);
+    send_picture(session, 7, 1, 899);
+    until(watch, [&] { return watch.picture() != nullptr; });
     const auto question = session.read_request();
     ASSERT_TRUE(question.has_get_statistics());
     evod::v1::ServerMessage message;
