@@ -9,10 +9,11 @@
 #include "tests/bench/stopwatch.h"
 
 #include <CLI/CLI.hpp>
+#include <boost/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,9 +22,9 @@ namespace {
 
 using namespace evod;
 
-double median(std::vector<double> values) {
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    return values[values.size() / 2];
+boost::json::object spread(std::vector<double> values) {
+    std::ranges::sort(values);
+    return {{"median", values[values.size() / 2]}, {"min", values.front()}, {"max", values.back()}};
 }
 
 } // namespace
@@ -72,13 +73,15 @@ int main(int argc, char** argv) {
     const bench::Stopwatch packing;
     const std::string packed = storage::pack(state);
     const double packing_ms = 1e3 * packing.elapsed().wall;
-    std::printf("%u organisms, %zu threads: a tick %.2f ms (median), longest without a checkpoint %.2f ms; with one "
-                "%.2f ms (median), longest %.2f ms, of which copying %.2f ms (median), longest %.2f ms; packing "
-                "%.1f ms, %.2f MB; run file %.1f MB\n",
-                organisms, executor->thread_count(), median(plain_ms), std::ranges::max(plain_ms),
-                median(with_checkpoint_ms), std::ranges::max(with_checkpoint_ms), median(copying_ms),
-                std::ranges::max(copying_ms), packing_ms, 1e-6 * static_cast<double>(packed.size()),
-                1e-6 * static_cast<double>(std::filesystem::file_size(path)));
+    std::cout << boost::json::object{{"organisms", organisms},
+                                     {"threads", executor->thread_count()},
+                                     {"tick_ms", spread(plain_ms)},
+                                     {"tick_with_checkpoint_ms", spread(with_checkpoint_ms)},
+                                     {"copying_ms", spread(copying_ms)},
+                                     {"packing_ms", packing_ms},
+                                     {"packed_bytes", packed.size()},
+                                     {"run_file_bytes", std::filesystem::file_size(path)}}
+              << '\n';
     for (const char* suffix : {"", "-wal", "-shm"})
         std::filesystem::remove(path + suffix);
 }

@@ -299,6 +299,21 @@ class Page:
                          f"{count(storage['organisms'])}, s", with_spread(storage["ready_after_kill_s"])])
         return table(["", "median (least – greatest)"], rows)
 
+    def run_files(self):
+        figures = self.results["run_files"]
+        generations = count(figures["generations"])
+        rows = [["bytes by which the default world's file grows in a generation of 50",
+                 count(round(figures["bytes_per_generation"]))],
+                [f"from any moment of {generations} generations to any other, ms", with_spread(figures["seek_ms"])],
+                [f"`evod run`, {generations} generations, all threads, s", with_spread(figures["run_s"])],
+                ["`evod verify` of the same run, s", with_spread(figures["verify_s"])],
+                ["ratio of the two", with_spread(figures["verify_over_run"])]]
+        for at in figures["checkpoints"]:
+            rows += [[f"a tick of {count(at['organisms'])} organisms, their run kept, ms", with_spread(at["tick_ms"])],
+                     ["the same with a checkpoint", with_spread(at["tick_with_checkpoint_ms"])],
+                     ["a checkpoint, bytes", count(at["packed_bytes"])]]
+        return table(["", "median (least – greatest)"], rows)
+
     def stream(self):
         def decoding(row):
             return digits(row["decode_ms"]) if "decode_ms" in row else ""

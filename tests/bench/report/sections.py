@@ -194,6 +194,13 @@ def server(bench):
     return {**of_server(bench, "viewer_cost.py"), "storage": of_server(bench, "storage_cost.py")}
 
 
+def run_files(bench):
+    quick = ["--checkpoints", 3] if bench.quick else []
+    checkpoints = [programs.run_json(bench.program("checkpoint_bench"), "--organisms", organisms, *quick)
+                   for organisms in (10_000, 100_000)]
+    return {**of_server(bench, "run_file_cost.py"), "checkpoints": checkpoints}
+
+
 def stream(bench):
     return of_server(bench, "stream_cost.py")
 
@@ -237,7 +244,7 @@ def whole_program(bench):
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
               "agreement": agreement, "instruction_sets": instruction_sets, "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
-              "server": server, "stream": stream, "package": package, "drawing": drawing}
+              "server": server, "run_files": run_files, "stream": stream, "package": package, "drawing": drawing}
 
 
 def columns():
