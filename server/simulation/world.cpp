@@ -174,9 +174,14 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
         populations.push_back({&migrated[i], fitness_[i]});
     }
     evolution::migrate(migrants, populations);
-    if (const auto before = founders_; !before.empty())
+    if (!founders_.empty()) {
+        std::vector<std::uint32_t> of_migrants; // all leave before anybody arrives
+        of_migrants.reserve(migrants.size());
         for (const evolution::Migrant& migrant : migrants)
-            founders_[migrant.to][migrant.replaces] = before[migrant.from][migrant.organism];
+            of_migrants.push_back(founders_[migrant.from][migrant.organism]);
+        for (std::size_t i = 0; i < migrants.size(); ++i)
+            founders_[migrants[i].to][migrants[i].replaces] = of_migrants[i];
+    }
 
     MigrationHappened happened{.generation = moment_.generation, .edges = {}};
     for (const evolution::Migrant& migrant : migrants) { // ordered by (to, from)
