@@ -307,6 +307,7 @@ Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
     if (auto refused = refusal_of(command.name))
         return *refused;
     (void)world.take_events(); // were told of its origin
+    world.become_fork();
     const std::uint64_t tick = world.moment().tick;
     entries_.push_back(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
     entries_.back()->storage = storage_;

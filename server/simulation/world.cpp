@@ -17,7 +17,7 @@ World::World(const Parameters& parameters, base::Seed seed, FirstPopulation firs
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-             base::Executor& executor, FirstPopulation first_population)
+             base::Executor& executor, FirstPopulation first_population, Founders founders)
     : seed_{seed}
     , parameters_{opening.parameters}
     , first_population_{std::move(first_population)}
@@ -28,6 +28,9 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     EVOD_ASSERT(moment_.generation_tick == 0);
     make_islands();
     begin_generation(std::move(born), executor);
+    if (moment_.generation > 1)
+        founders_ = std::move(founders);
+    EVOD_ASSERT(founders_.empty() || founders_.size() == islands_.size());
 }
 
 World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_since) const {
@@ -40,9 +43,15 @@ World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_s
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
         before.pop_back();
-    World world{seed_, opening, std::move(born), std::move(before), executor, first_population_};
-    world.founders_ = founders_;
-    return world;
+    return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_};
+}
+
+void World::become_fork() {
+    const auto is_inherited = [&](const GenerationRows& rows) {
+        return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
+    };
+    while (!history_.empty() && !is_inherited(history_.front()))
+        history_.pop_front();
 }
 
 void World::reset(base::Seed seed) {

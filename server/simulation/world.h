@@ -51,10 +51,16 @@ class GenerationRows {
     std::shared_ptr<const std::vector<GenerationStatistics>> rows_;
 };
 
+/// Per island, by id: to whom of the first generation the first parents of its organisms lead back, from island to
+/// island too; those are numbered from 0, island after island. No part of the state; none: nobody knows.
+using Founders = std::vector<std::vector<std::uint32_t>>;
+
 class World {
   public:
     /// Generations of statistics kept in memory; older ones are forgotten.
     static constexpr std::size_t history_generations_kept = 10'000;
+    /// Of how many generations before its first a fork knows the statistics, at most.
+    static constexpr std::size_t history_generations_inherited = 1'000;
     /// Of ended generations, oldest first.
     using History = std::deque<GenerationRows>;
 
@@ -69,8 +75,9 @@ class World {
     /// born              what bred it, shape (islands): opening.parameters.active.island_count.
     /// history           statistics of the generations before it, as far as they are known.
     /// first_population  with which the run began, and begins if it is reset; nullptr: it is drawn.
+    /// founders          of who was born; those of the first generation are known anyway.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-          base::Executor& executor, FirstPopulation first_population = {});
+          base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {});
 
     /// Another world, as this one was at the first moment of its generation; with what was asked of it since, if this
     /// is still that moment.
@@ -112,9 +119,9 @@ class World {
     const Opening& opening() const { return opening_; }
 
     std::span<const Island> islands() const { return islands_; }
-    /// By id, to whom of the first generation the first parents of an island's organisms lead back, from island to
-    /// island too; those are numbered from 0, island after island. Empty unless this world, or the one that it was made
-    /// from, was there from its first generation on.
+    /// Of the present generation; empty if this world began with a later one than the first, and was not told.
+    const Founders& founders() const { return founders_; }
+    /// Of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
     bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
@@ -125,6 +132,8 @@ class World {
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
+    /// Forgets the statistics that a fork does not inherit.
+    void become_fork();
     /// Of the generation that is over: per island, by id. Empty while none is.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
 
@@ -157,8 +166,8 @@ class World {
     Opening opening_;
     History history_;
     std::vector<EventKind> events_;
-    std::vector<std::vector<std::uint32_t>> founders_; // per island, by id; no part of the state; none: nobody knows
-    std::vector<std::vector<double>> fitness_;         // of the generation that is over: per island, by id
+    Founders founders_;
+    std::vector<std::vector<double>> fitness_; // of the generation that is over: per island, by id
     evolution::Progress progress_;
     std::vector<std::uint8_t> died_out_; // in the present tick, per island; working memory, kept warm
 };

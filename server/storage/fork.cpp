@@ -15,10 +15,13 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                                              std::to_string(origin.identity().first_generation) + " to " +
                                                  std::to_string(origin.last_generation()),
                                              std::to_string(generation)}}};
-    const auto there = Rerun::at(origin, generation, executor);
+    auto there = Rerun::at(origin, generation, executor);
     if (!there)
         return there.error();
-    const GenerationBegun begun = beginning_of(there->world());
+    simulation::World world = std::move(*there).take();
+    world.become_fork();
+    const GenerationBegun begun = beginning_of(world);
+    const Inherited inherited = inherited_by(world);
     using namespace std::chrono;
     const auto file =
         RunFile::create(path,
@@ -30,8 +33,9 @@ base::Result<void> fork(RunFile& origin, std::uint64_t generation, const std::st
                          .first_generation = generation,
                          .first_tick = begun.opening.moment.tick,
                          .forked_from = origin.identity().run_id,
+                         .inherited_generations = inherited.history.size(),
                          .first_population = origin.identity().first_population},
-                        {.keep_every = origin.keep_every()}, &begun);
+                        {.keep_every = origin.keep_every()}, &begun, nullptr, &inherited);
     if (!file)
         return file.error();
     (*file)->begin();

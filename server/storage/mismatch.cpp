@@ -115,6 +115,11 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
                    simulated.clamped_count);
 }
 
+Found compare_island(const std::string& of_island, const std::vector<std::uint32_t>& stored,
+                     const std::vector<std::uint32_t>& simulated) {
+    return compare_organisms<std::uint32_t>("the founder", of_island, stored, simulated);
+}
+
 Found compare_island(const std::string& of_island, const IslandOutcome& stored, const IslandOutcome& simulated) {
     if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness))
         return found;
@@ -207,6 +212,10 @@ Found compare(const simulation::Opening& stored, const simulation::Opening& simu
 }
 
 Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const simulation::Founders& stored, const simulation::Founders& simulated) {
     return compare_islands(stored, simulated);
 }
 

@@ -21,6 +21,7 @@ std::optional<Mismatch> compare(const simulation::Opening& stored, const simulat
 // One entry per island.
 std::optional<Mismatch> compare(const std::vector<evolution::NextGeneration>& stored,
                                 const std::vector<evolution::NextGeneration>& simulated);
+std::optional<Mismatch> compare(const simulation::Founders& stored, const simulation::Founders& simulated);
 std::optional<Mismatch> compare(const std::vector<IslandOutcome>& stored, const std::vector<IslandOutcome>& simulated);
 std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatistics>& stored,
                                 const std::vector<simulation::GenerationStatistics>& simulated);

@@ -20,6 +20,7 @@ RunIdentity identity_of(const simulation::Entry& entry) {
             .first_generation = entry.world.moment().generation,
             .first_tick = entry.world.moment().tick,
             .forked_from = {},
+            .inherited_generations = 0,
             .first_population = entry.world.first_population()};
 }
 
@@ -133,7 +134,10 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     RunRecorder run{thread_};
     RunIdentity identity = identity_of(entry);
     identity.forked_from = origin;
+    Inherited inherited = inherited_by(entry.world);
+    identity.inherited_generations = inherited.history.size();
     StorageThread::Batch first = run.first(entry.world, std::move(command));
+    first.records.emplace_back(std::move(inherited));
     // Within a generation its beginning is not enough: what came since is known to the origin alone.
     if (entry.world.moment().generation_tick > 0)
         first.records.emplace_back(checkpoint_of(entry.world, 0, executor));

@@ -5,10 +5,19 @@
 namespace evod::storage {
 
 GenerationBegun beginning_of(const simulation::World& world) {
-    GenerationBegun begun{.opening = world.opening(), .born = {}};
+    GenerationBegun begun{.opening = world.opening(), .born = {}, .founders = world.founders()};
     for (const simulation::Island& island : world.islands())
         begun.born.push_back(island.born());
     return begun;
+}
+
+Inherited inherited_by(const simulation::World& world) {
+    Inherited inherited{world.history()};
+    // Of its own first generation, if that is over.
+    while (!inherited.history.empty() &&
+           inherited.history.back().front().generation >= world.opening().moment.generation)
+        inherited.history.pop_back();
+    return inherited;
 }
 
 Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_entries, base::Executor& executor) {

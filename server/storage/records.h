@@ -28,6 +28,7 @@ struct RunIdentity {
     std::uint64_t first_generation = 1;
     std::uint64_t first_tick = 0; // the ticks before it; with those of a generation over, it begins with a checkpoint
     std::optional<simulation::RunId> forked_from = std::nullopt;
+    std::uint64_t inherited_generations = 0; // right before its first, of which it has its origin's statistics
     simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
 };
 
@@ -52,9 +53,17 @@ struct JournalEntry {
 struct GenerationBegun {
     simulation::Opening opening;
     std::vector<evolution::NextGeneration> born; // one per island
+    simulation::Founders founders = {};
 };
 /// The beginning of the generation that a world is in.
 GenerationBegun beginning_of(const simulation::World& world);
+
+/// What a fork has from its origin: the statistics of the generations before its own first.
+struct Inherited {
+    simulation::World::History history;
+};
+/// world  a fork, in its first generation.
+Inherited inherited_by(const simulation::World& world);
 
 /// What became of a generation's organisms on one island, by id.
 struct IslandOutcome {

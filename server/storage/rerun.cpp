@@ -133,7 +133,8 @@ Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, con
                           base::Executor& executor) {
     const simulation::Moment& opening = begun.opening.moment;
     simulation::World world{file.identity().seed, begun.opening, begun.born,
-                            std::move(history),   executor,      file.identity().first_population};
+                            std::move(history),   executor,      file.identity().first_population,
+                            begun.founders};
     if (checkpoint == nullptr) {
         // A change that came between the end of a generation and the beginning of the next is in that beginning
         // already.

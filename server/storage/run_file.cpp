@@ -26,6 +26,7 @@ const Columns generation_columns = {"generation",   "first_tick",        "simula
                                     "best_fitness", "last_best_fitness", "last_died_out"};
 const Columns population_columns = {"generation",     "island",        "organism_count", "elite_count",
                                     "survivor_count", "clamped_count", "chromosomes",    "parents"};
+const Columns founders_columns = {"generation", "island", "founders"};
 const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
 const Columns link_columns = {"tick", "low", "high"};
 const Columns checkpoint_columns = {
@@ -48,9 +49,19 @@ CREATE TABLE checkpoint (tick INTEGER PRIMARY KEY, generation INTEGER NOT NULL, 
     high INTEGER NOT NULL, state BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT;
 )";
 
+constexpr const char* founders_table = R"(
+CREATE TABLE founders (generation INTEGER NOT NULL, island INTEGER NOT NULL, founders BLOB NOT NULL,
+    checksum INTEGER NOT NULL, PRIMARY KEY (generation, island)) STRICT;
+)";
+
+constexpr const char* inherited_statistics = "inherited_statistics"; // the table
+
+/// Of a generation that is not held any more, these have no rows.
+constexpr const char* tables_of_held_generations[] = {"population", "founders", "outcome", "checkpoint"};
+
 /// The DDL of a table whose columns have the types of an SQLite "STRICT" table.
-std::string statistics_table() {
-    std::string sql = "CREATE TABLE statistics (";
+std::string statistics_table(const char* table) {
+    std::string sql = "CREATE TABLE " + std::string{table} + " (";
     simulation::for_each_number(simulation::GenerationStatistics{}, [&](const std::string& name, auto value) {
         sql += name + (std::is_floating_point_v<decltype(value)> ? " REAL" : " INTEGER") + " NOT NULL, ";
     });
@@ -109,6 +120,16 @@ std::optional<std::uint64_t> as_read(const std::optional<std::int64_t>& value) {
     return value ? std::optional{static_cast<std::uint64_t>(*value)} : std::nullopt;
 }
 
+void write_statistics(RowWriter& row, const simulation::GenerationStatistics& statistics) {
+    simulation::for_each_number(statistics, [&](const std::string&, auto value) {
+        if constexpr (std::is_floating_point_v<decltype(value)>)
+            row.real(value);
+        else
+            row.integer(static_cast<std::int64_t>(value));
+    });
+    row.finish();
+}
+
 simulation::GenerationStatistics read_statistics(RowReader& row) {
     simulation::GenerationStatistics statistics;
     simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
@@ -144,6 +165,7 @@ struct RunFile::Writers {
         , parameters{database, "parameters", parameters_columns}
         , generation{database, "generation", generation_columns}
         , population{database, "population", population_columns}
+        , founders{database, "founders", founders_columns}
         , outcome{database, "outcome", outcome_columns}
         , statistics{database, "statistics", statistics_columns()}
         , link{database, "state_hash", link_columns}
@@ -151,7 +173,8 @@ struct RunFile::Writers {
         , end{database, "end_mark", end_columns}
         , thinned{database, "thinned", thinned_columns} {}
 
-    RowWriter journal, parameters, generation, population, outcome, statistics, link, checkpoint, end, thinned;
+    RowWriter journal, parameters, generation, population, founders, outcome, statistics, link, checkpoint, end,
+        thinned;
 };
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
@@ -191,7 +214,7 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
 
 Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const RunIdentity& identity,
                                                  const Options& options, const GenerationBegun* beginning,
-                                                 const Checkpoint* checkpoint) {
+                                                 const Checkpoint* checkpoint, const Inherited* inherited) {
     std::error_code error;
     if (std::filesystem::exists(path, error))
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
@@ -203,6 +226,8 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
         (*file)->write(*beginning);
     if (checkpoint != nullptr)
         (*file)->write(*checkpoint);
+    if (inherited != nullptr)
+        (*file)->write(*inherited);
     if (auto committed = (*file)->commit(); !committed)
         return committed.error();
     if (auto settled = (*file)->settle(); !settled)
@@ -339,15 +364,26 @@ CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEG
     journal_entries INTEGER NOT NULL, generations INTEGER NOT NULL, links INTEGER NOT NULL,
     checksum INTEGER NOT NULL) STRICT;
 )");
-    database_.run(statistics_table().c_str());
+    database_.run(statistics_table("statistics").c_str());
+    database_.run(statistics_table(inherited_statistics).c_str());
     database_.run(checkpoint_table);
+    database_.run(founders_table);
 }
 
 void RunFile::bring_up_to_date() {
     if (format_ == format_version)
         return;
-    database_.run(checkpoint_table);
-    RowWriter{database_, "run", run_columns}.text("first_tick").text(std::to_string(identity_.first_tick)).finish();
+    RowWriter run{database_, "run", run_columns};
+    if (format_ < 2) {
+        database_.run(checkpoint_table);
+        run.text("first_tick").text(std::to_string(identity_.first_tick)).finish();
+    }
+    database_.run(statistics_table(inherited_statistics).c_str());
+    run.text("inherited_generations").text("0").finish();
+    database_.run(founders_table);
+    RowWriter founders{database_, "founders", founders_columns};
+    for (Statement born{database_, "SELECT generation, island FROM population"}; born.row();)
+        founders.integer(born.integer(0)).integer(born.integer(1)).bytes({}).finish(); // nobody knows
     database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
     format_ = format_version;
 }
@@ -365,6 +401,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("first_generation", std::to_string(identity.first_generation));
     put("first_tick", std::to_string(identity.first_tick));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
+    put("inherited_generations", std::to_string(identity.inherited_generations));
     put("keep_every", std::to_string(keep_every_));
     if (!identity.first_population)
         return;
@@ -420,6 +457,8 @@ Result<void> RunFile::read_identity() {
             take(number_from<std::uint64_t>(value), identity_.first_generation);
         } else if (key == "first_tick") {
             take(number_from<std::uint64_t>(value), identity_.first_tick);
+        } else if (key == "inherited_generations") {
+            take(number_from<std::uint64_t>(value), identity_.inherited_generations);
         } else if (key == "seed") {
             take(number_from<std::uint64_t>(value), identity_.seed.value);
         } else if (key == "parameters") {
@@ -447,8 +486,8 @@ Result<void> RunFile::read_identity() {
     }
     if (database_.failed())
         return failure();
-    const std::size_t keys = format < 2 ? 9 : 10;
-    if (known != keys)
+    const std::size_t keys = format < 2 ? 9 : format < 3 ? 10 : 11;
+    if (known != keys || identity_.inherited_generations >= std::max<std::uint64_t>(identity_.first_generation, 1))
         return damaged("its table run");
     if (format < 2)
         identity_.first_tick = static_cast<std::uint64_t>(database_.number(
@@ -720,6 +759,36 @@ Result<std::vector<evolution::NextGeneration>> RunFile::born_in(const simulation
     return islands;
 }
 
+Result<simulation::Founders> RunFile::founders_of(const GenerationBegun& begun) {
+    simulation::Founders islands;
+    if (format_ < 3)
+        return islands;
+    const std::uint64_t generation = begun.opening.moment.generation;
+    const auto bad = [&] { return damaged("the founders of generation " + std::to_string(generation)); };
+    RowReader rows{database_,
+                   "founders",
+                   founders_columns,
+                   "generation = ? ORDER BY island",
+                   {static_cast<std::int64_t>(generation)}};
+    bool known = true;
+    while (rows.next()) {
+        (void)rows.integer();
+        const std::uint64_t island = rows.natural();
+        const std::string founders = rows.bytes();
+        if (!rows.sound() || island != islands.size() || island >= begun.born.size() ||
+            !read_into(islands.emplace_back(), founders))
+            return bad();
+        known &= islands.back().size() == static_cast<std::size_t>(begun.born[island].genes.cols());
+        if (!known && !founders.empty())
+            return bad();
+    }
+    if (database_.failed())
+        return failure();
+    if (islands.size() != begun.born.size())
+        return bad();
+    return known ? std::move(islands) : simulation::Founders{};
+}
+
 Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
     auto opening = opening_of(generation);
     if (!opening)
@@ -729,7 +798,12 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
     auto born = born_in(**opening);
     if (!born)
         return born.error();
-    return std::optional{GenerationBegun{.opening = **opening, .born = *std::move(born)}};
+    GenerationBegun begun{.opening = **opening, .born = *std::move(born)};
+    auto founders = founders_of(begun);
+    if (!founders)
+        return founders.error();
+    begun.founders = *std::move(founders);
+    return std::optional{std::move(begun)};
 }
 
 Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generation) {
@@ -783,29 +857,44 @@ Result<std::vector<simulation::GenerationStatistics>> RunFile::statistics_of(std
 
 Result<simulation::World::History> RunFile::history(std::uint64_t before, std::size_t count) {
     simulation::World::History history;
-    const auto end = static_cast<std::int64_t>(before);
-    const std::int64_t first =
-        std::max(static_cast<std::int64_t>(identity_.first_generation), end - static_cast<std::int64_t>(count));
+    const std::uint64_t own = identity_.first_generation;
+    const std::uint64_t first =
+        std::max(own - identity_.inherited_generations, before - std::min<std::uint64_t>(before, count));
+    if (first < own) {
+        if (auto read = read_history(inherited_statistics, first, std::min(own, before), history); !read)
+            return read.error();
+        if (first + history.size() < std::min(own, before))
+            return damaged(row_of(inherited_statistics, first + history.size()));
+    }
+    if (auto read = read_history("statistics", std::max(first, own), before, history); !read)
+        return read.error();
+    return history;
+}
+
+Result<void> RunFile::read_history(const char* table, std::uint64_t first, std::uint64_t end,
+                                   simulation::World::History& history) {
     RowReader numbers{database_,
-                      "statistics",
+                      table,
                       statistics_columns(),
                       "generation >= ? AND generation < ? ORDER BY generation, island",
-                      {first, end}};
-    std::vector<simulation::GenerationStatistics> rows; // of one generation
+                      {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)}};
+    std::uint64_t expected = first;
+    std::vector<simulation::GenerationStatistics> rows; // of that generation
     while (numbers.next()) {
         const simulation::GenerationStatistics statistics = read_statistics(numbers);
-        if (statistics.island == 0 && !rows.empty())
+        if (statistics.island == 0 && !rows.empty()) {
             history.emplace_back(std::exchange(rows, {}));
-        const std::uint64_t expected = static_cast<std::uint64_t>(first) + history.size();
+            ++expected;
+        }
         if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size())
-            return damaged(row_of("statistics", expected));
+            return damaged(row_of(table, expected));
         rows.push_back(statistics);
     }
     if (!rows.empty())
         history.emplace_back(std::move(rows));
     if (database_.failed())
         return failure();
-    return history;
+    return {};
 }
 
 Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t until) {
@@ -903,6 +992,8 @@ Result<void> RunFile::check() {
         return sound;
     if (auto entries = journal(); !entries)
         return entries.error();
+    if (auto inherited = history(identity_.first_generation, identity_.inherited_generations); !inherited)
+        return inherited.error();
     const std::uint64_t last = last_generation();
     for (std::uint64_t generation = identity_.first_generation; generation <= last; ++generation) {
         const auto begun = beginning_of(generation);
@@ -1029,6 +1120,13 @@ std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
     return parameter_sets_;
 }
 
+void RunFile::write(const Inherited& inherited) {
+    RowWriter statistics{database_, inherited_statistics, statistics_columns()};
+    for (const simulation::GenerationRows& generation : inherited.history)
+        for (const simulation::GenerationStatistics& island : generation)
+            write_statistics(statistics, island);
+}
+
 void RunFile::write(const GenerationBegun& begun) {
     const simulation::Opening& opening = begun.opening;
     const std::int64_t parameters = number_of(opening.parameters);
@@ -1055,12 +1153,17 @@ void RunFile::write(const GenerationBegun& begun) {
             .bytes(bytes_of(born.genes))
             .bytes(bytes_of(born.parents))
             .finish();
+        writers()
+            .founders.natural(opening.moment.generation)
+            .natural(island)
+            .bytes(begun.founders.empty() ? std::span<const std::byte>{} : bytes_of(begun.founders[island]))
+            .finish();
     }
     // The one before is the last no more.
     const std::uint64_t before = opening.moment.generation - 1;
     if (before <= identity_.first_generation || (before - identity_.first_generation) % keep_every_ == 0)
         return;
-    for (const char* table : {"population", "outcome", "checkpoint"})
+    for (const char* table : tables_of_held_generations)
         database_.run(("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before)).c_str());
 }
 
@@ -1075,15 +1178,8 @@ void RunFile::write(const GenerationEnded& ended) {
             .bytes(bytes_of(outcome.cause))
             .finish();
     }
-    for (const simulation::GenerationStatistics& statistics : ended.statistics) {
-        simulation::for_each_number(statistics, [&](const std::string&, auto value) {
-            if constexpr (std::is_floating_point_v<decltype(value)>)
-                writers().statistics.real(value);
-            else
-                writers().statistics.integer(static_cast<std::int64_t>(value));
-        });
-        writers().statistics.finish();
-    }
+    for (const simulation::GenerationStatistics& statistics : ended.statistics)
+        write_statistics(writers().statistics, statistics);
 }
 
 void RunFile::write(const HashLink& link) {
@@ -1156,7 +1252,7 @@ Result<void> RunFile::thin_if_large() {
     next.until_tick = static_cast<std::uint64_t>(database_.number(
         ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));
     begin();
-    for (const char* table : {"population", "outcome", "checkpoint"})
+    for (const char* table : tables_of_held_generations)
         database_.run(("DELETE FROM " + std::string{table} + " WHERE generation <= " + until + " AND (generation - " +
                        std::to_string(identity_.first_generation) + ") % " + every + " != 0")
                           .c_str());

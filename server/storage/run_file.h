@@ -26,7 +26,8 @@ enum class Durability {
 class RunFile {
   public:
     static constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the file
-    static constexpr std::int64_t format_version = 2;          // 1 had no checkpoints
+    // 1 had no checkpoints; 2 no founders, and a fork did not know what had been before it.
+    static constexpr std::int64_t format_version = 3;
 
     static constexpr int checkpoints_kept = 3;
 
@@ -43,10 +44,12 @@ class RunFile {
     ///
     /// beginning   of identity.first_generation; may follow later for a run that begins with generation 1.
     /// checkpoint  at identity.first_tick, for a run that begins within that generation; it is never taken out.
+    /// inherited   identity.inherited_generations of them.
     static base::Result<std::unique_ptr<RunFile>> create(const std::string& path, const RunIdentity& identity,
                                                          const Options& options,
                                                          const GenerationBegun* beginning = nullptr,
-                                                         const Checkpoint* checkpoint = nullptr);
+                                                         const Checkpoint* checkpoint = nullptr,
+                                                         const Inherited* inherited = nullptr);
     /// A new file under a name that is not its own yet; as after begin(). Until commit() it holds nothing.
     static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
                                                             const Options& options);
@@ -100,7 +103,7 @@ class RunFile {
     base::Result<std::optional<GenerationEnded>> outcome_of(std::uint64_t generation);
     /// One entry per island; nothing if the generation has not ended, or its statistics are not held.
     base::Result<std::vector<simulation::GenerationStatistics>> statistics_of(std::uint64_t generation);
-    /// Of the last `count` generations before that one, oldest first.
+    /// Of the last `count` generations before that one, oldest first; those that a fork inherited among them.
     base::Result<simulation::World::History> history(std::uint64_t before, std::size_t count);
     /// In order of ticks, those after `after` up to `until`.
     base::Result<std::vector<HashLink>> links(std::uint64_t after, std::uint64_t until);
@@ -122,6 +125,7 @@ class RunFile {
 
     void begin();
     void write(const JournalEntry& entry);
+    void write(const Inherited& inherited);
     void write(const GenerationBegun& begun);
     void write(const GenerationEnded& ended);
     void write(const HashLink& link);
@@ -160,6 +164,10 @@ class RunFile {
     /// The first tick after this one of which is_link_held().
     std::uint64_t next_link_held(std::uint64_t after) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
+    base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
+    /// Adds the generations of a table of statistics that follow the last, or `first`, and come before `end`.
+    base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
+                                    simulation::World::History& history);
     base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
     std::int64_t number_of(const simulation::ParameterSet& parameters);
     /// What the database says has gone wrong, with the path.

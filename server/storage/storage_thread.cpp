@@ -21,8 +21,16 @@ std::size_t bytes_of(const StorageThread::Record& record) {
     return std::visit(
         base::Overloaded{
             [](const JournalEntry& entry) { return small + entry.origin.request.size() + entry.answer.size(); },
+            [](const Inherited& inherited) {
+                std::size_t bytes = small;
+                for (const simulation::GenerationRows& rows : inherited.history)
+                    bytes += rows.size() * sizeof(simulation::GenerationStatistics);
+                return bytes;
+            },
             [](const GenerationBegun& begun) {
                 std::size_t bytes = small;
+                for (const std::vector<std::uint32_t>& founders : begun.founders)
+                    bytes += founders.size() * sizeof(std::uint32_t);
                 for (const evolution::NextGeneration& born : begun.born)
                     bytes += static_cast<std::size_t>(born.genes.cols()) *
                              (sizeof(float) * evolution::gene_count + sizeof(evolution::Parents));

@@ -46,7 +46,8 @@ class StorageThread {
     using RunNumber = std::uint64_t;
     /// Called on the storage thread once the record is on the disk.
     using Done = std::function<void()>;
-    using Record = std::variant<JournalEntry, GenerationBegun, GenerationEnded, HashLink, Checkpoint, EndMark>;
+    using Record =
+        std::variant<JournalEntry, Inherited, GenerationBegun, GenerationEnded, HashLink, Checkpoint, EndMark>;
     /// What has become of a run's checkpoint; shared with whoever made it.
     struct CheckpointWriting {
         std::atomic<bool> waits = false;                                          // for the disk

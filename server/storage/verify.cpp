@@ -23,6 +23,7 @@ using simulation::World;
 struct StoredGeneration {
     simulation::Opening opening;
     std::vector<NextGeneration> born;
+    simulation::Founders founders; // none: nobody knows
     std::vector<IslandOutcome> outcomes;
     std::vector<simulation::GenerationStatistics> statistics;
     std::vector<HashLink> links;
@@ -62,8 +63,8 @@ class StretchCheck {
             differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
         if (done_.difference)
             return done_;
-        auto rerun =
-            Rerun::from(file_, {.opening = first.opening, .born = first.born}, beginning(), changes, {}, executor_);
+        auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born, .founders = first.founders},
+                                 beginning(), changes, {}, executor_);
         if (!rerun)
             return rerun.error();
         const double began_s = rerun->world().moment().simulated_s;
@@ -90,6 +91,10 @@ class StretchCheck {
             differ(moment, *std::move(mismatch));
         return !mismatch;
     }
+    bool same_births(const StoredMoment& moment, const StoredGeneration& stored, const GenerationBegun& simulated) {
+        return same(moment, compare(stored.born, simulated.born)) &&
+               (stored.founders.empty() || same(moment, compare(stored.founders, simulated.founders)));
+    }
     void agrees_with_beginning_of(const StoredGeneration& generation) {
         agrees_ = {generation.opening.moment.generation, generation.opening.moment.tick};
         agreeing_part_ = "the beginning of the generation";
@@ -107,8 +112,7 @@ class StretchCheck {
         if (!identity.forked_from) {
             const World world{identity.parameters, identity.seed, identity.first_population};
             const GenerationBegun begun = beginning_of(world);
-            (void)(same(agrees_, compare(first.opening, begun.opening)) &&
-                   same(agrees_, compare(first.born, begun.born)));
+            (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
         } else {
             // What a fork began with, nothing in its file gives again but what was asked for.
             const StoredCheckpoint* within = beginning();
@@ -207,7 +211,7 @@ class StretchCheck {
         rerun.turn_over(executor_);
         const GenerationBegun again = beginning_of(world);
         if (same(moment, compare(next.opening, again.opening)) && !next.born.empty())
-            (void)same(moment, compare(next.born, again.born));
+            (void)same_births(moment, next, again);
     }
 
     const RunFile& file_;
@@ -263,6 +267,7 @@ class Reader {
         if (*begun) {
             generation.opening = (*begun)->opening;
             generation.born = std::move((*begun)->born);
+            generation.founders = std::move((*begun)->founders);
         } else {
             const auto opening = file_.opening_of(number);
             if (!opening)

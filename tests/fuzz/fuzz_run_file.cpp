@@ -1,5 +1,6 @@
 // Any bytes as a run file: read, checked and exported, or refused. What the bytes are is said by the first of them: the
-// file itself; bytes to change in a sound file; or columns to change in its rows, which get their checksums.
+// file itself; bytes to change in a sound file; or columns to change in its rows, which get their checksums; and
+// whether that file is of a run from its first generation on, of a fork, or of the format before.
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"
 #include "server/console/export.h"
@@ -9,6 +10,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -48,34 +50,50 @@ struct Place {
         require(mkdtemp(name.data()) != nullptr);
         folder = name;
         path = folder + "/run.evod";
-        write_sound();
-        std::ifstream file{path, std::ios::binary};
-        sound.assign(std::istreambuf_iterator<char>{file}, {});
-        require(!sound.empty());
+        write_sound(true);
+        sound[1] = take_away();
+        write_sound(false);
+        sound[0] = take_away();
+        put(sound[0].data(), sound[0].size());
+        write_older();
+        sound[2] = take_away();
     }
     ~Place() { std::filesystem::remove_all(folder); }
     Place(const Place&) = delete;
     Place& operator=(const Place&) = delete;
 
-    void write_sound() {
+    /// Of three generations, or of what follows on a moment within the third.
+    void write_sound(bool fork) const {
         storage::RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {3}, .parameters = {}};
         identity.parameters.population_size = 4;
         identity.parameters.generation_s = 1;
         identity.parameters.island_count = 2;
-        const auto file = storage::RunFile::create(path, identity, {});
-        require(file.has_value());
         base::InlineExecutor executor;
         simulation::World world{identity.parameters, identity.seed};
+        if (fork) {
+            while (world.moment().generation < 3 || world.moment().generation_tick < 10)
+                world.advance_tick(executor);
+            world.become_fork();
+            identity.forked_from = simulation::RunId{3, 4};
+            identity.first_generation = world.moment().generation;
+            identity.first_tick = world.moment().tick;
+        }
+        const storage::Inherited inherited = storage::inherited_by(world);
+        identity.inherited_generations = inherited.history.size();
+        const storage::GenerationBegun begun = storage::beginning_of(world);
+        const storage::Checkpoint checkpoint = storage::checkpoint_of(world, 0, executor);
+        const auto file =
+            storage::RunFile::create(path, identity, {}, &begun, fork ? &checkpoint : nullptr, &inherited);
+        require(file.has_value());
         (*file)->begin();
-        (*file)->write(storage::beginning_of(world));
         v1::Request request;
         request.mutable_pause();
         (*file)->write(storage::JournalEntry{.number = 1,
-                                             .tick = 0,
+                                             .tick = identity.first_tick,
                                              .origin = {"client", "key", 1, request.SerializeAsString()},
                                              .answer = "answer",
                                              .control = {}});
-        while (world.moment().generation < 3) {
+        while (world.moment().generation < identity.first_generation + 2) {
             const std::uint64_t generation = world.moment().generation;
             world.advance_tick(executor);
             if (world.moment().generation != generation)
@@ -90,6 +108,26 @@ struct Place {
         require((*file)->check().has_value());
     }
 
+    /// Of the file that is there one of format 2.
+    void write_older() const {
+        sqlite3* database = nullptr;
+        require(sqlite3_open(path.c_str(), &database) == SQLITE_OK);
+        require(sqlite3_exec(database,
+                             "DROP TABLE founders; DROP TABLE inherited_statistics;"
+                             "DELETE FROM run WHERE key = 'inherited_generations'; PRAGMA user_version = 2",
+                             nullptr, nullptr, nullptr) == SQLITE_OK);
+        sqlite3_close(database);
+        const auto file = storage::RunFile::open_read_only(path);
+        require(file.has_value() && (*file)->check().has_value());
+    }
+
+    std::string take_away() const {
+        std::ifstream file{path, std::ios::binary};
+        std::string bytes{std::istreambuf_iterator<char>{file}, {}};
+        require(!bytes.empty() && std::filesystem::remove(path));
+        return bytes;
+    }
+
     /// Puts a file there, and nothing else.
     void put(const char* bytes, std::size_t count) const {
         for (const char* suffix : {"-wal", "-shm", "-journal"})
@@ -97,21 +135,25 @@ struct Place {
         std::ofstream{path, std::ios::binary}.write(bytes, static_cast<std::streamsize>(count));
     }
 
-    std::string folder, path, sound;
+    std::string folder, path;
+    std::array<std::string, 3> sound; // of a run, of a fork, of the format before
 };
 
 /// One column of one row gets another value, of its kind, and the row its checksum.
 void change_row(sqlite3* database, Bytes& bytes) {
-    constexpr const char* tables[] = {"run",     "journal",    "parameters", "generation", "population",
-                                      "outcome", "statistics", "state_hash", "end_mark",   "thinned"};
+    constexpr const char* tables[] = {
+        "run",        "journal",  "parameters", "generation", "population",           "outcome",   "statistics",
+        "state_hash", "end_mark", "thinned",    "founders",   "inherited_statistics", "checkpoint"};
     const std::string table = tables[take<std::uint8_t>(bytes) % std::size(tables)];
     const int row = take<std::uint8_t>(bytes), wanted = take<std::uint8_t>(bytes);
     if (table == "thinned")
         sqlite3_exec(database, "INSERT INTO thinned VALUES (1, 2, 1, 60, 0)", nullptr, nullptr, nullptr);
     sqlite3_stmt* read = nullptr;
-    sqlite3_prepare_v2(database,
-                       ("SELECT rowid, * FROM " + table + " LIMIT 1 OFFSET " + std::to_string(row % 8)).c_str(), -1,
-                       &read, nullptr);
+    // The format before has not all of them.
+    if (sqlite3_prepare_v2(database,
+                           ("SELECT rowid, * FROM " + table + " LIMIT 1 OFFSET " + std::to_string(row % 16)).c_str(),
+                           -1, &read, nullptr) != SQLITE_OK)
+        return;
     if (sqlite3_step(read) == SQLITE_ROW) {
         const int columns = sqlite3_column_count(read) - 2; // without rowid and checksum
         storage::RowChecksum checksum{table};
@@ -169,12 +211,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const Place place;
     std::cerr.rdbuf(nullptr); // what is refused is said there
     Bytes bytes{data, size};
-    switch (take<std::uint8_t>(bytes) % 3) {
+    const auto kind = take<std::uint8_t>(bytes);
+    const std::string& sound = place.sound[kind / 3 % place.sound.size()];
+    switch (kind % 3) {
     case 0:
         place.put(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         break;
     case 1: {
-        std::string changed = place.sound;
+        std::string changed = sound;
         while (!bytes.empty()) {
             const std::size_t at = take<std::uint32_t>(bytes) % changed.size();
             changed[at] = static_cast<char>(take<std::uint8_t>(bytes));
@@ -183,7 +227,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
     }
     default: {
-        place.put(place.sound.data(), place.sound.size());
+        place.put(sound.data(), sound.size());
         sqlite3* database = nullptr;
         require(sqlite3_open(place.path.c_str(), &database) == SQLITE_OK);
         while (!bytes.empty())

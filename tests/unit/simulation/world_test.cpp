@@ -247,6 +247,18 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
 }
 
+TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
+    parameters.fitness = FitnessFunction::GeneSum;
+    World world = make();
+    while (world.moment().generation < 1'005 || !world.generation_over())
+        world.advance_tick(executor);
+    world.become_fork();
+    EXPECT_EQ(world.history().size(), World::history_generations_inherited + 1) << "and its own first";
+    EXPECT_EQ(world.history().front().front().generation, 5u);
+    world.become_fork();
+    EXPECT_EQ(world.history().front().front().generation, 5u);
+}
+
 TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
     const auto outcome_with = [&](std::vector<Assignment> assignments) {
         World world{*assign(parameters, assignments), base::Seed{5}};

@@ -245,7 +245,8 @@ TEST_F(CheckpointTest, AFileOfTheFormatBeforeIsReadAndGoneOnWith) {
         hash = run.world().hash();
     }
     (void)file_left();
-    change("DROP TABLE checkpoint; DELETE FROM run WHERE key = 'first_tick'; PRAGMA user_version = 1");
+    change("DROP TABLE checkpoint; DROP TABLE founders; DROP TABLE inherited_statistics;"
+           "DELETE FROM run WHERE key IN ('first_tick', 'inherited_generations'); PRAGMA user_version = 1");
     {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());

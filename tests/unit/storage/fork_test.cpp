@@ -1,6 +1,7 @@
 #include "server/storage/fork.h"
 
 #include "server/storage/archive.h"
+#include "server/storage/mismatch.h"
 #include "server/storage/rerun.h"
 #include "tests/unit/storage/recorded_run.h"
 
@@ -30,6 +31,12 @@ class ForkTest : public testing::Test {
     base::Result<void> fork_at(std::uint64_t generation, const std::string& name) {
         const auto origin = RunFile::open_read_only(data->file_of("w"));
         return fork(**origin, generation, data->file_of(name), name, {generation, 3}, executor);
+    }
+    /// From generation 1 on.
+    static void expect_history(const simulation::World::History& history, RunFile& origin, std::size_t generations) {
+        ASSERT_EQ(history.size(), generations);
+        for (std::size_t i = 0; i < generations; ++i)
+            EXPECT_FALSE(compare(history[i], *origin.statistics_of(i + 1))) << "generation " << i + 1;
     }
 
     TemporaryFolder folder;
@@ -94,6 +101,61 @@ TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
     EXPECT_TRUE(fork(**origin, 5, data->file_of("second"), "second", {}, executor));
     EXPECT_EQ(fork(**origin, 2, data->file_of("third"), "third", {}, executor).error().code,
               base::RefusalCode::NotFound);
+}
+
+TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
+    ASSERT_TRUE(fork_at(4, "fork"));
+    const auto origin = RunFile::open_read_only(data->file_of("w"));
+    auto file = RunFile::open(data->file_of("fork"), {});
+    EXPECT_EQ((*file)->identity().inherited_generations, 3u);
+    auto recovered = recover(**file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    expect_history(recovered->world.history(), **origin, 3);
+    EXPECT_FALSE(recovered->world.founders().empty());
+    EXPECT_EQ(recovered->world.founders(), (*(*origin)->beginning_of(4))->founders);
+    EXPECT_EQ((*file)->last_generation_ended(), 0u) << "of its own";
+    while (!recovered->world.generation_over())
+        recovered->world.advance_tick(executor);
+    (*file)->begin();
+    (*file)->write(end_of(recovered->world));
+    recovered->world.turn_over(executor);
+    (*file)->write(beginning_of(recovered->world));
+    ASSERT_TRUE((*file)->commit());
+
+    ASSERT_TRUE(fork(**file, 5, data->file_of("second"), "second", {}, executor));
+    const auto second = RunFile::open_read_only(data->file_of("second"));
+    expect_history(recover(**second, executor)->world.history(), **origin, 4);
+    EXPECT_EQ((*second)->history(5, 2)->size(), 2u);
+
+    file->reset();
+    Database{data->file_of("fork"), Database::Mode::Write}.run("DELETE FROM inherited_statistics WHERE generation = 1");
+    EXPECT_THAT(to_text((*RunFile::open_read_only(data->file_of("fork")))->check().error()),
+                HasSubstr("inherited_statistics"));
+}
+
+TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
+    for (const std::uint64_t ticks : {360u, 400u}) { // a generation is over; within the next
+        const TemporaryFolder elsewhere;
+        auto there = *DataFolder::open(elsewhere.path());
+        StorageThread thread{{}};
+        RecordedRun run{there, thread};
+        run.advance(ticks);
+        run.fork({3, 4});
+        const simulation::World& forked = (*run.laboratory().find("fork"))->world;
+        EXPECT_EQ(forked.history().size(), 3u);
+        run.recorder().close_all(run.laboratory());
+        while (!thread.idle()) {
+        }
+        const auto file = RunFile::open_read_only(there.file_of("fork"));
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        const auto recovered = recover(**file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        ASSERT_EQ(recovered->world.history().size(), forked.history().size());
+        for (std::size_t i = 0; i < forked.history().size(); ++i)
+            EXPECT_FALSE(compare(recovered->world.history()[i], forked.history()[i]));
+        EXPECT_EQ(recovered->world.founders(), forked.founders());
+    }
 }
 
 TEST_F(ForkTest, IsRefusedWhereThereIsNothingToBeginWithOrAFileAlready) {

@@ -198,8 +198,8 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
     EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
     std::filesystem::remove(path);
     const std::string newer = recorded();
-    change(newer, "PRAGMA user_version = 3");
-    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 3"));
+    change(newer, "PRAGMA user_version = 4");
+    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 4"));
 }
 
 TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {

@@ -331,9 +331,11 @@ TEST_F(VerifyTest, AnotherBeginningIsTold) {
              {[](auto& begun) {
                   begun.born[0].genes.conservativeResize(Eigen::NoChange, 11);
                   begun.born[0].parents.pop_back();
+                  begun.founders[0].pop_back();
               },
               "the number of organisms on island 0"},
              {[](auto& begun) { begun.born[1].parents[4].second ^= 1; }, "the parents of organism 4 on island 1"},
+             {[](auto& begun) { begun.founders[1][3] ^= 1; }, "the founder of organism 3 on island 1"},
              {[](auto& begun) { ++begun.born[0].elite_count; }, "the number of the elite on island 0"},
              {[](auto& begun) { ++begun.born[0].survivor_count; }, "the number of survivors on island 0"},
              {[](auto& begun) { ++begun.born[1].clamped_count; }, "the number of genes put onto their bounds"},

@@ -1,0 +1,95 @@
+// Founders in run files: families are told apart in worlds that are made again from their file, whatever the way.
+#include "server/storage/rerun.h"
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace evod::storage {
+namespace {
+
+using testing::HasSubstr;
+
+class FoundersTest : public testing::Test {
+  protected:
+    /// Six generations and a half on two islands with migrants between them.
+    void record(std::uint64_t keep_every) {
+        StorageThread thread{{.keep_every = keep_every}};
+        RecordedRun run{data, thread};
+        for (int tick = 0; tick < 780; ++tick) {
+            run.advance(1);
+            founders.resize(run.world().moment().generation);
+            founders.back() = run.world().founders();
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    std::string path() const { return data.file_of("w"); }
+    void change(const char* sql) const {
+        Database database{path(), Database::Mode::Write};
+        database.run(sql);
+        ASSERT_FALSE(database.failed()) << database.error();
+    }
+
+    TemporaryFolder folder;
+    DataFolder data = *DataFolder::open(folder.path());
+    base::InlineExecutor executor;
+    std::vector<simulation::Founders> founders; // of each generation; before somebody left for another island
+};
+
+TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
+    for (const std::uint64_t keep_every : {1u, 3u}) {
+        record(keep_every);
+        ASSERT_EQ(founders.size(), 7u);
+        EXPECT_TRUE(std::ranges::any_of(founders, [](const simulation::Founders& islands) {
+            return std::ranges::any_of(islands[0], [](std::uint32_t founder) { return founder >= 12; });
+        })) << "nobody came from the other island";
+        const auto file = RunFile::open_read_only(path());
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        EXPECT_EQ(recover(**file, executor)->world.founders(), founders.back());
+        for (std::uint64_t generation = 1; generation <= 7; ++generation) {
+            const auto there = Rerun::at(**file, generation, executor);
+            ASSERT_TRUE(there) << to_text(there.error());
+            EXPECT_EQ(there->world().founders(), founders[generation - 1]) << generation;
+        }
+        folder.clear();
+    }
+}
+
+TEST_F(FoundersTest, OfAFileOfTheFormatBeforeNobodyKnows) {
+    record(1);
+    change("DROP TABLE founders; DROP TABLE inherited_statistics;"
+           "DELETE FROM run WHERE key = 'inherited_generations'; PRAGMA user_version = 2");
+    {
+        const auto file = RunFile::open_read_only(path());
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_TRUE((*file)->check());
+        EXPECT_TRUE(recover(**file, executor)->world.founders().empty());
+    }
+    const auto file = RunFile::open(path(), {});
+    auto recovered = recover(**file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    simulation::World& world = recovered->world;
+    while (!world.generation_over())
+        world.advance_tick(executor);
+    (*file)->begin();
+    (*file)->write(end_of(world));
+    world.turn_over(executor);
+    (*file)->write(beginning_of(world));
+    ASSERT_TRUE((*file)->commit());
+    const auto checked = (*file)->check();
+    EXPECT_TRUE(checked) << to_text(checked.error());
+    EXPECT_TRUE((*(*file)->beginning_of(8))->founders.empty());
+    EXPECT_EQ(Rerun::at(**file, 1, executor)->world().founders(), founders.front());
+}
+
+TEST_F(FoundersTest, ThatAreMissingAreNamed) {
+    record(1);
+    change("DELETE FROM founders WHERE generation = 5 AND island = 1");
+    const auto file = RunFile::open_read_only(path());
+    EXPECT_THAT(to_text((*file)->check().error()), HasSubstr("the founders of generation 5"));
+}
+
+} // namespace
+} // namespace evod::storage
