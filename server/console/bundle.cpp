@@ -103,6 +103,7 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
     if (!rerun)
         return rerun.error();
     const std::string model = std::to_string(identity.model_version);
+    const std::uint64_t left_out = tables::generations_out_of_reach(file);
     return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
            to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
            " |\n| made with | evod " + identity.evod_version + ", model version " + model +
@@ -114,7 +115,11 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
            "    evod verify " + file_name +
            "\n\nThe first finds files that were changed; the second simulates the run again and compares all that the "
            "run file holds: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
-           *rerun;
+           *rerun +
+           (left_out == 0 ? ""
+                          : "\nOf " + std::to_string(left_out) +
+                                " generations nothing is in organisms.csv and lineage.csv: the run file does not hold "
+                                "them any more, and the evod that made this folder cannot simulate them again.\n");
 }
 
 Result<void> fill(const tables::RunSource& run, const fs::path& folder) {

@@ -100,10 +100,11 @@ Result<void> export_to(const ExportOptions& options) {
         return held;
     const auto executor = runtime::make_executor(options.threads);
     const tables::RunSource run{**file, *executor};
+    using tables::RunTable;
+    if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage)
+        tell_what_is_left_out(**file);
     if (!*wanted)
         return write_bundle(run, options.bundle);
-    if ((*wanted)->table == tables::RunTable::Organisms)
-        tell_what_is_left_out(**file);
     std::ofstream output;
     if (!options.output.empty()) {
         output.open(options.output, std::ios::binary);

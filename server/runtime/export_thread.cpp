@@ -92,7 +92,7 @@ Result<void> ExportThread::write(const std::stop_token& stop) {
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held;
-    if (wanted_.table == tables::RunTable::Organisms)
+    if (wanted_.table == tables::RunTable::Organisms || wanted_.table == tables::RunTable::Lineage)
         generations_left_out_ = tables::generations_out_of_reach(**file);
     const auto executor = make_executor(1);
     PartBuffer buffer{*this, stop};

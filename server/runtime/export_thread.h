@@ -26,7 +26,7 @@ class ExportThread {
     struct Part {
         std::string text;
         bool last = false;                      // the table ends with it
-        std::uint64_t generations_left_out = 0; // tables::generations_out_of_reach(), of a table of organisms
+        std::uint64_t generations_left_out = 0; // tables::generations_out_of_reach(), of organisms or their lineage
     };
     /// Called on the export's thread; must not block.
     using Reply = std::function<void(base::Result<Part>)>;

@@ -19,6 +19,12 @@ struct WholeGeneration {
     std::optional<GenerationEnded> ended; // nothing while it has not
 };
 
+/// Whether a generation that has begun can be told of: what is not held is simulated again, unless it follows another
+/// model.
+inline bool is_in_reach(RunFile& file, std::uint64_t generation) {
+    return !file.other_model() || file.held_at_or_before(generation) == generation;
+}
+
 class GenerationReader {
   public:
     /// file  held still; outlives the reader, as does the executor.

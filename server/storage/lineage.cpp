@@ -43,8 +43,9 @@ Births births_of(WholeGeneration whole) {
 
 using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // by island, then organism
 
-/// Who bred in every place of `parents` when `children` were bred.
-Result<std::vector<std::vector<Place>>> breeders(const RunFile& file, const Births& parents, const Births& children) {
+/// Who bred in every place of `parents` when `children` were bred; nothing where nobody knows.
+std::optional<std::vector<std::vector<Place>>> breeders(const RunFile& file, const Births& parents,
+                                                        const Births& children) {
     std::vector<std::vector<Place>> places(parents.islands.size());
     std::vector<std::span<const double>> fitness;
     for (std::uint32_t island = 0; island < parents.islands.size(); ++island) {
@@ -53,8 +54,8 @@ Result<std::vector<std::vector<Place>>> breeders(const RunFile& file, const Birt
         fitness.emplace_back(parents.islands[island].fitness);
     }
     if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
-        if (auto refused = file.other_model())
-            return *refused;
+        if (file.other_model())
+            return std::nullopt;
         for (const evolution::Migrant& migrant :
              choose_migrants(fitness, children.parameters, file.identity().seed, parents.generation))
             places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
@@ -62,10 +63,11 @@ Result<std::vector<std::vector<Place>>> breeders(const RunFile& file, const Birt
     return places;
 }
 
+/// None where nobody knows.
 Result<ParentPlaces> parents_of(const RunFile& file, const Births& children, const Births& parents) {
     const auto places = breeders(file, parents, children);
     if (!places)
-        return places.error();
+        return ParentPlaces{};
     ParentPlaces found(children.islands.size());
     for (std::size_t island = 0; island < children.islands.size(); ++island)
         for (const evolution::Parents& pair : children.islands[island].parents) {
@@ -79,13 +81,13 @@ Result<ParentPlaces> parents_of(const RunFile& file, const Births& children, con
     return found;
 }
 
-/// next  the generation after it, with its parents; nullptr if there is none.
+/// next  the generation after it, with its parents; nullptr if there is none, or it is out of reach.
 std::vector<Family> families_of(const Births& births, ParentPlaces parents, const Births* next,
                                 const ParentPlaces& next_parents) {
     std::vector<Family> families;
     for (std::size_t i = 0; i < births.islands.size(); ++i) {
         const Births::Island& island = births.islands[i];
-        const std::size_t counted = next == nullptr ? 0 : island.organism_count;
+        const std::size_t counted = next_parents.empty() ? 0 : island.organism_count;
         families.push_back({.organism_count = island.organism_count,
                             .parents = parents.empty() ? std::vector<std::array<Place, 2>>{} : std::move(parents[i]),
                             .initial = island.parents.empty(),
@@ -139,26 +141,42 @@ Result<void> each_generation(RunFile& file, base::Executor& executor, const std:
     const std::uint64_t last = file.last_generation();
     std::optional<Births> births;
     ParentPlaces parents;
-    for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
+    const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
+        if (!is_in_reach(file, generation)) {
+            const auto opening = file.opening_of(generation);
+            if (!opening)
+                return opening.error();
+            if (!*opening) // the last may be very far away
+                return Refusal{.code = base::RefusalCode::DataLoss,
+                               .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
+                                          ", and not of generation " + std::to_string(generation),
+                               .violations = {}};
+            return {};
+        }
+        auto whole = reader.read(generation);
+        if (!whole)
+            return whole.error();
+        to = births_of(*std::move(whole));
+        return {};
+    };
+    std::uint64_t generation = file.identity().first_generation;
+    if (generation <= last)
+        if (auto first = read(generation, births); !first)
+            return first;
+    for (; generation <= last; ++generation) {
         std::optional<Births> next;
         ParentPlaces next_parents;
-        if (!births) {
-            auto whole = reader.read(generation);
-            if (!whole)
-                return whole.error();
-            births = births_of(*std::move(whole));
-        }
-        if (generation < last) {
-            auto whole = reader.read(generation + 1);
-            if (!whole)
-                return whole.error();
-            next = births_of(*std::move(whole));
+        if (generation < last)
+            if (auto done = read(generation + 1, next); !done)
+                return done;
+        if (births && next) {
             auto found = parents_of(file, *next, *births);
             if (!found)
                 return found.error();
             next_parents = *std::move(found);
         }
-        if (!told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents)))
+        if (births &&
+            !told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents)))
             break;
         births = std::move(next);
         parents = std::move(next_parents);
@@ -171,7 +189,7 @@ Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, 
     BackwardReader reader{file, executor, stop};
     std::optional<Births> next;
     ParentPlaces next_parents;
-    if (generation < file.last_generation()) {
+    if (generation < file.last_generation() && is_in_reach(file, generation + 1)) {
         auto read = reader.read(generation + 1);
         if (!read)
             return read.error();
@@ -189,7 +207,7 @@ Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, 
     while (true) {
         std::optional<Births> before;
         ParentPlaces parents;
-        if (generation > file.identity().first_generation) {
+        if (generation > file.identity().first_generation && is_in_reach(file, generation - 1)) {
             auto read = reader.read(generation - 1);
             if (!read)
                 return read.error();

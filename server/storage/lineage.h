@@ -24,24 +24,24 @@ struct Place {
 /// One island's part of a generation; vectors by organism.
 struct Family {
     std::uint32_t organism_count = 0;
-    std::vector<std::array<Place, 2>> parents; // in the generation before; empty if the file does not hold that
+    std::vector<std::array<Place, 2>> parents; // in the generation before; empty where nobody knows
     bool initial = false;                      // nobody bred them
     std::uint32_t elite_count = 0, survivor_count = 0;
     std::vector<double> fitness; // empty while the generation has not ended
     // In the next generation: organisms bred from this one, and places in which it was kept itself. Empty if none has
-    // begun.
+    // begun, and where nobody knows.
     std::vector<std::uint32_t> child_count, kept_count;
 };
 
 /// families  one per island. Returns whether to go on.
 using OfFamilies = base::FunctionRef<bool(std::uint64_t generation, const std::vector<Family>& families)>;
 
-// Refused where GenerationReader is, and where migrants are to be known of a run that follows another model.
+// Of a run that follows another model nobody knows what is not held, nor who migrated.
 
-/// Every generation that has begun, in order.
+/// Every generation that has begun and is in reach, in order.
 base::Result<void> each_generation(RunFile& file, base::Executor& executor, const std::stop_token& stop,
                                    OfFamilies told);
-/// From this generation back to the file's first.
+/// From this generation back to the file's first, or the last that is in reach. Refused where GenerationReader is.
 base::Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, base::Executor& executor,
                                              const std::stop_token& stop, OfFamilies told);
 

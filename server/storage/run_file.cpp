@@ -567,6 +567,17 @@ std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) {
     return generation;
 }
 
+std::uint64_t RunFile::held_at_or_after(std::uint64_t generation) {
+    const std::uint64_t first = identity_.first_generation, until = thinning_.until_generation;
+    const auto step_on = [first](std::uint64_t from, std::uint64_t keep_every) {
+        return first + (from - first + keep_every - 1) / keep_every * keep_every;
+    };
+    std::uint64_t held = generation <= until ? step_on(generation, thinning_.keep_every) : generation;
+    if (held > until)
+        held = step_on(std::max(generation, until + 1), keep_every_);
+    return std::min(held, last_generation());
+}
+
 std::optional<Refusal> RunFile::other_model() const {
     if (identity_.model_version == simulation::model_version)
         return std::nullopt;

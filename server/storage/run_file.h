@@ -97,6 +97,8 @@ class RunFile {
     bool is_link_held(std::uint64_t tick) const;
     /// The last generation up to this one whose beginning is held; itself if the run has not begun it.
     std::uint64_t held_at_or_before(std::uint64_t generation);
+    /// The first from this generation on, which the run has begun.
+    std::uint64_t held_at_or_after(std::uint64_t generation);
     /// See Options::keep_every.
     std::uint64_t keep_every() const { return keep_every_; }
     /// Nothing if the generation has not ended, or its outcome is not held any more.

@@ -76,6 +76,18 @@ Refusal no_such(base::Violation violation) {
             .violations = {std::move(violation)}};
 }
 
+/// Why a generation that has begun cannot be told of; nothing if it can.
+std::optional<Refusal> out_of_reach(RunFile& file, const char* field, std::uint64_t generation) {
+    if (is_in_reach(file, generation))
+        return std::nullopt;
+    Refusal refused = *file.other_model();
+    refused.violations.push_back({field,
+                                  "what is held, nearest to it " + std::to_string(file.held_at_or_before(generation)) +
+                                      " and " + std::to_string(file.held_at_or_after(generation)),
+                                  std::to_string(generation)});
+    return refused;
+}
+
 std::optional<base::Violation> wrong_place(const OrganismName& name, const std::vector<storage::Family>& families) {
     if (name.island >= families.size())
         return base::Violation{"of.island", "an island from 0 to " + std::to_string(families.size() - 1),
@@ -160,7 +172,7 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     Table table{out, format, std::move(columns)};
     storage::GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
-        if (run.file.other_model() && run.file.held_at_or_before(generation) != generation)
+        if (!is_in_reach(run.file, generation))
             return {};
         const auto whole = reader.read(generation);
         if (!whole)
@@ -197,6 +209,8 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
     if (of->generation < first || of->generation > last)
         return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
                         std::to_string(of->generation)});
+    if (auto refused = out_of_reach(run.file, "of.generation", of->generation))
+        return *refused;
     std::optional<base::Violation> wrong;
     Wanted wanted;
     const auto done = storage::each_generation_back_from(
@@ -228,6 +242,8 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
                        .message = run.file.path() + " does not hold the beginning of that generation",
                        .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
                                        std::to_string(generation)}}};
+    if (auto refused = out_of_reach(run.file, "generation", generation))
+        return *refused;
     const auto whole = storage::GenerationReader{run.file, run.executor, run.stop}.read(generation);
     if (!whole)
         return whole.error();
@@ -281,7 +297,7 @@ std::uint64_t generations_out_of_reach(RunFile& file) {
             const auto opening = file.opening_of(generation);
             if (!opening || !*opening)
                 break; // damaged: whoever reads on is told
-            count += file.held_at_or_before(generation) != generation;
+            count += !is_in_reach(file, generation);
         }
     return count;
 }

@@ -43,9 +43,10 @@ struct RunSource {
     std::stop_token stop = {};
 };
 
-/// Refused where the file is damaged, or follows another model and does not hold what is needed, or has no such
-/// generation or organism (fields "generation", "of.generation", "of.island", "of.organism"); rows before that are
-/// written. Organisms that are out of reach are left out. Whether rows could be written is known by `out`.
+/// Refused where the file is damaged, or has no such generation or organism, or follows another model and does not hold
+/// it (fields "generation", "of.generation", "of.island", "of.organism"); rows before that are written. Of all
+/// organisms those that are out of reach are left out, and of the others what is not known. Whether rows could be
+/// written is known by `out`.
 base::Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out);
 
 /// How many generations' organisms nobody can tell of any more: they are not held, and follow another model than this

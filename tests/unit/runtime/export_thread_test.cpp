@@ -1,5 +1,6 @@
 #include "server/runtime/export_thread.h"
 
+#include "tests/unit/storage/other_model.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -64,6 +65,18 @@ TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
     EXPECT_GT(parts, 2);
     EXPECT_EQ(text, whole(wanted));
     EXPECT_EQ(next(thread).error().code, RefusalCode::FailedPrecondition);
+}
+
+TEST_F(ExportThreadTest, TellsHowManyGenerationsAreLeftOut) {
+    const auto run_id = storage::record_other_model(data.file_of("w"), storage::small_world())->identity().run_id;
+    past.emplace(std::vector{data.file_of("w")}, run_id);
+    for (const auto& [table, left_out] :
+         {std::pair{RunTable::Organisms, 4u}, std::pair{RunTable::Lineage, 4u}, std::pair{RunTable::Generations, 0u}}) {
+        ExportThread thread{*past, {.table = table}};
+        const auto part = next(thread);
+        ASSERT_TRUE(part) << to_text(part.error());
+        EXPECT_EQ(part->generations_left_out, left_out);
+    }
 }
 
 TEST_F(ExportThreadTest, WhatIsWrongIsToldInsteadOfAPart) {
