@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <iostream>
 #include <mutex>
+#include <optional>
 
 namespace evod::console {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 using storage::Difference;
 using storage::StoredMoment;
 using storage::VerifyProgress;
+using Clock = std::chrono::steady_clock;
 
 std::string text_of(const StoredMoment& moment) {
     return "generation " + std::to_string(moment.generation) + ", tick " + std::to_string(moment.tick);
@@ -28,10 +30,22 @@ void print_difference(const std::string& path, const Difference& difference) {
               << difference.stored << ", simulated again " << difference.simulated << '\n';
 }
 
+/// simulated_for  how long it has been since the first tick.
+std::string text_of(const VerifyProgress& now, std::chrono::duration<double> simulated_for) {
+    if (now.ticks == 0)
+        return "reading: " + std::to_string(now.generations) + " of " + std::to_string(now.generations_in_all) +
+               " generations";
+    const double share = static_cast<double>(now.ticks) / static_cast<double>(now.ticks_in_all);
+    std::string text = std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) +
+                       " ticks simulated again, " + std::to_string(static_cast<int>(100 * share)) + " %";
+    if (simulated_for > std::chrono::seconds{2}) // else it is a guess
+        text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s to go";
+    return text;
+}
+
 } // namespace
 
 int verify(const VerifyOptions& options) {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const auto fail = [](const base::Refusal& why) {
         std::cerr << "evod verify: " << base::to_text(why) << '\n';
@@ -42,14 +56,16 @@ int verify(const VerifyOptions& options) {
         return fail(file.error());
 
     ProgressLine progress;
-    std::mutex progress_mutex; // guards the line, which any thread may write
+    std::mutex progress_mutex; // guards the line, which any thread may write, and what follows
+    std::optional<Clock::time_point> simulating_since;
     const auto executor = runtime::make_executor(options.threads);
     const auto verified = storage::verify(**file, *executor, [&](const VerifyProgress& now) {
         const std::unique_lock lock{progress_mutex, std::try_to_lock};
-        if (lock)
-            progress.show([&] {
-                return std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) + " ticks simulated again";
-            });
+        if (!lock)
+            return;
+        if (now.ticks > 0 && !simulating_since)
+            simulating_since = Clock::now();
+        progress.show([&] { return text_of(now, Clock::now() - simulating_since.value_or(Clock::now())); });
     });
     progress.clear();
     if (!verified)

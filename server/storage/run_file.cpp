@@ -998,7 +998,7 @@ std::uint64_t RunFile::last_generation_ended() {
     return static_cast<std::uint64_t>(database_.number("SELECT max(generation) FROM statistics"));
 }
 
-Result<void> RunFile::check() {
+Result<void> RunFile::check(base::FunctionRef<void(std::uint64_t)> told) {
     if (auto sound = check_tree("1"); !sound)
         return sound;
     if (auto entries = journal(); !entries)
@@ -1007,6 +1007,7 @@ Result<void> RunFile::check() {
         return inherited.error();
     const std::uint64_t last = last_generation();
     for (std::uint64_t generation = identity_.first_generation; generation <= last; ++generation) {
+        told(generation);
         const auto begun = beginning_of(generation);
         if (!begun)
             return begun.error();

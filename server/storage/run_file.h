@@ -6,6 +6,7 @@
 // Owner        one thread at a time: the storage thread while a server runs.
 #pragma once
 
+#include "server/base/executor.h"
 #include "server/base/result.h"
 #include "server/storage/database.h"
 #include "server/storage/records.h"
@@ -118,7 +119,12 @@ class RunFile {
     /// The newest that has ended; 0 if none has.
     std::uint64_t last_generation_ended();
     /// Whether SQLite finds the file sound, and every row is as it was written. Reads everything.
-    base::Result<void> check();
+    ///
+    /// told  called with each generation that is going to be read.
+    base::Result<void> check(base::FunctionRef<void(std::uint64_t generation)> told);
+    base::Result<void> check() {
+        return check([](std::uint64_t) {});
+    }
     /// Whether there is as much as the end mark says; all is well if there is none.
     base::Result<void> check_end_mark();
 

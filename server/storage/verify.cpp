@@ -320,7 +320,12 @@ void add(Verified& sum, const Verified& stretch) {
 Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionRef<void(const VerifyProgress&)> told) {
     if (auto held = file.hold_still(); !held)
         return held.error();
-    if (auto sound = file.check(); !sound)
+    const std::uint64_t before = file.identity().first_generation - 1;
+    const std::uint64_t generations = std::max(file.last_generation(), before) - before;
+    const auto tell_read = [&](std::uint64_t generation) {
+        told({.generations = generation - before - 1, .generations_in_all = generations});
+    };
+    if (auto sound = file.check(tell_read); !sound)
         return sound.error();
     if (auto refused = file.other_model())
         return *refused;
@@ -337,7 +342,10 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
     std::atomic<std::uint64_t> ticks = 0;
     const auto count = [&](std::uint64_t more) {
         const std::uint64_t sum = ticks.fetch_add(more, std::memory_order_relaxed) + more;
-        told({.ticks = sum, .ticks_in_all = ticks_in_all});
+        told({.generations = generations,
+              .generations_in_all = generations,
+              .ticks = sum,
+              .ticks_in_all = ticks_in_all});
     };
 
     Verified verified;

@@ -45,8 +45,10 @@ struct Verified {
     std::optional<Difference> difference; // nothing: all agrees
 };
 
+/// First the file is read through, then its run is simulated again.
 struct VerifyProgress {
-    std::uint64_t ticks = 0, ticks_in_all = 0; // simulated by now, in whatever order
+    std::uint64_t generations = 0, generations_in_all = 0; // read by now
+    std::uint64_t ticks = 0, ticks_in_all = 0;             // simulated by now, in whatever order; 0 while it is read
 };
 
 /// Refused where the file is damaged or follows another model. A server may go on writing to it: what was there at

@@ -266,6 +266,24 @@ TEST_F(VerifyTest, ARunOfWhichNotAllIsHeldAgreesAndWhatIsHeldIsCompared) {
     expect_difference((link.tick - 1) / 120 + 1, link.tick, "the state hash", difference().agrees->tick);
 }
 
+TEST_F(VerifyTest, TellsHowFarItIsWhileItReadsAndWhileItSimulates) {
+    record();
+    std::vector<std::uint64_t> read;
+    VerifyProgress last;
+    ASSERT_TRUE(verify(*file(), one_thread, [&](const VerifyProgress& now) {
+        if (now.ticks == 0)
+            read.push_back(now.generations);
+        EXPECT_EQ(now.generations_in_all, file()->last_generation());
+        EXPECT_GE(now.ticks, last.ticks);
+        last = now;
+    }));
+    EXPECT_EQ(read.size(), last.generations_in_all) << "each generation, as it is read";
+    EXPECT_TRUE(std::ranges::is_sorted(read));
+    EXPECT_EQ(read.front(), 0u);
+    EXPECT_EQ(last.ticks, last.ticks_in_all);
+    EXPECT_EQ(last.generations, last.generations_in_all);
+}
+
 TEST_F(VerifyTest, AnotherStateHashIsTold) {
     record();
     HashLink link = (*file()->links(120, 180)).at(0);
@@ -487,7 +505,7 @@ TEST_F(VerifyTest, ProgressCountsEveryTick) {
     record();
     std::atomic<std::uint64_t> most = 0;
     const auto result = verify(*file(), two_threads, [&](const VerifyProgress& now) {
-        EXPECT_EQ(now.ticks_in_all, 540u);
+        EXPECT_EQ(now.ticks_in_all, now.ticks == 0 ? 0u : 540u) << "known when all is read";
         for (std::uint64_t seen = most; seen < now.ticks && !most.compare_exchange_weak(seen, now.ticks);) {
         }
     });
