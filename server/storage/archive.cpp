@@ -85,6 +85,8 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
         files = folder->files();
     if (!files)
         return files.error();
+    for (const std::string& file : files->strange)
+        log::warn("{} is left alone: a run file is called NAME.evod, and that is no name of a world", file);
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
     archive->remember(files->ended);

@@ -72,14 +72,13 @@ base::Result<DataFolder::Files> DataFolder::files() const {
             continue;
         const std::string stem = name.substr(0, name.size() - ending.size());
         const std::size_t dot = stem.find('.');
-        if (simulation::is_world_name(stem.substr(0, dot)))
-            (dot == std::string::npos ? files.of_worlds : files.ended).push_back(file->path().string());
+        auto& paths = dot == std::string::npos ? files.of_worlds : files.ended;
+        (simulation::is_world_name(stem.substr(0, dot)) ? paths : files.strange).push_back(file->path().string());
     }
     if (error)
         return unusable(path_, error.message());
-    std::sort(files.of_worlds.begin(), files.of_worlds.end());
-    std::sort(files.ended.begin(), files.ended.end());
-    std::sort(files.replaced.begin(), files.replaced.end());
+    for (std::vector<std::string>* paths : {&files.of_worlds, &files.ended, &files.replaced, &files.strange})
+        std::sort(paths->begin(), paths->end());
     return files;
 }
 

@@ -28,6 +28,7 @@ class DataFolder {
     struct Files {
         std::vector<std::string> of_worlds, ended; // paths, in order
         std::vector<std::string> replaced;         // those that there is a next_file_of(), be they there or not
+        std::vector<std::string> strange;          // called like run files, but by what can be no world's name
     };
     base::Result<Files> files() const;
 

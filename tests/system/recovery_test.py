@@ -462,6 +462,14 @@ class Recovery(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
 
+    def test_a_run_file_with_a_name_of_no_world_is_left_alone(self):
+        strange = pathlib.Path(self.data, "my run.evod")
+        strange.write_text("not ours")
+        server = self.serve("--seed", "5")
+        self.assertIn(f"{strange} is left alone", server.output())
+        server.end()
+        self.assertEqual(strange.read_text(), "not ours")
+
 
 if __name__ == "__main__":
     unittest.main()

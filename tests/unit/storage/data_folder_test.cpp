@@ -43,6 +43,7 @@ TEST(DataFolder, TellsRunsOfWorldsFromEndedOnes) {
     ASSERT_TRUE(files);
     EXPECT_THAT(files->of_worlds, testing::ElementsAre(data->file_of("a"), data->file_of("b")));
     EXPECT_THAT(files->ended, testing::ElementsAre(ended));
+    EXPECT_THAT(files->strange, testing::ElementsAre(folder.path() + "/no name.evod"));
 }
 
 class ArchiveTest : public testing::Test {
