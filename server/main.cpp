@@ -295,10 +295,11 @@ int main(int argument_count, char** arguments) {
     check.add_option("experiment", checked_file, "JSON file")->required();
 
     console::ForkOptions fork_options;
-    CLI::App& fork = *app.add_subcommand("fork", "Make a second world from a past generation of a run file");
+    CLI::App& fork =
+        *app.add_subcommand("fork", "Make a second world from a past generation of a run file, or from where it ends");
     fork.add_option("run", fork_options.run_file, "Run file, of a server that runs or not")->required();
-    fork.add_option("--at-generation", fork_options.at_generation, "Begins with its first tick")
-        ->required()
+    fork.add_option("--at-generation", fork_options.at_generation,
+                    "Begins with its first tick; otherwise with the last moment of the file")
         ->check(whole_number);
     fork.add_option("--name", fork_options.name, "Of the new world")->required();
     fork.add_option("--data", fork_options.data_folder,

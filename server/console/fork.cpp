@@ -27,13 +27,13 @@ int fork(const ForkOptions& options) {
         return fail(to_text(folder.error()));
     const std::string path = folder->file_of(options.name);
     base::InlineExecutor executor;
-    if (const auto forked =
-            storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
-        !forked)
-        return fail(to_text(forked.error()));
-    std::cout << "world \"" << options.name << "\" begins with generation " << options.at_generation << " of "
-              << options.run_file << "; a server with --data " << options.data_folder
-              << " finds it, and lets it wait\n";
+    const auto moment = storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
+    if (!moment)
+        return fail(to_text(moment.error()));
+    std::cout << "world \"" << options.name << "\" begins with "
+              << (options.at_generation ? "" : "tick " + std::to_string(moment->generation_tick) + " of ")
+              << "generation " << moment->generation << " of " << options.run_file << "; a server with --data "
+              << options.data_folder << " finds it, and lets it wait\n";
     return 0;
 }
 

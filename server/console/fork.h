@@ -4,15 +4,16 @@
 #include "server/simulation/commands.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace evod::console {
 
 struct ForkOptions {
     std::string run_file;
-    std::uint64_t at_generation = 0;
-    std::string name;        // of the new world
-    std::string data_folder; // where it is made
+    std::optional<std::uint64_t> at_generation; // nullopt: at the last moment that the file tells of
+    std::string name;                           // of the new world
+    std::string data_folder;                    // where it is made
     simulation::RunId run_id;
 };
 

@@ -423,6 +423,17 @@ class Export(Case):
         evod("export", damaged, "--bundle", self.folder + "/half", status=1)
         self.assertFalse(os.path.exists(self.folder + "/half"))
 
+    def test_a_fork_begins_where_the_file_ends_unless_told_otherwise(self):
+        with tempfile.TemporaryDirectory() as data:
+            said = evod("fork", plain, "--name", "f", "--data", data)
+            self.assertRegex(said, r"begins with (tick \d+ of )?generation \d+ of ")
+            with sqlite3.connect(f"file:{plain}?mode=ro", uri=True) as run:
+                (last,) = run.execute("SELECT tick FROM end_mark").fetchone()
+            with sqlite3.connect(f"file:{data}/f.evod?mode=ro", uri=True) as run:
+                (first,) = run.execute("SELECT value FROM run WHERE key = 'first_tick'").fetchone()
+            self.assertEqual(first, str(last))
+            self.assertIn("all agrees", evod("verify", f"{data}/f.evod"))
+
     def test_a_bundle_is_of_one_moment_while_a_server_writes(self):
         plate = self.folder + "/plate.csv"
         evod("export", plain, "--what", "population", "--output", plate)

@@ -3,6 +3,7 @@
 #include "server/storage/archive.h"
 #include "server/storage/mismatch.h"
 #include "server/storage/rerun.h"
+#include "server/storage/verify.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -26,11 +27,12 @@ class ForkTest : public testing::Test {
             hashes.push_back(run.world().hash());
             run.advance(1);
         }
+        last_hash = run.world().hash();
         run.recorder().close_all(run.laboratory());
     }
-    base::Result<void> fork_at(std::uint64_t generation, const std::string& name) {
+    auto fork_at(std::optional<std::uint64_t> generation, const std::string& name) {
         const auto origin = RunFile::open_read_only(data->file_of("w"));
-        return fork(**origin, generation, data->file_of(name), name, {generation, 3}, executor);
+        return fork(**origin, generation, data->file_of(name), name, {generation.value_or(0), 3}, executor);
     }
     /// From generation 1 on.
     static void expect_history(const simulation::World::History& history, RunFile& origin, std::size_t generations) {
@@ -43,6 +45,7 @@ class ForkTest : public testing::Test {
     std::optional<DataFolder> data;
     base::InlineExecutor executor;
     std::vector<base::StateHash> hashes; // by tick
+    base::StateHash last_hash;
 };
 
 TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
@@ -67,6 +70,66 @@ TEST_F(ForkTest, LivesAsItsOriginDidUntilSomethingIsChanged) {
             ASSERT_EQ(world.hash(), hashes[world.moment().tick]) << world.moment().tick;
         }
     }
+}
+
+TEST_F(ForkTest, WithoutAGenerationItBeginsWhereTheFileEnds) {
+    const auto moment = fork_at(std::nullopt, "fork");
+    ASSERT_TRUE(moment) << to_text(moment.error());
+    EXPECT_EQ(moment->tick, 780u);
+    EXPECT_GT(moment->generation_tick, 0u);
+    std::filesystem::remove(data->file_of("w"));
+    const auto file = RunFile::open_read_only(data->file_of("fork"));
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ((*file)->identity().first_tick, 780u);
+    EXPECT_EQ((*file)->identity().parameters.mutation_chance, 0.4);
+    EXPECT_EQ((*file)->identity().parameters.food_health, 1.0);
+    const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
+    ASSERT_TRUE(verified) << to_text(verified.error());
+    EXPECT_FALSE(verified->difference);
+    const auto recovered = recover(**file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    EXPECT_EQ(recovered->world.hash(), last_hash);
+    EXPECT_TRUE(recovered->journal.empty());
+}
+
+TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
+    data.reset();
+    folder.clear();
+    data.emplace(*DataFolder::open(folder.path()));
+    hashes.clear();
+    {
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        while (!run.world().generation_over())
+            run.advance(1);
+        run.command(set_parameter("mutation_chance", 0.25)); // what is asked for at the end comes with it
+        run.recorder().close_all(run.laboratory());
+        last_hash = run.world().hash();
+        run.world().advance_tick(executor);
+        hashes.push_back(run.world().hash());
+    }
+    ASSERT_TRUE(fork_at(std::nullopt, "fork"));
+    data.reset();
+    {
+        const auto archive = Archive::open(folder.path(), {}, executor);
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        simulation::Entry& entry = **laboratory.find("fork");
+        EXPECT_EQ(entry.world.hash(), last_hash);
+        laboratory.advance(entry, executor);
+        EXPECT_EQ(entry.world.hash(), hashes[0]);
+        EXPECT_EQ(entry.world.moment().generation, 2u);
+        (*archive)->recorder().of("fork")->follow(entry.world);
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+    }
+    const auto file = RunFile::open_read_only(folder.path() + "/fork.evod");
+    const auto checked = (*file)->check();
+    EXPECT_TRUE(checked) << to_text(checked.error());
+    const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
+    ASSERT_TRUE(verified) << to_text(verified.error());
+    EXPECT_FALSE(verified->difference);
 }
 
 TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
