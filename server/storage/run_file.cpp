@@ -219,6 +219,8 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
     if (std::filesystem::exists(path, error))
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
     const std::string next = DataFolder::next_file_of(path);
+    if (auto swept = remove(next); !swept) // what somebody left who did not come to the end of it
+        return swept.error();
     auto file = begin_new(next, identity, options);
     if (!file)
         return file.error();

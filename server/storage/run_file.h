@@ -41,7 +41,7 @@ class RunFile {
         std::uint64_t keep_every = 1;
     };
 
-    /// A new file; refused if there is one. It is there whole, or not at all.
+    /// A new file; refused if there is one. It is there whole, or not at all. Nobody else may be making it.
     ///
     /// beginning   of identity.first_generation; may follow later for a run that begins with generation 1.
     /// checkpoint  at identity.first_tick, for a run that begins within that generation; it is never taken out.

@@ -132,6 +132,15 @@ TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
     EXPECT_FALSE(verified->difference);
 }
 
+TEST_F(ForkTest, WhatAKilledOneLeftIsInNobodysWay) {
+    ASSERT_TRUE(fork_at(3, "fork"));
+    std::filesystem::rename(data->file_of("fork"), DataFolder::next_file_of(data->file_of("fork")));
+    const auto moment = fork_at(2, "fork");
+    ASSERT_TRUE(moment) << to_text(moment.error());
+    EXPECT_EQ((*RunFile::open_read_only(data->file_of("fork")))->identity().first_generation, 2u);
+    EXPECT_TRUE(data->files()->replaced.empty());
+}
+
 TEST_F(ForkTest, IsAWorldLikeAnyOtherAndNeedsNoOtherFile) {
     ASSERT_TRUE(fork_at(3, "fork"));
     std::filesystem::remove(data->file_of("w"));
