@@ -107,9 +107,10 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
     return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
            to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
            " |\n| made with | evod " + identity.evod_version + ", model version " + model +
-           " |\n| generations that have ended | " + std::to_string(file.last_generation_ended()) + " |\n| ticks | " +
-           std::to_string(file.contents().tick) + " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
-           std::to_string(simulation::model_version) + ", built with " + EVOD_BUILD +
+           (identity.build.empty() ? "" : ", built from " + identity.build) + " |\n| generations that have ended | " +
+           std::to_string(file.last_generation_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
+           " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
+           std::to_string(simulation::model_version) + ", built from " + storage::build_text() +
            " |\n\nAny evod of model version " + model +
            " gives the same bits, on any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
            "    evod verify " + file_name +

@@ -6,6 +6,7 @@
 #include "server/simulation/laboratory.h"
 #include "server/simulation/living.h"
 #include "server/simulation/model_version.h"
+#include "server/storage/build.h"
 
 #include <cstdint>
 #include <optional>
@@ -22,6 +23,7 @@ struct RunIdentity {
     base::Seed seed;
     simulation::Parameters parameters;
     std::string evod_version = EVOD_VERSION;
+    std::string build = build_text(); // of that evod; empty where the file does not tell
     std::uint32_t model_version = simulation::model_version;
     std::int64_t began_unix_ms = 0; // the clock on the wall, for people; nothing depends on it
     // A fork begins with a generation of another run; `parameters` are those that were asked for there.

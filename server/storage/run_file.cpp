@@ -398,6 +398,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("seed", std::to_string(identity.seed.value));
     put("parameters", to_experiment_text(identity.parameters, simulation::Written::Everything));
     put("evod_version", identity.evod_version);
+    put("build", identity.build);
     put("model_version", std::to_string(identity.model_version));
     put("began_unix_ms", std::to_string(identity.began_unix_ms));
     put("first_generation", std::to_string(identity.first_generation));
@@ -438,6 +439,7 @@ Result<void> RunFile::read_identity() {
     if (page_size > 0 && size_of(path_) % page_size != 0 && size_of(path_ + "-wal") == 0)
         return damaged("its last page");
     RowReader run{database_, "run", run_columns};
+    identity_.build.clear(); // older files do not tell
     std::size_t known = 0;
     while (run.next()) {
         const std::string key = run.text(), value = run.text();
@@ -470,6 +472,9 @@ Result<void> RunFile::read_identity() {
                 identity_.parameters = experiment->parameters;
         } else if (key == "evod_version") {
             identity_.evod_version = value;
+        } else if (key == "build") {
+            identity_.build = value;
+            continue;
         } else if (key == "model_version") {
             take(number_from<std::uint32_t>(value), identity_.model_version);
         } else if (key == "began_unix_ms") {

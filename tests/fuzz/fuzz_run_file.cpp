@@ -114,7 +114,7 @@ struct Place {
         require(sqlite3_open(path.c_str(), &database) == SQLITE_OK);
         require(sqlite3_exec(database,
                              "DROP TABLE founders; DROP TABLE inherited_statistics;"
-                             "DELETE FROM run WHERE key = 'inherited_generations'; PRAGMA user_version = 2",
+                             "DELETE FROM run WHERE key IN ('inherited_generations', 'build'); PRAGMA user_version = 2",
                              nullptr, nullptr, nullptr) == SQLITE_OK);
         sqlite3_close(database);
         const auto file = storage::RunFile::open_read_only(path);

@@ -414,6 +414,10 @@ class Export(Case):
 
     def test_a_bundle_says_how_the_run_is_repeated(self):
         self.assertEqual(self.repeat(self.bundle(plain, "small.evod")), 4)
+        with sqlite3.connect(f"file:{plain}?mode=ro", uri=True) as run:
+            (build,) = run.execute("SELECT value FROM run WHERE key = 'build'").fetchone()
+        self.assertRegex(build, r"^([0-9a-f]{12}\+? by )?(GNU|Clang) [0-9.]+ for \w+, \w+$")
+        self.assertIn(f", built from {build} |", (pathlib.Path(self.folder) / "bundle/REPEAT.md").read_text())
         folder = self.bundle(changed, "small.evod")
         self.assertEqual(self.repeat(folder), 2)
         self.assertIn("Parameters were changed while it ran, 2 times", (folder / "REPEAT.md").read_text())

@@ -94,6 +94,8 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     EXPECT_EQ((*file)->identity().seed.value, identity.seed.value);
     EXPECT_TRUE((*file)->identity().parameters == identity.parameters);
     EXPECT_EQ((*file)->identity().began_unix_ms, 1234);
+    EXPECT_EQ((*file)->identity().build, build_text());
+    EXPECT_THAT(build_text(), HasSubstr(" for ")); // this processor
     EXPECT_FALSE(*(*file)->end_mark());
 
     const auto journal = *(*file)->journal();
@@ -200,6 +202,14 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
     const std::string newer = recorded();
     change(newer, "PRAGMA user_version = 4");
     EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 4"));
+}
+
+TEST_F(RunFileTest, AnOlderFileDoesNotTellItsBuild) {
+    const std::string path = recorded();
+    change(path, "DELETE FROM run WHERE key = 'build'");
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->identity().build, "");
 }
 
 TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {
