@@ -196,36 +196,49 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
     const auto origin = std::as_const(laboratory_).find(request.world);
     if (!origin)
         return reply(laboratory_, origin.error());
-    const auto of_owner = std::ranges::count_if(
-        looks_, [&](const auto& item) { return item.second.owner == request.owner && request.owner != 0; });
-    if (static_cast<std::size_t>(of_owner) >= pasts_max || looks_.size() >= pasts_of_all_max)
+    std::size_t of_owner = 0, of_all = looks_.size();
+    for (const auto& [name, look] : looks_)
+        of_owner += look.owner == request.owner;
+    for (const auto& [owner, count] : opening_) {
+        of_owner += owner == request.owner ? count : 0;
+        of_all += count;
+    }
+    if (of_owner >= pasts_max || of_all >= pasts_of_all_max)
         return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
-                                          static_cast<std::size_t>(of_owner) >= pasts_max
+                                          of_owner >= pasts_max
                                               ? "this session looks at " + std::to_string(pasts_max) +
                                                     " pasts already: close one first"
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
                                                     " pasts already: try again when one of them is closed"));
     const std::string name = (*origin)->is_look_back() ? (*origin)->recording->past_of : (*origin)->name;
-    look_at((*origin)->name,
-            [this, name, request, reply](Result<simulation::Recording> there, const storage::Past& past) {
-                if (!there)
-                    return reply(laboratory_, there.error());
-                there->past_of = name;
-                storage::WantedMoment at = request.at;
-                if (!at.generation && !at.tick)
-                    at.generation = there->first_generation;
-                const auto moment = past.find(at, *there);
-                if (!moment)
-                    return reply(laboratory_, within(moment.error(), "at"));
-                set_out(past, *moment,
-                        [this, name, past, there = *there, owner = request.owner, reply](Result<storage::Rerun> rerun) {
-                            if (!rerun)
-                                return reply(laboratory_, rerun.error());
-                            const std::string look_name = name + "@" + std::to_string(++last_look_);
-                            show(look_name, past, owner, *std::move(rerun), there);
-                            reply(laboratory_, look_name);
-                        });
-            });
+    ++opening_[request.owner];
+    const auto opened = [this, owner = request.owner, reply](const Result<std::string>& look) {
+        if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0)
+            opening_.erase(opening);
+        reply(laboratory_, look);
+    };
+    look_at(
+        (*origin)->name, [this, name, request, opened](Result<simulation::Recording> there, const storage::Past& past) {
+            if (!there)
+                return opened(there.error());
+            there->past_of = name;
+            storage::WantedMoment at = request.at;
+            if (!at.generation && !at.tick)
+                at.generation = there->first_generation;
+            const auto moment = past.find(at, *there);
+            if (!moment)
+                return opened(within(moment.error(), "at"));
+            set_out(past, *moment,
+                    [this, name, past, there = *there, owner = request.owner, opened](Result<storage::Rerun> rerun) {
+                        if (!rerun)
+                            return opened(rerun.error());
+                        if (!opening_.contains(owner))
+                            return opened(refusal(RefusalCode::NotFound, "who asked for it is gone"));
+                        const std::string look_name = name + "@" + std::to_string(++last_look_);
+                        show(look_name, past, owner, *std::move(rerun), there);
+                        opened(look_name);
+                    });
+        });
 }
 
 void TimeTravel::seek(const Seek& request, const PastReply& reply) {
@@ -298,6 +311,7 @@ void TimeTravel::close_all_of(std::uint64_t owner) {
         laboratory_.dismiss(item.first);
         return true;
     });
+    opening_.erase(owner);
 }
 
 void TimeTravel::follow(simulation::Entry& entry) {

@@ -103,6 +103,7 @@ class TimeTravel {
     base::Executor& executor_;
     storage::Recorder* recorder_;
     std::map<std::string, Look, std::less<>> looks_; // by the name of the world that shows it
+    std::map<std::uint64_t, std::size_t> opening_;   // how many are on their way, by who wants them and is still there
     std::map<std::uint64_t, std::function<void(bool all_is_written)>> waiting_; // for the disk
     std::vector<Journey> journeys_;
     std::vector<std::string> arrivals_;

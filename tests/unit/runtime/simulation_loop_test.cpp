@@ -608,6 +608,33 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     EXPECT_EQ(told, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
 }
 
+TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
+    ask_create("w");
+    ask_run("w");
+    pass_until([&] { return tick("w") > 300; });
+    std::size_t answered = 0, opened = 0;
+    const auto open = [&](std::uint64_t owner) {
+        mailbox.push(PastMail{OpenPast{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
+                              [&](const Laboratory&, const base::Result<std::string>& name) {
+                                  ++answered;
+                                  opened += name ? 1 : 0;
+                              }});
+    };
+    open(1);
+    open(1);
+    mailbox.push(PastMail{OwnerGone{1}, {}});
+    pass_until([&] { return answered == 2; });
+    EXPECT_EQ(opened, 0u);
+    EXPECT_EQ(kept.laboratory().entries().size(), 1u);
+    for (std::size_t i = 0; i <= TimeTravel::pasts_max; ++i)
+        open(2);
+    pass_until([&] { return answered == 2 + TimeTravel::pasts_max + 1; });
+    EXPECT_EQ(opened, TimeTravel::pasts_max) << "those on their way are counted";
+    mailbox.push(PastMail{OwnerGone{2}, {}});
+    kept.pass();
+    EXPECT_EQ(kept.laboratory().entries().size(), 1u);
+}
+
 TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     ask_create("long");
     ask_run("long");
