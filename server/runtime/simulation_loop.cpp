@@ -197,11 +197,11 @@ void SimulationLoop::fork(CommandMail& mail) {
     // Others are served meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
-    past_.begin_journey(origin->name, generation, [this, waiting, before](base::Result<storage::Rerun> rerun) {
+    past_.begin_journey(origin->name, generation, [this, waiting, before](base::Result<TimeTravel::Arrival> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
-        if (rerun)
-            return answer(*waiting, laboratory_.fork(fork, std::move(*rerun).take()), before);
-        base::Refusal why = rerun.error();
+        if (arrival)
+            return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
+        base::Refusal why = arrival.error();
         for (base::Violation& violation : why.violations)
             violation.field = "at_" + violation.field;
         answer(*waiting, why, before);

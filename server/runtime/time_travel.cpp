@@ -1,5 +1,7 @@
 #include "server/runtime/time_travel.h"
 
+#include "server/base/inline_executor.h"
+
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -19,6 +21,10 @@ Refusal within(Refusal refused, const std::string& field) {
     return refused;
 }
 
+Refusal closed_since() {
+    return refusal(RefusalCode::NotFound, "the past has been closed: open it again");
+}
+
 } // namespace
 
 Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::optional<std::uint64_t> generation,
@@ -29,33 +35,32 @@ Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::o
     const auto name = past->world_name();
     if (!name)
         return name.error();
-    const auto recording = past->recording();
-    if (!recording)
-        return recording.error();
-    const auto moment =
-        past->find({.generation = generation.value_or(recording->first_generation), .tick = {}}, *recording);
-    if (!moment)
-        return moment.error();
-    auto rerun = past->begin_before(*moment, executor);
-    if (!rerun)
-        return rerun.error();
-    Journey journey{.number = 0, .rerun = *std::move(rerun), .to = *moment, .arrived = {}};
+    std::optional<storage::WantedMoment> wanted;
+    if (generation)
+        wanted = storage::WantedMoment{.generation = generation, .tick = {}};
+    auto departure = past->depart(wanted, {}, executor);
+    if (!departure)
+        return departure.error();
+    Journey journey{.number = 0,
+                    .rerun = std::move(departure->from),
+                    .to = departure->to,
+                    .there = std::move(departure->there),
+                    .arrived = {}};
     while (!advance(journey, executor)) {
     }
-    return Replay{*name, *std::move(past), std::move(journey.rerun), *recording};
+    return Replay{*name, *std::move(past), std::move(journey.rerun), std::move(journey.there)};
 }
 
 void TimeTravel::show(Replay replay) {
-    show(replay.name, std::move(replay.past), 0, std::move(replay.rerun), replay.recording);
+    show(replay.name, std::move(replay.past), 0, {std::move(replay.rerun), std::move(replay.recording)});
 }
 
-void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t owner, storage::Rerun rerun,
-                      const simulation::Recording& recording) {
+void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival) {
     simulation::RunControl control;
     control.endless = control.paused = true;
-    looks_.emplace(name, Look{past, rerun.changes(), owner, {}, 0});
-    laboratory_.adopt(std::make_unique<simulation::Entry>(
-        simulation::Entry{name, past.run_id(), control, std::move(rerun).take(), 0, false, recording}));
+    looks_.emplace(name, Look{past, arrival.rerun.changes(), owner, {}, false, 0});
+    laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
+        name, past.run_id(), control, std::move(arrival.rerun).take(), 0, false, std::move(arrival.there)}));
     (void)entry_of(name)->world.take_events(); // of the way there
 }
 
@@ -78,10 +83,11 @@ void TimeTravel::find_run(const FindRun& mail) {
     const auto entry = std::as_const(laboratory_).find(mail.world);
     if (!entry)
         return mail.found(entry.error());
-    look_at((*entry)->name, [found = mail.found, generation = (*entry)->world.moment().generation](
-                                const Result<simulation::Recording>& there, const storage::Past& past) {
-        found(there ? Result<FoundRun>{FoundRun{past, generation}} : there.error());
-    });
+    const auto past = past_of((*entry)->name);
+    if (!past)
+        return mail.found(past.error());
+    once_written((*entry)->name, [found = mail.found,
+                                  run = FoundRun{*past, (*entry)->world.moment().generation}](bool) { found(run); });
 }
 
 Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
@@ -96,25 +102,12 @@ Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
     return storage::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
 }
 
-void TimeTravel::look_at(const std::string& world, Seen then) {
-    const auto past = past_of(world);
-    if (!past)
-        return then(past.error(), storage::Past{{}, {}});
-    const auto see = [this, world, past = *past, then = std::move(then)](bool all_is_written) {
-        auto recording = past.recording();
-        const auto living = std::as_const(laboratory_).find(world);
-        if (recording && all_is_written && living && !(*living)->recording && (*living)->run_id == past.run_id()) {
-            const simulation::Moment& now = (*living)->world.moment();
-            recording->last_generation = std::max(recording->last_generation, now.generation);
-            recording->last_tick = std::max(recording->last_tick, now.tick);
-        }
-        then(std::move(recording), past);
-    };
+void TimeTravel::once_written(const std::string& world, std::function<void(bool)> then) {
     storage::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
     if (!recorder || recorder_->refusal())
-        return see(false); // what is in the file is what there is
+        return then(false); // what is in the file is what there is
     const std::uint64_t number = ++last_waiting_;
-    waiting_.emplace(number, see);
+    waiting_.emplace(number, std::move(then));
     recorder->once_written([this, number] {
         mailbox_.push(QueryMail{[this, number](const simulation::Laboratory&) {
             if (auto waited = waiting_.extract(number))
@@ -123,34 +116,69 @@ void TimeTravel::look_at(const std::string& world, Seen then) {
     });
 }
 
-void TimeTravel::stop_waiting() {
-    for (const auto& [number, see] : std::exchange(waiting_, {}))
-        see(false);
+simulation::Recording TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
+    simulation::Recording known;
+    const auto living = std::as_const(laboratory_).find(world);
+    if (living && !(*living)->recording && (*living)->run_id == run_id) {
+        known.last_generation = (*living)->world.moment().generation;
+        known.last_tick = (*living)->world.moment().tick;
+    }
+    return known;
 }
 
-std::uint64_t TimeTravel::set_out(const storage::Past& past, const storage::PastMoment& to, Arrived arrived) {
-    if (journeys_.size() >= journeys_max) {
-        arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again"));
-        return 0;
-    }
-    auto rerun = past.begin_before(to, executor_);
-    if (!rerun) {
-        arrived(rerun.error());
-        return 0;
-    }
-    journeys_.push_back({++last_journey_, *std::move(rerun), to, std::move(arrived)});
-    return last_journey_;
+void TimeTravel::stop_waiting() {
+    for (const auto& [number, then] : std::exchange(waiting_, {}))
+        then(false);
+}
+
+void TimeTravel::set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
+                         const simulation::Recording& known, Arrived arrived,
+                         const std::function<void(std::uint64_t)>& departed) {
+    if (departing_.size() + journeys_.size() >= journeys_max)
+        return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again"));
+    const std::uint64_t number = ++last_journey_;
+    Departing departing{.departed = {}, .arrived = std::move(arrived)};
+    if (departed)
+        departing.departed = [departed, number] { departed(number); };
+    departing_.emplace(number, std::move(departing));
+    reader_.ask([this, number, past, to, known]() -> PastReader::Then {
+        base::InlineExecutor executor;
+        const auto departure = std::make_shared<Result<storage::Departure>>(past.depart(to, known, executor));
+        return [this, number, departure] { depart(number, std::move(*departure)); };
+    });
+}
+
+void TimeTravel::depart(std::uint64_t number, Result<storage::Departure> departure) {
+    Departing departing = std::move(departing_.extract(number).mapped());
+    if (!departure)
+        return departing.arrived(departure.error());
+    if (departing.departed)
+        departing.departed();
+    journeys_.push_back({.number = number,
+                         .rerun = std::move(departure->from),
+                         .to = departure->to,
+                         .there = std::move(departure->there),
+                         .arrived = std::move(departing.arrived)});
+}
+
+void TimeTravel::give_up(std::uint64_t number) {
+    const auto journey = std::ranges::find(journeys_, number, &Journey::number);
+    if (journey == journeys_.end())
+        return;
+    const Arrived gave_up = std::move(journey->arrived);
+    journeys_.erase(journey);
+    gave_up(
+        refusal(RefusalCode::FailedPrecondition,
+                "another moment was asked for meanwhile, and that is shown: seek again if this one is still wanted"));
 }
 
 void TimeTravel::begin_journey(const std::string& world, std::uint64_t generation, Arrived arrived) {
-    look_at(world, [this, generation, arrived = std::move(arrived)](const Result<simulation::Recording>& there,
-                                                                    const storage::Past& past) {
-        if (!there)
-            return arrived(there.error());
-        const auto moment = past.find({.generation = generation, .tick = {}}, *there);
-        if (!moment)
-            return arrived(moment.error());
-        set_out(past, *moment, arrived);
+    const auto past = past_of(world);
+    if (!past)
+        return arrived(past.error());
+    once_written(world, [this, world, generation, past = *past, arrived = std::move(arrived)](bool all_is_written) {
+        set_out(past, storage::WantedMoment{.generation = generation, .tick = {}},
+                all_is_written ? known_of(world, past.run_id()) : simulation::Recording{}, arrived);
     });
 }
 
@@ -177,17 +205,18 @@ void TimeTravel::travel(const std::function<bool()>& stop) {
         journeys_.erase(journeys_.begin() + static_cast<std::ptrdiff_t>(i));
         const simulation::Moment& there = journey.rerun.world().moment();
         if (there.generation == journey.to.generation && there.tick == journey.to.tick)
-            journey.arrived(std::move(journey.rerun));
+            journey.arrived(Arrival{std::move(journey.rerun), std::move(journey.there)});
         else
             journey.arrived(refusal(RefusalCode::DataLoss,
                                     "simulated again, the run is over before the moment that its file tells of"));
     }
 }
 
-void TimeTravel::arrive_in(simulation::Entry& entry, Look& look, storage::Rerun rerun) {
-    look.changes = rerun.changes();
+void TimeTravel::arrive_in(simulation::Entry& entry, Look& look, Arrival arrival) {
+    look.changes = arrival.rerun.changes();
     look.refreshed = {};
-    entry.world = std::move(rerun).take();
+    entry.world = std::move(arrival.rerun).take();
+    entry.recording = std::move(arrival.there);
     (void)entry.world.take_events(); // of the way there
     arrivals_.push_back(entry.name);
 }
@@ -211,34 +240,32 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
                                                     " pasts already: try again when one of them is closed"));
     const std::string name = (*origin)->is_look_back() ? (*origin)->recording->past_of : (*origin)->name;
+    const std::string world = (*origin)->name;
+    const auto past = past_of(world);
+    if (!past)
+        return reply(laboratory_, past.error());
     ++opening_[request.owner];
     const auto opened = [this, owner = request.owner, reply](const Result<std::string>& look) {
         if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0)
             opening_.erase(opening);
         reply(laboratory_, look);
     };
-    look_at(
-        (*origin)->name, [this, name, request, opened](Result<simulation::Recording> there, const storage::Past& past) {
-            if (!there)
-                return opened(there.error());
-            there->past_of = name;
-            storage::WantedMoment at = request.at;
-            if (!at.generation && !at.tick)
-                at.generation = there->first_generation;
-            const auto moment = past.find(at, *there);
-            if (!moment)
-                return opened(within(moment.error(), "at"));
-            set_out(past, *moment,
-                    [this, name, past, there = *there, owner = request.owner, opened](Result<storage::Rerun> rerun) {
-                        if (!rerun)
-                            return opened(rerun.error());
-                        if (!opening_.contains(owner))
-                            return opened(refusal(RefusalCode::NotFound, "who asked for it is gone"));
-                        const std::string look_name = name + "@" + std::to_string(++last_look_);
-                        show(look_name, past, owner, *std::move(rerun), there);
-                        opened(look_name);
-                    });
+    once_written(world, [this, name, world, past = *past, request, opened](bool all_is_written) {
+        simulation::Recording known = all_is_written ? known_of(world, past.run_id()) : simulation::Recording{};
+        known.past_of = name;
+        std::optional<storage::WantedMoment> at;
+        if (request.at.generation || request.at.tick)
+            at = request.at;
+        set_out(past, at, known, [this, name, past, owner = request.owner, opened](Result<Arrival> arrival) {
+            if (!arrival)
+                return opened(within(arrival.error(), "at"));
+            if (!opening_.contains(owner))
+                return opened(refusal(RefusalCode::NotFound, "who asked for it is gone"));
+            const std::string look_name = name + "@" + std::to_string(++last_look_);
+            show(look_name, past, owner, *std::move(arrival));
+            opened(look_name);
         });
+    });
 }
 
 void TimeTravel::seek(const Seek& request, const PastReply& reply) {
@@ -252,44 +279,32 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
                                                      "past, as evoview does, or serve its file with evod replay",
                                           .violations = {}});
     const std::string& past_of = (*entry)->recording->past_of;
-    look_at(past_of.empty() ? name : past_of, [this, name, request, reply](Result<simulation::Recording> there,
-                                                                           const storage::Past& past) {
+    const std::string origin = past_of.empty() ? name : past_of;
+    once_written(origin, [this, name, origin, request, reply](bool all_is_written) {
         const auto look = looks_.find(name);
         if (look == looks_.end())
-            return reply(laboratory_, refusal(RefusalCode::NotFound, "the past has been closed: open it again"));
+            return reply(laboratory_, closed_since());
+        const storage::Past& past = look->second.past;
         // The world may have begun another run: what is looked at is still the one of the look.
-        if (!there || past.run_id() != look->second.past.run_id())
-            there = look->second.past.recording();
-        if (!there)
-            return reply(laboratory_, there.error());
-        simulation::Entry& shown = *entry_of(name);
-        there->past_of = shown.recording->past_of;
-        there->last_tick = std::max(there->last_tick, shown.recording->last_tick);
-        there->last_generation = std::max(there->last_generation, shown.recording->last_generation);
-        const auto moment = look->second.past.find(request.to, *there);
-        if (!moment)
-            return reply(laboratory_, within(moment.error(), "to"));
-        // A journey that is still under way to another moment is in vain now.
-        if (const auto old = std::ranges::find(journeys_, look->second.journey, &Journey::number);
-            old != journeys_.end()) {
-            const Arrived gave_up = std::move(old->arrived);
-            journeys_.erase(old);
-            gave_up(refusal(
-                RefusalCode::FailedPrecondition,
-                "another moment was asked for meanwhile, and that is shown: seek again if this one is still wanted"));
+        simulation::Recording known = *entry_of(name)->recording;
+        if (all_is_written) {
+            const simulation::Recording now = known_of(origin, past.run_id());
+            known.last_generation = std::max(known.last_generation, now.last_generation);
+            known.last_tick = std::max(known.last_tick, now.last_tick);
         }
-        look->second.journey =
-            set_out(look->second.past, *moment, [this, name, there = *there, reply](Result<storage::Rerun> rerun) {
-                const auto seen_from = looks_.find(name);
-                if (!rerun || seen_from == looks_.end())
-                    return reply(laboratory_,
-                                 rerun ? refusal(RefusalCode::NotFound, "the past has been closed: open it again")
-                                       : rerun.error());
-                simulation::Entry& arrived = *entry_of(name);
-                arrived.recording = there;
-                arrive_in(arrived, seen_from->second, *std::move(rerun));
-                reply(laboratory_, name);
-            });
+        const auto arrived = [this, name, reply](Result<Arrival> arrival) {
+            if (!arrival)
+                return reply(laboratory_, within(arrival.error(), "to"));
+            const auto seen_from = looks_.find(name);
+            if (seen_from == looks_.end())
+                return reply(laboratory_, closed_since());
+            arrive_in(*entry_of(name), seen_from->second, *std::move(arrival));
+            reply(laboratory_, name);
+        };
+        set_out(past, request.to, known, arrived, [this, name](std::uint64_t journey) {
+            if (const auto look_on = looks_.find(name); look_on != looks_.end())
+                give_up(std::exchange(look_on->second.journey, journey));
+        });
     });
 }
 
@@ -324,11 +339,11 @@ std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
     for (auto& [name, look] : looks_) {
         simulation::Entry& entry = *entry_of(name);
         const bool at_its_end = entry.world.moment().tick >= entry.recording->last_tick;
-        if (!at_its_end || (entry.control.paused && !entry.control.until_tick))
+        if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || look.being_read)
             continue;
         if (now >= look.refreshed + refresh_time) {
             look.refreshed = now;
-            go_on(entry, look);
+            ask_for_news(name, look);
         }
         const auto again = look.refreshed + refresh_time;
         next = next ? std::min(*next, again) : again;
@@ -336,16 +351,30 @@ std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
     return next;
 }
 
-void TimeTravel::go_on(simulation::Entry& entry, Look& look) {
-    auto recording = look.past.recording();
-    if (!recording || recording->last_tick <= entry.recording->last_tick)
+void TimeTravel::ask_for_news(const std::string& name, Look& look) {
+    look.being_read = true;
+    reader_.ask([this, name, past = look.past]() -> PastReader::Then {
+        return [this, name, news = past.news()] {
+            const auto look_on = looks_.find(name);
+            if (look_on == looks_.end())
+                return;
+            look_on->second.being_read = false;
+            if (news)
+                go_on(*entry_of(name), look_on->second, *news);
+        };
+    });
+}
+
+void TimeTravel::go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news) {
+    if (news.there.last_tick <= entry.recording->last_tick)
         return;
     // Commands may have come since the last time.
-    if (!look.past.extend(look.changes))
+    if (!look.changes.extend(news.path, news.changes))
         return;
     look.changes.make_due(entry.world);
-    recording->past_of = entry.recording->past_of;
-    entry.recording = *std::move(recording);
+    const std::string past_of = entry.recording->past_of;
+    entry.recording = news.there;
+    entry.recording->past_of = past_of;
 }
 
 } // namespace evod::runtime

@@ -1,11 +1,15 @@
 // Time travel: worlds that show the past of a run, beside those that live. A moment of the past is simulated again from
 // the last one before it that the run's file tells, a slice at a time, so that nobody else waits for it.
 //
+//   asked for → all that has been is on the disk → its file is read → simulated up to the moment → there
+//
 // Owner        the simulation loop; on the simulation thread.
+// Threads      files are read by the past reader's.
 // Determinism  the past is made again bit for bit; living worlds are only looked at.
 #pragma once
 
 #include "server/runtime/mailbox.h"
+#include "server/runtime/past_reader.h"
 #include "server/storage/past.h"
 #include "server/storage/recorder.h"
 
@@ -27,7 +31,7 @@ class TimeTravel {
     /// Everything handed in outlives this. recorder: nullptr if runs are not kept.
     TimeTravel(simulation::Laboratory& laboratory, Mailbox& mailbox, base::Executor& executor,
                storage::Recorder* recorder)
-        : laboratory_{laboratory}, mailbox_{mailbox}, executor_{executor}, recorder_{recorder} {}
+        : laboratory_{laboratory}, mailbox_{mailbox}, executor_{executor}, recorder_{recorder}, reader_{mailbox} {}
 
     /// A world that shows the run of a file and is there for good.
     struct Replay {
@@ -51,7 +55,11 @@ class TimeTravel {
     std::optional<Clock::time_point> refresh(Clock::time_point now);
 
     /// A journey's end, or why it came to none.
-    using Arrived = std::function<void(base::Result<storage::Rerun>)>;
+    struct Arrival {
+        storage::Rerun rerun;
+        simulation::Recording there;
+    };
+    using Arrived = std::function<void(base::Result<Arrival>)>;
     /// To the first moment of a generation of a world's run. `arrived` is called in a later slice.
     void begin_journey(const std::string& world, std::uint64_t generation, Arrived arrived);
 
@@ -70,12 +78,19 @@ class TimeTravel {
         storage::ComingChanges changes;
         std::uint64_t owner = 0; // 0: nobody's, there for good
         Clock::time_point refreshed;
+        bool being_read = false;   // what it has come to
         std::uint64_t journey = 0; // the newest to another moment
     };
     struct Journey {
         std::uint64_t number = 0;
         storage::Rerun rerun;
         storage::PastMoment to;
+        simulation::Recording there;
+        Arrived arrived;
+    };
+    /// A journey that begins once the file has been read.
+    struct Departing {
+        std::function<void()> departed; // empty: nobody minds
         Arrived arrived;
     };
 
@@ -85,17 +100,26 @@ class TimeTravel {
     void close_all_of(std::uint64_t owner);
     /// Where the past of a world is told; refused where it is not.
     base::Result<storage::Past> past_of(const std::string& world) const;
-    /// Calls `then` on this thread with what there is to be seen of a world's run: all that has been, unless the disk
-    /// makes trouble.
-    using Seen = std::function<void(base::Result<simulation::Recording>, const storage::Past&)>;
-    void look_at(const std::string& world, Seen then);
-    std::uint64_t set_out(const storage::Past& past, const storage::PastMoment& to, Arrived arrived);
+    /// Calls `then` on this thread when all that a world has done is on the disk; with false if nobody knows, because
+    /// the disk makes trouble, or nothing of it is written.
+    void once_written(const std::string& world, std::function<void(bool all_is_written)> then);
+    /// Where a world is, if it lives and this is its run.
+    simulation::Recording known_of(const std::string& world, const simulation::RunId& run_id) const;
+    /// to        nothing: the first moment.
+    /// known     as Past::depart takes it.
+    /// departed  called with the journey's number when there is such a moment, and it begins.
+    void set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
+                 const simulation::Recording& known, Arrived arrived,
+                 const std::function<void(std::uint64_t)>& departed = {});
+    void depart(std::uint64_t number, base::Result<storage::Departure> departure);
+    /// A journey that is still under way is in vain.
+    void give_up(std::uint64_t number);
     /// A tick; true if the journey is over.
     static bool advance(Journey& journey, base::Executor& executor);
-    void show(const std::string& name, storage::Past past, std::uint64_t owner, storage::Rerun rerun,
-              const simulation::Recording& recording);
-    void arrive_in(simulation::Entry& entry, Look& look, storage::Rerun rerun);
-    void go_on(simulation::Entry& entry, Look& look);
+    void show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival);
+    void arrive_in(simulation::Entry& entry, Look& look, Arrival arrival);
+    void ask_for_news(const std::string& name, Look& look);
+    void go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news);
     simulation::Entry* entry_of(const std::string& world);
 
     simulation::Laboratory& laboratory_;
@@ -105,9 +129,11 @@ class TimeTravel {
     std::map<std::string, Look, std::less<>> looks_; // by the name of the world that shows it
     std::map<std::uint64_t, std::size_t> opening_;   // how many are on their way, by who wants them and is still there
     std::map<std::uint64_t, std::function<void(bool all_is_written)>> waiting_; // for the disk
+    std::map<std::uint64_t, Departing> departing_;                              // by the number of the journey
     std::vector<Journey> journeys_;
     std::vector<std::string> arrivals_;
     std::uint64_t last_journey_ = 0, last_look_ = 0, last_waiting_ = 0;
+    PastReader reader_; // last: what it reads comes back here
 };
 
 } // namespace evod::runtime

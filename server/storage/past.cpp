@@ -1,5 +1,6 @@
 #include "server/storage/past.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace evod::storage {
@@ -27,6 +28,36 @@ Refusal no_such(const char* field, const std::string& there_are, std::uint64_t g
     return {.code = RefusalCode::NotFound,
             .message = std::string{"the run has no such "} + field + ": there are " + there_are,
             .violations = {{field, there_are, std::to_string(got)}}};
+}
+
+Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulation::Recording& there) {
+    const auto generations = range_text(there.first_generation, there.last_generation);
+    if (!wanted.generation) {
+        const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
+        if (tick < there.first_tick || tick > there.last_tick)
+            return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
+        return PastMoment{file.generation_at(tick), tick};
+    }
+    const std::uint64_t generation = *wanted.generation;
+    if (generation < there.first_generation || generation > there.last_generation)
+        return no_such("generation", generations, generation);
+    const auto opening = file.opening_of(generation);
+    if (!opening)
+        return opening.error();
+    const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
+    std::uint64_t last = there.last_tick;
+    if (generation < there.last_generation) {
+        const auto next = file.opening_of(generation + 1);
+        if (!next)
+            return next.error();
+        last = *next ? (*next)->moment.tick : last;
+    }
+    // A fork may begin within its first generation.
+    const std::uint64_t begins = std::max(first, there.first_tick) - first;
+    const std::uint64_t tick = wanted.tick.value_or(begins);
+    if (tick < begins || tick > last - first)
+        return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
+    return PastMoment{generation, first + tick};
 }
 
 } // namespace
@@ -62,61 +93,39 @@ Result<std::string> Past::world_name() const {
     return (*file)->identity().name;
 }
 
-Result<simulation::Recording> Past::recording() const {
+Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, const simulation::Recording& known,
+                               base::Executor& executor) const {
     const auto file = open();
     if (!file)
         return file.error();
-    return recording_of(**file);
+    if (auto held = (*file)->hold_still(); !held)
+        return held.error();
+    simulation::Recording there = recording_of(**file);
+    there.past_of = known.past_of;
+    there.last_generation = std::max(there.last_generation, known.last_generation);
+    there.last_tick = std::max(there.last_tick, known.last_tick);
+    const auto to =
+        find(**file, wanted.value_or(WantedMoment{.generation = there.first_generation, .tick = {}}), there);
+    if (!to)
+        return to.error();
+    auto from = Rerun::before(**file, to->generation, to->tick, history_generations_known, executor);
+    if (!from)
+        return from.error();
+    return Departure{std::move(there), *to, *std::move(from)};
 }
 
-Result<PastMoment> Past::find(const WantedMoment& wanted, const simulation::Recording& there) const {
+Result<PastNews> Past::news() const {
     const auto file = open();
     if (!file)
         return file.error();
-    const auto generations = range_text(there.first_generation, there.last_generation);
-    if (!wanted.generation) {
-        const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
-        if (tick < there.first_tick || tick > there.last_tick)
-            return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
-        return PastMoment{(*file)->generation_at(tick), tick};
-    }
-    const std::uint64_t generation = *wanted.generation;
-    if (generation < there.first_generation || generation > there.last_generation)
-        return no_such("generation", generations, generation);
-    const auto opening = (*file)->opening_of(generation);
-    if (!opening)
-        return opening.error();
-    const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
-    std::uint64_t last = there.last_tick;
-    if (generation < there.last_generation) {
-        const auto next = (*file)->opening_of(generation + 1);
-        if (!next)
-            return next.error();
-        last = *next ? (*next)->moment.tick : last;
-    }
-    // A fork may begin within its first generation.
-    const std::uint64_t begins = std::max(first, there.first_tick) - first;
-    const std::uint64_t tick = wanted.tick.value_or(begins);
-    if (tick < begins || tick > last - first)
-        return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
-    return PastMoment{generation, first + tick};
-}
-
-Result<Rerun> Past::begin_before(const PastMoment& moment, base::Executor& executor) const {
-    const auto file = open();
-    if (!file)
-        return file.error();
-    return Rerun::before(**file, moment.generation, moment.tick, history_generations_known, executor);
-}
-
-Result<void> Past::extend(ComingChanges& coming) const {
-    const auto file = open();
-    if (!file)
-        return file.error();
-    const auto changes = parameter_changes(**file);
+    if (auto held = (*file)->hold_still(); !held)
+        return held.error();
+    PastNews news{.there = recording_of(**file), .path = (*file)->path(), .changes = {}};
+    auto changes = parameter_changes(**file);
     if (!changes)
         return changes.error();
-    return coming.extend(**file, *changes);
+    news.changes = *std::move(changes);
+    return news;
 }
 
 } // namespace evod::storage

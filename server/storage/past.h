@@ -4,7 +4,7 @@
 // The file is opened for each look, and found under the name of an ended run too, so a run may go on, be reset or be
 // thinned meanwhile.
 //
-// Owner        the simulation thread.
+// Threads      none of its own; asked by any, each with a copy of its own.
 #pragma once
 
 #include "server/simulation/laboratory.h"
@@ -28,6 +28,20 @@ struct PastMoment {
     std::uint64_t tick = 0; // since the run began
 };
 
+/// The way to a moment.
+struct Departure {
+    simulation::Recording there; // what there is to be seen
+    PastMoment to;
+    Rerun from; // the last moment up to that one that is known without simulating
+};
+
+/// What a run that goes on has come to.
+struct PastNews {
+    simulation::Recording there; // past_of is left empty
+    std::string path;            // of its file
+    std::vector<ParameterChange> changes;
+};
+
 class Past {
   public:
     /// Of how many generations before it a world of the past knows the statistics, at most.
@@ -42,17 +56,15 @@ class Past {
     /// The name of the world whose run it is, as the file says.
     base::Result<std::string> world_name() const;
 
-    /// What there is to be seen now; past_of is left empty.
-    base::Result<simulation::Recording> recording() const;
     /// Refused, saying what there is, unless that moment has been.
     ///
-    /// there  as recording() says, or a later end if the file tells all that was asked of the world until then.
-    base::Result<PastMoment> find(const WantedMoment& wanted, const simulation::Recording& there) const;
-    /// The last moment up to that one that is known without simulating.
-    base::Result<Rerun> begin_before(const PastMoment& moment, base::Executor& executor) const;
+    /// wanted  nothing: the first.
+    /// known   what there is to be seen at least, past_of among it: as somebody sees it already, or where the world is
+    ///         now, if the file tells all that was asked of it until then.
+    base::Result<Departure> depart(const std::optional<WantedMoment>& wanted, const simulation::Recording& known,
+                                   base::Executor& executor) const;
 
-    /// Takes in what has been asked of the world's parameters since.
-    base::Result<void> extend(ComingChanges& changes) const;
+    base::Result<PastNews> news() const;
 
     /// Its file, wherever it is now, to be read.
     base::Result<std::unique_ptr<RunFile>> open() const;

@@ -13,8 +13,11 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
+Refusal damaged(const std::string& path, const std::string& what) {
+    return {.code = RefusalCode::DataLoss, .message = path + " is damaged: " + what, .violations = {}};
+}
 Refusal damaged(const RunFile& file, const std::string& what) {
-    return {.code = RefusalCode::DataLoss, .message = file.path() + " is damaged: " + what, .violations = {}};
+    return damaged(file.path(), what);
 }
 
 /// The command that a request was; nothing if it is none that this program knows.
@@ -162,19 +165,19 @@ Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, con
 Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,
                                   std::span<const ParameterChange> changes, std::uint64_t after_entry) {
     ComingChanges coming{world, after_entry};
-    if (auto extended = coming.extend(file, changes); !extended)
+    if (auto extended = coming.extend(file.path(), changes); !extended)
         return extended.error();
     return Rerun{std::move(world), std::move(coming)};
 }
 
-Result<void> ComingChanges::extend(const RunFile& file, std::span<const ParameterChange> changes) {
+Result<void> ComingChanges::extend(const std::string& path, std::span<const ParameterChange> changes) {
     for (const ParameterChange& change : changes) {
         if (change.entry <= last_entry_)
             continue;
         // As Laboratory accepted it: whenever generations begin, what waits for a reset stays as it is.
         const auto assigned = simulation::assign(requested_, change.assignments);
         if (!assigned || !validate(taking_effect(active_, *assigned, base::Effect::NextGeneration)).empty())
-            return damaged(file, "entry " + std::to_string(change.entry) +
+            return damaged(path, "entry " + std::to_string(change.entry) +
                                      " of its journal asks for parameters that no world can have");
         requested_ = *assigned;
         last_entry_ = change.entry;

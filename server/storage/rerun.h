@@ -31,7 +31,9 @@ class ComingChanges {
         : active_{world.parameters().active}, requested_{world.parameters().requested}, last_entry_{after_entry} {}
 
     /// Takes in those that are new. Refused if one asks for parameters that no world can have.
-    base::Result<void> extend(const RunFile& file, std::span<const ParameterChange> changes);
+    ///
+    /// path  of the file that tells of them.
+    base::Result<void> extend(const std::string& path, std::span<const ParameterChange> changes);
     /// Makes those that came after the tick at which the world is now, up to the journal's entry `last`.
     void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
 
