@@ -106,8 +106,8 @@ class Reader:
         environment = {"PATH": os.environ["BUILD"] + "/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": str(self.home),
                        "PYTHONPATH": os.environ["BUILD"] + "/python", "LC_ALL": "C.UTF-8", "TZ": "UTC", "TMPDIR": str(folder),
                        "MPLBACKEND": "Agg", "MPLCONFIGDIR": os.environ["BUILD"] + "/matplotlib"}
-        # Looking for fonts is told, if it takes long, and is done once.
-        subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
+        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # looking for fonts is told if it takes long: once, here
+            subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
         self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, stdin=subprocess.PIPE,
                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
         self.count = 0
