@@ -109,7 +109,7 @@ class Reader:
         if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # looking for fonts is told if it takes long: once, here
             subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
         self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, stdin=subprocess.PIPE,
-                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True, start_new_session=True, umask=0o022)
         self.count = 0
 
     def close(self):
