@@ -16,10 +16,12 @@ Other blocks are not run. Comments before a block, which nobody sees who reads t
 
     <!-- not run: REASON -->       it needs what a test has not: root, a window, a person. All of them are counted and told
     <!-- ends with status N -->    that is what its last command is for
-    <!-- before: CODE -->          in the block's language, goes before it: what its reader has done or has anyway
-    <!-- varies: REGEX -->         of a ```text: each match stands for any other; the rest is compared letter by letter
+    <!-- before: CODE -->          goes before it, in its language, of sql in sh: what its reader has done, or has anyway
+    <!-- varies: REGEX -->         of a ```text: each match stands for any other, as evod's version always does; the rest is
+                                   compared letter by letter
 """
 import collections
+import contextlib
 import dataclasses
 import os
 import pathlib
@@ -33,6 +35,7 @@ import time
 
 SKIPPED, PATIENCE_S = 77, 60
 LANGUAGES = {"sh", "python", "sql", "text"}
+VERSION = r"(?<=evod )\d+\.\d+\.\d+"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -80,13 +83,14 @@ def blocks_of(document):
 
 def pattern(shown, varies):
     """A regular expression for what a document shows."""
+    varies = "|".join([*([varies] if varies else []), VERSION])
     lines = []
     for line in shown.splitlines():
         if line.strip() == "…":
             lines.append(r"(?:[^\n]*\n)*?")
             continue
         exact, end = "", 0
-        for match in re.finditer(varies, line) if varies else ():
+        for match in re.finditer(varies, line):
             exact += re.escape(line[end:match.start()]) + f"(?:{varies})"
             end = match.end()
         lines.append(exact + re.escape(line[end:]) + r"[ ]*\n")
@@ -100,39 +104,48 @@ class Reader:
         self.scratch, self.home = folder, folder / "home"
         work = self.home / "evod"
         (work / "build").mkdir(parents=True)
-        for name in "CMakeLists.txt", "experiments", "scripts", "client", "proto":
+        for name in "CMakeLists.txt", "experiments", "scripts", "proto":
             (work / name).symlink_to(ROOT / name)
+        made = shutil.ignore_patterns("__pycache__", "build", "*.egg-info")
+        shutil.copytree(ROOT / "client/python", work / "client/python", ignore=made)
         (work / "build/release").symlink_to(os.environ["BUILD"])
         environment = {"PATH": os.environ["BUILD"] + "/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": str(self.home),
                        "PYTHONPATH": os.environ["BUILD"] + "/python", "LC_ALL": "C.UTF-8", "TZ": "UTC", "TMPDIR": str(folder),
                        "MPLBACKEND": "Agg", "MPLCONFIGDIR": os.environ["BUILD"] + "/matplotlib"}
-        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # looking for fonts is told if it takes long: once, here
+        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # looking for fonts is told if it takes long: now
             subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
-        self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, stdin=subprocess.PIPE,
-                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True, start_new_session=True, umask=0o022)
+        self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, umask=0o022,
+                                     start_new_session=True, text=True, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                     stderr=subprocess.DEVNULL)
         self.count = 0
 
     def close(self):
         """Nothing that a block began outlives its document."""
-        os.killpg(self.bash.pid, signal.SIGKILL)
+        with contextlib.suppress(ProcessLookupError):  # a bash in which a command failed has ended, perhaps with all others
+            os.killpg(self.bash.pid, signal.SIGKILL)
         self.bash.communicate()
 
-    def works_in_background(self):
-        return bool(pathlib.Path(f"/proc/{self.bash.pid}/task/{self.bash.pid}/children").read_text())
+    def in_background(self):
+        return set(pathlib.Path(f"/proc/{self.bash.pid}/task/{self.bash.pid}/children").read_text().split())
+
+    def more_may_come(self):
+        """Whether what the last block began still runs."""
+        return bool(self.in_background() - self.before)
 
     def run(self, block):
         """Runs the block to its end; returns the file with what it says, to which its servers go on writing."""
-        code = block.marks.get("before", "") + "\n" + block.text
-        status = int(block.marks.get("ends with status", 0))
+        code, status = block.text, int(block.marks.get("ends with status", 0))
         if block.language == "sql":
             code = "\n".join(f"sqlite3 -readonly default.evod <<'SQL' | grep ''\n{question};\nSQL"
                              for question in code.split(";")[:-1])
         self.count += 1
         program, said, ended = (self.scratch / f"{self.count}.{part}" for part in ("program", "said", "ended"))
-        program.write_text(code)
-        how = f"/usr/bin/python3 {program}" if block.language == "python" else f"set -o pipefail; . {program}"
-        if not status and block.language != "python":
-            how = "set -e; " + how
+        program.write_text(block.marks.get("before", "") + "\n" + code)
+        if block.language == "python":
+            how = f'PYTHONPATH="$PWD:$PYTHONPATH" /usr/bin/python3 {program}'
+        else:
+            how = f"set -o pipefail {'+e' if status else '-e'}; . {program}"
+        self.before = self.in_background()
         self.bash.stdin.write(f"{how} >{said} 2>&1 </dev/null; echo $? >{ended}.part; set +e; mv {ended}.part {ended}\n")
         self.bash.stdin.flush()
         until = time.monotonic() + PATIENCE_S
@@ -172,7 +185,7 @@ def read(path, reader, verbose):
             if block.language == "text":
                 if said is None:
                     raise Wrong("nothing was run whose output this could be")
-                compare(block, said, reader.works_in_background)
+                compare(block, said, reader.more_may_come)
                 said = None
                 counts["outputs compared"] += 1
             elif "not run" in block.marks:
@@ -188,7 +201,7 @@ def read(path, reader, verbose):
             if said:
                 print(said.read_text(errors="replace"))
     return ([f"{count} {what}" for what, count in counts.items()] +
-            [f"{count} not run: {reason}" for reason, count in left_out.items()])
+            [f"{count} not run: {reason}" for reason, count in left_out.items()]) or ["nothing to run"]
 
 
 def main():

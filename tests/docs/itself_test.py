@@ -1,4 +1,4 @@
-"""documents_test.py fails where a document is wrong, and says where: documents of a few lines, right and wrong in one way."""
+"""documents_test.py fails where a document is wrong, and says where: short documents, right or wrong in one way."""
 import pathlib
 import subprocess
 import sys
@@ -46,6 +46,7 @@ class Documents(unittest.TestCase):
     def test_every_command_has_to_succeed(self):
         self.wrong("A word.\n" + block("sh", "echo before", "false", "true"), "line 3", "status 1", "before")
         self.wrong(block("sh", "false | cat"), "status 1")
+        self.assertNotIn("Traceback", follow(block("sh", "false"))[1])
         self.wrong(block("sh", "exit 3"), "status 3")
         self.wrong(block("python", "import sys", "sys.exit('no')"), "status 1", "no")
 
