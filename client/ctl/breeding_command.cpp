@@ -63,7 +63,7 @@ std::string contender_text(const v1::Breeding& bred, const BreedingOptions& opti
     for (int i = 0; i < shown; ++i) {
         const auto& c = bred.contenders(i);
         table.add({std::to_string(options.from + static_cast<std::uint32_t>(i)), fixed(c.fitness(), 2),
-                   std::to_string(c.rank()), fixed(c.weight(), 3),
+                   std::to_string(c.rank() + 1), fixed(c.weight(), 3),
                    c.slot_end() > 0 ? fixed(c.slot_begin(), 4) + "–" + fixed(c.slot_end(), 4) : "",
                    fixed(c.expected_copies(), 2), std::to_string(c.copies()),
                    c.has_migrant() ? "island " + std::to_string(c.migrant().island()) + ", organism " +

@@ -1,11 +1,7 @@
-"""The examples in the docstrings and in the README, as they stand there."""
-import contextlib
+"""The examples in the docstrings, as they stand there; the README is run by tests/docs."""
 import doctest
 import importlib
-import io
-import pathlib
 import pkgutil
-import re
 import unittest
 
 import evod
@@ -17,18 +13,6 @@ def load_tests(loader, tests, pattern):
             suite = doctest.DocTestSuite(importlib.import_module(module.name))
             tests.addTest(suite)
     return tests
-
-
-class Readme(unittest.TestCase):
-    def test_its_programs_run(self):
-        readme = pathlib.Path(__file__).resolve().parents[2] / "client" / "python" / "README.md"
-        programs = re.findall(r"^```python\n(.*?)^```", readme.read_text(), re.MULTILINE | re.DOTALL)
-        self.assertEqual(len(programs), 5)
-        for program in programs:
-            said = io.StringIO()
-            with contextlib.redirect_stdout(said):
-                exec(compile(program, str(readme), "exec"), {"__name__": "readme"})
-            self.assertTrue(said.getvalue(), program)
 
 
 class Docstrings(unittest.TestCase):

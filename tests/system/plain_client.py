@@ -1992,16 +1992,7 @@ class StartAndEnd(unittest.TestCase):
 
 
 class Documentation(unittest.TestCase):
-    """docs/PROTOCOL.md is right."""
-
-    def test_its_client_runs(self):
-        server = Server()
-        self.addCleanup(server.end)
-        ended = subprocess.run([sys.executable, "-c", documented_python(), str(server.port)], capture_output=True,
-                               text=True, timeout=patience_s, env={**os.environ, "PYTHONPATH": messages_path})
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertTrue(ended.stdout.startswith("evod "), ended.stdout)
-        self.assertTrue(ended.stdout.endswith("the same again\n"), ended.stdout)
+    """docs/PROTOCOL.md is right. Its programs are run by tests/docs."""
 
     def test_its_bytes_mean_what_it_says(self):
         text = open(protocol_path, encoding="utf-8").read()
