@@ -78,10 +78,12 @@ class Decoder(Told):
                 cls.same = next(frames)
             found, take = [], lab._link.core._take_picture
             lab._link.core._take_picture = lambda message: found.append(message) if message.codec == 1 else take(message)
-            lab.request(subscribe_snapshots=c.SubscribeSnapshots(world=world.name, rate_hz=1))
+            columns = c.SubscribeSnapshots(world=world.name, rate_hz=1)
+            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=columns))  # forgotten, it would be unsubscribed
             while not found:
                 world.info()
             (cls.columns,) = found
+            del held
 
     def assert_same(self, entities, reference, columns):
         for name in columns:
