@@ -5,6 +5,7 @@
 // Threads      none; nothing here is shared.
 #pragma once
 
+#include "proto/wire/compression.h"
 #include "proto/wire/little_endian.h"
 #include "proto/wire/result.h"
 
@@ -46,6 +47,7 @@ class BodyWriter {
     /// The lowest byte of each, then the next of each: those that are all but the same stand together.
     void planes(Numbers values, std::uint32_t bytes) {
         for (std::uint32_t plane = 0; plane < bytes; ++plane) {
+            seam();
             char* const to = grow(values.size());
             for (std::size_t i = 0; i < values.size(); ++i) {
                 to[i] = static_cast<char>(values[i] >> (8 * plane));
@@ -72,6 +74,7 @@ class BodyWriter {
         const Form form = *std::min_element(forms.begin(), forms.end(), [&](const Form& a, const Form& b) {
             return a.bytes(values.size()) < b.bytes(values.size());
         });
+        seam();
         number(static_cast<std::uint8_t>(form.width | (form.exceptions > 0 ? with_exceptions : 0)));
         if (form.width == 0) {
             exceptions(values, form.exceptions, [](std::uint32_t value) { return value != 0; });
@@ -99,8 +102,11 @@ class BodyWriter {
     }
 
     std::string take() { return std::move(body_); }
+    /// Before every column and plane; to be taken first.
+    Seams take_seams() { return std::move(seams_); }
 
   private:
+    void seam() { seams_.push_back(static_cast<std::uint32_t>(body_.size())); }
     template <class Condition>
     void exceptions(Numbers values, std::uint64_t count, const Condition& is_exception) {
         if (count == 0) {
@@ -130,6 +136,7 @@ class BodyWriter {
     }
 
     std::string body_;
+    Seams seams_;
 };
 
 /// Reads what a body should hold. After the first thing that is wrong everything is empty or 0.

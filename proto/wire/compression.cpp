@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <new>
+#include <span>
 #include <utility>
 
 namespace evod::wire {
@@ -13,6 +14,9 @@ namespace {
 
 // The fastest of the ordinary levels: a picture waits for it on the network thread.
 constexpr int level = 1;
+
+constexpr std::size_t block_bytes_min = 1024; // shorter ones would cost more than they save
+constexpr std::size_t block_bytes_more = 16;  // that a block can take beyond its content
 
 Damage not_zstd(const std::string& why) {
     return Damage{"a snapshot's body is not a zstd frame: " + why};
@@ -25,26 +29,58 @@ struct Compressor::Context {
         if (zstd == nullptr) {
             throw std::bad_alloc{};
         }
+        ZSTD_CCtx_setParameter(zstd, ZSTD_c_compressionLevel, level);
+        // Columns are noise or nearly all alike: short matches are chance there, and cost more than they save; and what
+        // there is to find is found with little memory.
+        ZSTD_CCtx_setParameter(zstd, ZSTD_c_minMatch, 7);
+        ZSTD_CCtx_setParameter(zstd, ZSTD_c_hashLog, 8);
     }
     ~Context() { ZSTD_freeCCtx(zstd); }
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
+    /// Room for so many bytes, whatever is in it.
+    std::span<char> room(std::size_t bytes) {
+        if (room_bytes < bytes) {
+            room_memory = std::make_unique_for_overwrite<char[]>(bytes);
+            room_bytes = bytes;
+        }
+        return {room_memory.get(), bytes};
+    }
+
     ZSTD_CCtx* zstd;
+    std::unique_ptr<char[]> room_memory;
+    std::size_t room_bytes = 0;
 };
 
 Compressor::Compressor() : context_{std::make_unique<Context>()} {}
 
 Compressor::~Compressor() = default;
 
-std::string Compressor::compress(std::string_view bytes) {
-    std::string compressed(ZSTD_compressBound(bytes.size()), '\0');
-    const std::size_t size =
-        ZSTD_compressCCtx(context_->zstd, compressed.data(), compressed.size(), bytes.data(), bytes.size(), level);
-    if (ZSTD_isError(size)) { // with room for the bound nothing but memory can be missing
-        throw std::bad_alloc{};
+std::string Compressor::compress(std::string_view bytes, const Seams& seams) {
+    ZSTD_CCtx* const zstd = context_->zstd;
+    const std::span room = context_->room(ZSTD_compressBound(bytes.size()) + seams.size() * block_bytes_more);
+    ZSTD_CCtx_reset(zstd, ZSTD_reset_session_only);
+    ZSTD_CCtx_setPledgedSrcSize(zstd, bytes.size());
+    ZSTD_outBuffer out{room.data(), room.size(), 0};
+    std::size_t begin = 0;
+    const auto put = [&](std::size_t end, ZSTD_EndDirective then) {
+        ZSTD_inBuffer in{bytes.data() + begin, end - begin, 0};
+        std::size_t left = 0;
+        do {
+            left = ZSTD_compressStream2(zstd, &out, &in, then);
+        } while (!ZSTD_isError(left) && left > 0 && out.pos < out.size);
+        if (ZSTD_isError(left) || left > 0) { // with room for the bound nothing but memory can be missing
+            throw std::bad_alloc{};
+        }
+        begin = end;
+    };
+    for (const std::uint32_t seam : seams) {
+        if (seam - begin >= block_bytes_min && bytes.size() - seam >= block_bytes_min) {
+            put(seam, ZSTD_e_flush);
+        }
     }
-    compressed.resize(size);
-    return compressed;
+    put(bytes.size(), ZSTD_e_end);
+    return {room.data(), out.pos};
 }
 
 Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max) {

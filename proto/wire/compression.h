@@ -9,8 +9,12 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace evod::wire {
+
+/// Where in a body one column ends and the next begins, rising.
+using Seams = std::vector<std::uint32_t>;
 
 /// One zstd frame after another, each by itself, with working memory that stays warm.
 class Compressor {
@@ -20,7 +24,10 @@ class Compressor {
     Compressor(const Compressor&) = delete;
     Compressor& operator=(const Compressor&) = delete;
 
-    std::string compress(std::string_view bytes);
+    /// seams  where numbers of another kind begin: what is long enough becomes a block of zstd's of its own, with a
+    /// code
+    ///        that suits it. What many random bytes stand beside would hardly be shortened otherwise.
+    std::string compress(std::string_view bytes, const Seams& seams = {});
 
   private:
     struct Context;

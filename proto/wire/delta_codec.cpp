@@ -51,6 +51,19 @@ class Foretold {
         return static_cast<std::uint32_t>(rounded_down);
     }
 
+    /// By how much that is wrong where things are `here` that were `there`; all of one length.
+    void corrections(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
+        if (ticks_ == base_ticks_) { // the usual case, which vectors do
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                to[i] = here[i] - there[i] - displacements[i];
+            }
+            return;
+        }
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            to[i] = here[i] - there[i] - (*this)(displacements[i]);
+        }
+    }
+
   private:
     std::int64_t ticks_, base_ticks_;
 };
@@ -66,24 +79,40 @@ bool have_ids(const Kind& kind, bool of_tile) {
     return kind.ids || of_tile;
 }
 
+/// same  1 if those at two indices are the same, having equal ids; else 0. Many are looked at at once, for mostly they
+/// are.
 template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
     Pairing pairing;
     std::uint32_t i = 0, j = 0;
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
+    constexpr std::uint32_t block = 64;
     while (i < base_count || j < next_count) {
-        if (j == next_count || (i < base_count && base.id[i] < next.id[j])) {
-            pairing.gone.push_back(i++);
-        } else if (i == base_count || next.id[j] < base.id[i]) {
-            pairing.come.push_back(j++);
-        } else {
-            if (!same(i, j)) {
-                pairing.gone.push_back(i);
-                pairing.come.push_back(j);
+        while (base_count - i >= block && next_count - j >= block) {
+            unsigned all_same = 1;
+            for (std::uint32_t k = 0; k < block; ++k) { // without a branch, so that it is done with vectors
+                all_same &= unsigned{base.id[i + k] == next.id[j + k]} & same(i + k, j + k);
             }
-            ++i;
-            ++j;
+            if (!all_same) {
+                break;
+            }
+            i += block;
+            j += block;
+        }
+        for (std::uint32_t steps = 0; steps < block && (i < base_count || j < next_count); ++steps) {
+            if (j == next_count || (i < base_count && base.id[i] < next.id[j])) {
+                pairing.gone.push_back(i++);
+            } else if (i == base_count || next.id[j] < base.id[i]) {
+                pairing.come.push_back(j++);
+            } else {
+                if (!same(i, j)) {
+                    pairing.gone.push_back(i);
+                    pairing.come.push_back(j);
+                }
+                ++i;
+                ++j;
+            }
         }
     }
     return pairing;
@@ -95,34 +124,45 @@ Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& nex
     if (!have_ids(kind, of_tile)) {
         return {};
     }
-    const auto same_size = [&](auto i, auto j) {
-        return base.width[i] == next.width[j] && (kind.health || base.height[i] == next.height[j]);
+    const auto same_at = [](Numbers a, Numbers b) {
+        return [a, b](std::uint32_t i, std::uint32_t j) { return unsigned{a[i] == b[j]}; };
     };
-    const auto same_place = [&](auto i, auto j) { return base.x[i] == next.x[j] && base.y[i] == next.y[j]; };
+    const auto width = same_at(base.width, next.width), height = same_at(base.height, next.height);
+    const auto x = same_at(base.x, next.x), y = same_at(base.y, next.y);
+    if (kind.health) {
+        return pair_by_id(base, next, width);
+    }
+    const auto same_size = [=](std::uint32_t i, std::uint32_t j) { return width(i, j) & height(i, j); };
     if (kind.displacements) {
         return pair_by_id(base, next, same_size);
     }
+    const auto same_place = [=](std::uint32_t i, std::uint32_t j) { return x(i, j) & y(i, j); };
     if (kind.sizes) {
-        return pair_by_id(base, next, [&](auto i, auto j) { return same_place(i, j) && same_size(i, j); });
+        return pair_by_id(base, next,
+                          [=](std::uint32_t i, std::uint32_t j) { return same_place(i, j) & same_size(i, j); });
     }
     return pair_by_id(base, next, same_place);
 }
 
-/// Calls stayed(base index, next index) for those that are in both, in their order.
+/// Calls stayed(base index, next index, count) for those that are in both, in their order: so many beside each other.
 template <class Stayed>
 void each_that_stayed(const Pairing& pairing, std::size_t base_count, const Stayed& stayed) {
     auto gone = pairing.gone.begin();
     auto come = pairing.come.begin();
-    std::size_t j = 0;
-    for (std::size_t i = 0; i < base_count; ++i) {
+    for (std::size_t i = 0, j = 0; i < base_count;) {
         if (gone != pairing.gone.end() && *gone == i) {
             ++gone;
-            continue;
-        }
-        for (; come != pairing.come.end() && *come == j; ++come) {
+            ++i;
+        } else if (come != pairing.come.end() && *come == j) {
+            ++come;
             ++j;
+        } else {
+            const std::size_t until_gone = (gone == pairing.gone.end() ? base_count : *gone) - i;
+            const std::size_t count = come == pairing.come.end() ? until_gone : std::min(until_gone, *come - j);
+            stayed(i, j, count);
+            i += count;
+            j += count;
         }
-        stayed(i, j++);
     }
 }
 
@@ -417,10 +457,16 @@ void move_on(const FootingView& base, const SceneView& next, std::uint16_t ticks
         const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
         const FootingView::Displacements& before = base.*kind.seen_displacements;
         const MovedOn::Displacements& now = of_kind(moved, kind);
-        each_that_stayed(pair(kind, from, to, next.of_tile), from.x.size(), [&](std::size_t i, std::size_t j) {
-            now.x[j] = ticks > 0 ? to.x[j] - from.x[i] : before.x[i];
-            now.y[j] = ticks > 0 ? to.y[j] - from.y[i] : before.y[i];
-        });
+        each_that_stayed(
+            pair(kind, from, to, next.of_tile), from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                const auto move = [=](Numbers here, Numbers there, Numbers was, std::span<std::uint32_t> is) {
+                    for (std::size_t k = 0; k < count; ++k) {
+                        is[j + k] = ticks > 0 ? here[j + k] - there[i + k] : was[i + k];
+                    }
+                };
+                move(to.x, from.x, before.x, now.x);
+                move(to.y, from.y, before.y, now.y);
+            });
     }
 }
 
@@ -432,7 +478,7 @@ Footing moved_on(const Footing& base, std::shared_ptr<const Scene> next, std::ui
     return footing;
 }
 
-std::string encode_keyframe(const FootingView& footing) {
+std::string encode_keyframe(const FootingView& footing, Seams* seams) {
     BodyWriter writer;
     writer.number(footing.ticks);
     for (const Kind& kind : kinds) {
@@ -443,10 +489,14 @@ std::string encode_keyframe(const FootingView& footing) {
         write_parts(writer, kind, entities, footing.scene.position_bytes, everyone,
                     kind.seen_displacements ? &(footing.*kind.seen_displacements) : nullptr);
     }
+    if (seams) {
+        *seams = writer.take_seams();
+    }
     return writer.take();
 }
 
-std::string encode_delta(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn* moved) {
+std::string encode_delta(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn* moved,
+                         Seams* seams) {
     BodyWriter writer;
     writer.number(ticks);
     const Foretold foretold{ticks, base.ticks};
@@ -458,30 +508,37 @@ std::string encode_delta(const FootingView& base, const SceneView& next, std::ui
         if (stayed_count == 0 || !kind.seen_displacements) {
             continue;
         }
-        Column columns((kind.health ? 3 : 2) * stayed_count);
-        const std::span x{columns.data(), stayed_count}, y{x.data() + stayed_count, stayed_count};
-        const std::span health{y.data() + stayed_count, kind.health ? stayed_count : 0};
+        const auto memory = std::make_unique_for_overwrite<std::uint32_t[]>(stayed_count);
+        const std::span corrections{memory.get(), stayed_count};
         const FootingView::Displacements& displacements = base.*kind.seen_displacements;
         const MovedOn::Displacements* const now = moved ? &of_kind(*moved, kind) : nullptr;
-        std::size_t k = 0;
-        each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j) {
-            const std::uint32_t way_x = to.x[j] - from.x[i], way_y = to.y[j] - from.y[i];
-            x[k] = way_x - foretold(displacements.x[i]);
-            y[k] = way_y - foretold(displacements.y[i]);
-            if (kind.health) {
-                health[k] = to.height[j] - from.height[i];
-            }
-            if (now) {
-                now->x[j] = ticks > 0 ? way_x : displacements.x[i];
-                now->y[j] = ticks > 0 ? way_y : displacements.y[i];
-            }
-            ++k;
-        });
-        writer.column(x);
-        writer.column(y);
+        const auto write = [&](Numbers here, Numbers there, Numbers was, std::span<std::uint32_t> is) {
+            std::size_t k = 0;
+            each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                foretold.corrections({here.data() + j, count}, {there.data() + i, count}, {was.data() + i, count},
+                                     corrections.data() + k);
+                for (std::size_t n = 0; now && n < count; ++n) {
+                    is[j + n] = ticks > 0 ? here[j + n] - there[i + n] : was[i + n];
+                }
+                k += count;
+            });
+            writer.column(corrections);
+        };
+        write(to.x, from.x, displacements.x, now ? now->x : std::span<std::uint32_t>{});
+        write(to.y, from.y, displacements.y, now ? now->y : std::span<std::uint32_t>{});
         if (kind.health) {
-            writer.column(health);
+            std::size_t k = 0;
+            each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                for (std::size_t n = 0; n < count; ++n) {
+                    corrections[k + n] = to.height[j + n] - from.height[i + n];
+                }
+                k += count;
+            });
+            writer.column(corrections);
         }
+    }
+    if (seams) {
+        *seams = writer.take_seams();
     }
     return writer.take();
 }

@@ -13,6 +13,7 @@
 #pragma once
 
 #include "evod/v1/stream.pb.h"
+#include "proto/wire/compression.h"
 #include "proto/wire/result.h"
 #include "proto/wire/snapshot_codec.h"
 
@@ -112,14 +113,15 @@ struct MovedOn {
 };
 void move_on(const FootingView& base, const SceneView& next, std::uint16_t ticks, const MovedOn& to);
 
-/// The body of a keyframe.
-std::string encode_keyframe(const FootingView& footing);
+/// The body of a keyframe. seams: set to those of the body.
+std::string encode_keyframe(const FootingView& footing, Seams* seams = nullptr);
 
 /// The body of a delta: `next` is `ticks` after `base`, and follows() it.
 ///
-/// to  where move_on() would write; null: nowhere.
+/// to     where move_on() would write; null: nowhere.
+/// seams  set to those of the body.
 std::string encode_delta(const FootingView& base, const SceneView& next, std::uint16_t ticks,
-                         const MovedOn* to = nullptr);
+                         const MovedOn* to = nullptr, Seams* seams = nullptr);
 
 /// What the fields beside a body say of it.
 struct BodyShape {

@@ -33,7 +33,11 @@ enum class Purpose : std::uint32_t {
     Mutation = 14,
     SurvivorMutation = 15,
     Migration = 16,
-    Shuffle = 17,        // of many; its seed is drawn, so island and generation are 0
+    Shuffle = 17,   // of many; its seed is drawn, so island and generation are 0
+    Replicate = 18, // seeds of the runs of a sweep, by replicate; island and generation are 0
+    FitnessShuffle = 19,
+    SignFlip = 20,       // of a permutation test; island and generation are 0
+    LatinHypercube = 21, // cells of a sweep, by parameter; island and generation are 0
     ScenarioTest = 1000, // tests and demonstrations
 };
 

@@ -34,7 +34,8 @@ struct BreedingRecord {
         double slot_end = 0;
         double expected_copies = 0; // of all the picks
         std::uint32_t copies = 0;
-        std::optional<Migrant> migrant; // that came and took its place; set by who knows of the migration
+        std::optional<Migrant> migrant;    // that came and took its place; set by who knows of the migration
+        std::optional<double> own_fitness; // what it came to, if `fitness` was shuffled; set by who knows of that
     };
     struct Pick {
         std::uint32_t organism = 0;

@@ -16,8 +16,10 @@
 #include "server/evolution/chromosome.h"
 #include "server/evolution/pairing.h"
 #include "server/evolution/parameters.h"
+#include "server/evolution/price.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +38,9 @@ struct NextGeneration {
     std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the last generation, best first
     std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 were kept, the elite among them; then children
     std::uint64_t clamped_count = 0; // genes that were out of bounds and were put onto them
+    // From the generation before; set by who knows it as it was before migrants came. None: it is the first, or nobody
+    // knows.
+    std::optional<SelectionAccount> account = std::nullopt;
 };
 
 /// How the places of the next generation are shared out.

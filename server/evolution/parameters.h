@@ -38,6 +38,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     COUNT(replaced_count, 2, 1, 4'000'000, "organisms", NextTick, "How many of the worst leave each generation (steady_state).") \
     COUNT(elite_count, 0, 0, 4'000'000, "organisms", NextTick, "How many of the best are always kept, unchanged.")      \
     FLAG(mutate_survivors, false, NextTick, "Whether survivors are mutated too; the elite never is.")                  \
+    FLAG(shuffle_fitness, false, NextTick, "Whether the fitness is dealt out anew among an island's organisms, by chance, before anyone migrates or is selected: a control for experiments, with the pressure of the selection and nothing to press on. Statistics and criteria keep the true fitness.") \
     CHOICE(fitness_scaling, FitnessScaling, None, NextTick, "What is done to the fitness before the selection sees it.") \
     REAL(ranking_pressure, 1.5, 1, 2, "", NextTick, "Expected copies of the best under linear_ranking; 1 is no pressure.") \
     REAL(ranking_decay, 0.95, 0.01, 1, "", NextTick, "Weight of each rank relative to the next better one under exponential_ranking.") \

@@ -53,10 +53,11 @@ class TimeHistogram {
         return made;
     }();
 
-    void add(duration took) {
+    /// times: things that took so long each.
+    void add(duration took, std::uint64_t times = 1) {
         const auto ns = static_cast<std::uint64_t>(std::max(took, duration{0}).count());
-        counts_[bucket_of(ns)].add();
-        sum_ns_.add(ns);
+        counts_[bucket_of(ns)].add(times);
+        sum_ns_.add(ns * times);
     }
 
     /// Of a bucket, 0 to bounds.size().

@@ -15,8 +15,9 @@ namespace evod::metrics {
 
 struct World {
     std::string name;
-    TimeHistogram tick_time; // with what was written down and shown of the tick
-    Gauge ticks_per_s;       // measured; 0 while it stands
+    TimeHistogram tick_time;    // with what was written down and shown of the tick; the mean of those timed together
+    TimeHistogram picture_time; // that the simulation took to give a picture away
+    Gauge ticks_per_s;          // measured; 0 while it stands
 };
 
 class Worlds {

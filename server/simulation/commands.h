@@ -6,6 +6,7 @@
 #include "server/base/random.h"
 #include "server/simulation/first_population.h"
 #include "server/simulation/parameters.h"
+#include "server/simulation/schedule.h"
 
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct CreateWorld {
     base::Seed seed;
     RunId run_id;
     FirstPopulation first_population = {}; // that a world with these parameters can have
+    Schedule schedule = {};                // in which faults_of() finds nothing; begins with the parameters
 };
 struct DeleteWorld {
     std::string world;
@@ -68,6 +70,13 @@ struct SetParameters {
     std::vector<Assignment> assignments;
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
+    std::optional<PlannedMoment> at = std::nullopt; // nothing: at once
+    std::string by = {};                            // who plans it, as others are told
+};
+/// Takes back what was planned.
+struct CancelChange {
+    std::string world;
+    std::uint64_t id;
 };
 
 struct ForkWorld {
@@ -79,7 +88,7 @@ struct ForkWorld {
     RunId run_id;
 };
 
-using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume, SetSpeed,
-                             SetParameters, ForkWorld>;
+using Command = std::variant<CreateWorld, DeleteWorld, ResetWorld, Run, RunUntilTick, ReleaseLease, Pause, Resume,
+                             SetSpeed, SetParameters, CancelChange, ForkWorld>;
 
 } // namespace evod::simulation

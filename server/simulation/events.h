@@ -29,9 +29,24 @@ struct Extinction {
 struct RunTerminated {
     evolution::Outcome outcome;
 };
+/// What was planned for a moment was done.
+struct ParametersChanged {
+    std::uint64_t planned = 0;      // PlannedChange::id; 0: the schedule of the experiment
+    std::string by;                 // who planned it; empty for the schedule
+    std::vector<std::string> names; // of those that were assigned
+    std::uint64_t revision;
+};
+/// What was planned for a moment does not go together with what holds there, and was left out.
+struct ChangeDropped {
+    std::uint64_t planned = 0;
+    std::string by;                 // as above
+    std::vector<std::string> names; // of those that were to be assigned
+    std::vector<base::Violation> violations;
+};
 struct GoalReached {}; // told generations or ticks are over: the world waits, or is paused
 
-using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, GoalReached>;
+using EventKind = std::variant<GenerationFinished, MigrationHappened, Extinction, RunTerminated, ParametersChanged,
+                               ChangeDropped, GoalReached>;
 
 struct Event {
     std::string world;

@@ -1,9 +1,12 @@
 #include "server/simulation/experiment.h"
 
+#include "server/simulation/json_text.h"
+
 #include <boost/json.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
 
 namespace evod::simulation {
@@ -11,18 +14,13 @@ namespace {
 
 namespace json = boost::json;
 
-std::size_t line_of(std::string_view text, std::size_t offset) {
-    const std::string_view before = text.substr(0, offset);
-    return 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
-}
-
 struct Field {
     std::string_view name;
     std::size_t line;
     std::string_view from_value; // the text from its value on
 };
 
-/// The fields of the object that `text` is, in the order in which they stand; `text` is JSON.
+/// The fields of the object that `text` begins with, in the order in which they stand; it is JSON.
 std::vector<Field> fields_of(std::string_view text) {
     std::vector<Field> fields;
     std::size_t line = 1; // a JSON string holds no line breaks
@@ -31,6 +29,8 @@ std::vector<Field> fields_of(std::string_view text) {
         line += text[i] == '\n';
         depth += text[i] == '{' || text[i] == '[';
         depth -= text[i] == '}' || text[i] == ']';
+        if (depth == 0 && (text[i] == '}' || text[i] == ']'))
+            break; // what comes then is not of this object
         if (text[i] != '"')
             continue;
         const std::size_t begin = ++i;
@@ -89,24 +89,177 @@ std::optional<ParameterValue> to_parameter_value(const json::value& value, std::
     return std::nullopt;
 }
 
+/// As an experiment file has it.
+std::string json_text(const ParameterValue& value) {
+    return std::holds_alternative<std::string>(value) ? "\"" + to_text(value) + "\"" : to_text(value);
+}
+
+/// "mutation_chance at generation 30"
+std::string at_generation(std::string_view name, std::uint64_t generation) {
+    return std::string{name} + " at generation " + std::to_string(generation);
+}
+
+std::optional<std::uint64_t> generation_of(std::string_view key) {
+    std::uint64_t generation = 0;
+    const auto read = std::from_chars(key.data(), key.data() + key.size(), generation);
+    const bool good = read.ec == std::errc{} && read.ptr == key.data() + key.size() && generation > 0 && key[0] != '0';
+    return good ? std::optional{generation} : std::nullopt;
+}
+
+/// A parameter's values by generation.
+class ValuesByGeneration {
+  public:
+    /// text  the file's.
+    /// from  the text from the object on; nothing where the name is no parameter's.
+    ValuesByGeneration(const std::string& name, const json::object& values, std::string_view text,
+                       std::string_view from)
+        : name_{name}, description_{find_parameter(name)} {
+        const std::size_t first_line = from.empty() ? 1 : line_of(text, text.size() - from.size());
+        fields_ = fields_of(from);
+        for (Field& field : fields_)
+            field.line += first_line - 1;
+        line_ = first_line;
+        if (description_ == nullptr) {
+            refuse(name_, line_, *fault_of({name_, ParameterValue{0u}}));
+        } else if (!can_be_scheduled(*description_)) {
+            refuse(name_, line_,
+                   {{}, "one value, as it can only change when a world is reset", "values by generation"});
+        } else if (values.empty()) {
+            refuse(name_, line_, {{}, R"(a generation and its value, as in {"1": 0.2, "30": 0.05})", "{}"});
+        } else if (values.size() > 2 * Schedule::values_max) {
+            // Not looked at one by one.
+            refuse(name_, line_,
+                   {{}, "at most " + std::to_string(Schedule::values_max) + " values", std::to_string(values.size())});
+        } else {
+            std::set<std::string_view> seen;
+            for (const Field& field : fields_)
+                if (!seen.insert(field.name).second)
+                    refuse(name_ + " at generation " + std::string{field.name}, field.line,
+                           {{}, "given once", "given twice"});
+            for (const auto& [key, value] : values)
+                read(std::string{key}, value);
+        }
+    }
+
+    const std::map<std::uint64_t, ParameterValue>& values() const { return values_; }
+    const std::vector<base::Violation>& violations() const { return violations_; }
+    /// Nothing if the generation has none.
+    std::optional<std::size_t> line_at(std::uint64_t generation) const {
+        const auto found = std::ranges::find(fields_, std::to_string(generation), &Field::name);
+        return found == fields_.end() ? std::nullopt : std::optional{found->line};
+    }
+
+  private:
+    void refuse(const std::string& field, std::size_t line, base::Violation violation) {
+        violation.field = with_line(field, line);
+        violations_.push_back(std::move(violation));
+    }
+    void read(const std::string& key, const json::value& value) {
+        const auto field = std::ranges::find(fields_, key, &Field::name);
+        const std::size_t line = field == fields_.end() ? line_ : field->line;
+        const auto generation = generation_of(key);
+        if (!generation)
+            return refuse(name_, line, {{}, R"(generations as keys: "1", "30", …)", '"' + key + '"'});
+        auto parameter = to_parameter_value(value, from_value_of(fields_, key));
+        if (!parameter)
+            return refuse(at_generation(name_, *generation), line,
+                          {{}, description_->allowed(), json::serialize(value)});
+        if (auto fault = fault_of({name_, *parameter}))
+            return refuse(at_generation(name_, *generation), line, *std::move(fault));
+        values_.emplace(*generation, *std::move(parameter));
+    }
+
+    std::string name_;
+    const ParameterDescription* description_;
+    std::size_t line_ = 1;
+    std::vector<Field> fields_;
+    std::map<std::uint64_t, ParameterValue> values_;
+    std::vector<base::Violation> violations_;
+};
+
+base::Result<json::value> parse_object(std::string_view text) {
+    auto document = parse_json(text);
+    if (document && !document->is_object())
+        return refusal("not an experiment: a JSON object of parameters is needed");
+    return document;
+}
+
+/// What a file plans, and where it says so.
+class ScheduleReader {
+  public:
+    /// Takes a parameter's values after generation 1; that one, if it is given, is for the caller.
+    ///
+    /// from_value  the text from the value on.
+    std::optional<ParameterValue> read(const std::string& name, const json::object& values, std::string_view text,
+                                       std::string_view from_value, std::vector<base::Violation>& violations) {
+        const auto [place, added] = read_.try_emplace(name, name, values, text, from_value);
+        const ValuesByGeneration& read = place->second;
+        violations.insert(violations.end(), read.violations().begin(), read.violations().end());
+        if (!read.violations().empty())
+            return std::nullopt;
+        std::optional<ParameterValue> first;
+        for (const auto& [generation, value] : read.values())
+            if (generation == 1)
+                first = value;
+            else
+                schedule_.add(generation, {name, value});
+        return first;
+    }
+
+    /// parameters  of generation 1, valid.
+    std::vector<base::Violation> finish(const Parameters& parameters, const std::vector<Field>& fields) {
+        if (const std::size_t count = schedule_.value_count(); count > Schedule::values_max)
+            return {{"the schedule", "at most " + std::to_string(Schedule::values_max) + " values after generation 1",
+                     std::to_string(count)}};
+        schedule_.begin_with(parameters);
+        std::vector<base::Violation> violations;
+        for (const ScheduleFault& fault : faults_of(schedule_, parameters)) {
+            const std::string field = at_generation(fault.violation.field, fault.generation);
+            const auto read = read_.find(fault.violation.field);
+            const auto line = read == read_.end() ? std::nullopt : read->second.line_at(fault.generation);
+            violations.push_back({line ? with_line(field, *line) : field + line_text(fields, fault),
+                                  fault.violation.allowed, fault.violation.got});
+        }
+        return violations;
+    }
+    const Schedule& schedule() const { return schedule_; }
+
+  private:
+    /// Of the parameter, or of what changes in that generation, where the file does not name that one.
+    std::string line_text(const std::vector<Field>& fields, const ScheduleFault& fault) const {
+        const auto found = std::ranges::find(fields, fault.violation.field, &Field::name);
+        if (found != fields.end())
+            return with_line("", found->line);
+        for (const Assignment& change : schedule_.at(fault.generation))
+            if (const auto line = read_.at(change.name).line_at(fault.generation))
+                return with_line("", *line);
+        return "";
+    }
+
+    std::map<std::string, ValuesByGeneration, std::less<>> read_;
+    Schedule schedule_;
+};
+
+/// "{"1": 0.2, "30": 0.05}"; empty if nothing is planned for the parameter.
+std::string values_text(const Schedule& schedule, std::string_view name) {
+    std::string text;
+    for (const auto& [generation, assignments] : schedule.changes())
+        for (const Assignment& assignment : assignments)
+            if (assignment.name == name)
+                text +=
+                    (text.empty() ? "{\"" : ", \"") + std::to_string(generation) + "\": " + json_text(assignment.value);
+    return text.empty() ? text : text + "}";
+}
+
 } // namespace
 
 base::Result<Experiment> parse_experiment(std::string_view text) {
-    json::stream_parser parser;
-    boost::system::error_code error;
-    const std::size_t read = parser.write_some(text, error);
-    if (!error && read < text.size() && text.find_first_not_of(" \t\r\n", read) != std::string_view::npos)
-        error = json::error::extra_data;
-    if (!error)
-        parser.finish(error);
-    if (error)
-        return refusal("not JSON: line " + std::to_string(line_of(text, std::min(read, text.size()))) + ": " +
-                       error.message());
-    const json::value document = parser.release();
-    if (!document.is_object())
-        return refusal("not an experiment: a JSON object of parameters is needed");
+    const base::Result<json::value> document = parse_object(text);
+    if (!document)
+        return document.error();
 
     Experiment experiment;
+    ScheduleReader schedule;
     std::vector<Assignment> assignments;
     std::vector<base::Violation> violations;
     bool reference_given = false;
@@ -115,7 +268,7 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     for (const Field& field : fields)
         if (!seen.insert(field.name).second)
             violations.push_back({with_line(field.name, field.line), "given once", "given twice"});
-    for (const auto& [key, value] : document.get_object()) {
+    for (const auto& [key, value] : document->get_object()) {
         const std::string name{key};
         if (name == "seed") {
             if (value.is_uint64() || (value.is_int64() && value.get_int64() >= 0))
@@ -128,6 +281,10 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
                 experiment.description = std::string{value.get_string()};
             else
                 violations.push_back({with_line(fields, name), "a text", json::serialize(value)});
+        } else if (value.is_object()) {
+            reference_given |= name == "reference_population";
+            if (auto first = schedule.read(name, value.get_object(), text, from_value_of(fields, name), violations))
+                assignments.push_back({name, *std::move(first)});
         } else if (auto parameter = to_parameter_value(value, from_value_of(fields, name))) {
             reference_given |= name == "reference_population";
             assignments.push_back({name, std::move(*parameter)});
@@ -149,26 +306,69 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
             if (violation.field != "reference_population" || reference_given)
                 violations.push_back({with_line(fields, violation.field), violation.allowed, violation.got});
     }
+    if (violations.empty())
+        violations = schedule.finish(*parameters, fields);
     if (!violations.empty())
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "the experiment has fields that cannot be used",
                              .violations = std::move(violations)};
     experiment.parameters = *parameters;
+    experiment.schedule = schedule.schedule();
     return experiment;
 }
 
-std::string to_experiment_text(const Parameters& parameters, Written written) {
+base::Result<Schedule> parse_schedule(std::string_view text) {
+    const base::Result<json::value> document = parse_object(text);
+    if (!document)
+        return document.error();
+    const std::vector<Field> fields = fields_of(text);
+    std::vector<base::Violation> violations;
+    Schedule schedule;
+    for (const auto& [key, value] : document->get_object()) {
+        const std::string name{key};
+        if (!value.is_object()) {
+            violations.push_back({with_line(fields, name), "values by generation", json::serialize(value)});
+            continue;
+        }
+        const ValuesByGeneration read{name, value.get_object(), text, from_value_of(fields, name)};
+        violations.insert(violations.end(), read.violations().begin(), read.violations().end());
+        if (read.violations().empty() && !read.values().contains(1))
+            violations.push_back({with_line(fields, name), "a value for generation 1", "none"});
+        for (const auto& [generation, parameter] : read.values())
+            schedule.add(generation, {name, parameter});
+    }
+    if (violations.empty() && schedule.value_count() > Schedule::values_max)
+        violations.push_back({"the schedule", "at most " + std::to_string(Schedule::values_max) + " values",
+                              std::to_string(schedule.value_count())});
+    if (!violations.empty())
+        return base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                             .message = "the schedule cannot be used",
+                             .violations = std::move(violations)};
+    return schedule;
+}
+
+std::string to_schedule_text(const Schedule& schedule) {
+    std::string text = "{";
+    for (const Assignment& scheduled : schedule.at(1)) {
+        text += text.size() > 1 ? ",\n  " : "\n  ";
+        text += "\"" + scheduled.name + "\": " + values_text(schedule, scheduled.name);
+    }
+    return text + (text.size() > 1 ? "\n}\n" : "}\n");
+}
+
+std::string to_experiment_text(const Parameters& parameters, Written written, const Schedule& schedule) {
     std::string text = "{";
     for (const ParameterDescription& description : parameter_registry()) {
         const ParameterValue value = description.get(parameters);
         // What a reader takes where nothing is said.
+        const std::string scheduled = values_text(schedule, description.name);
         const bool follows = description.name == "reference_population";
-        if (written == Written::Differences && (follows ? parameters.reference_population == parameters.population_size
-                                                        : value == description.default_value()))
+        if (written == Written::Differences && scheduled.empty() &&
+            (follows ? parameters.reference_population == parameters.population_size
+                     : value == description.default_value()))
             continue;
         text += text.size() > 1 ? ",\n  " : "\n  ";
-        text += "\"" + std::string{description.name} + "\": ";
-        text += std::holds_alternative<std::string>(value) ? "\"" + to_text(value) + "\"" : to_text(value);
+        text += "\"" + std::string{description.name} + "\": " + (scheduled.empty() ? json_text(value) : scheduled);
     }
     return text + (text.size() > 1 ? "\n}\n" : "}\n");
 }

@@ -541,25 +541,19 @@ std::optional<std::size_t> Island::body_of(std::uint32_t id) const {
     return body_of_[id];
 }
 
-LiveStatistics Island::live_statistics() const {
-    // In whole numbers, so that the sum does not depend on the order of bodies; what is behind the point is summed
-    // apart, so that no health that can be reached overflows either sum.
-    constexpr double parts = 1 << 16;
-    std::int64_t whole = 0, rest = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i)
-        if (!bodies_.is_void(i)) {
-            const auto units = static_cast<std::int64_t>(living_.health[i]);
-            whole += units;
-            rest += std::llrint((static_cast<double>(living_.health[i]) - static_cast<double>(units)) * parts);
-        }
-    const double health = static_cast<double>(whole) + static_cast<double>(rest) / parts;
+LiveStatistics Island::live_counts() const {
     return {.organism_count = static_cast<std::uint32_t>(born_.genes.cols()),
             .alive_count = alive_count_,
-            .health_mean = alive_count_ == 0 ? 0 : health / alive_count_,
             .food_eaten = counts_.food_eaten,
             .poison_eaten = counts_.poison_eaten,
             .starved_count = counts_.starved_count,
             .poisoned_count = counts_.poisoned_count};
+}
+
+LiveStatistics Island::live_statistics() const {
+    LiveStatistics live = live_counts();
+    live.health_mean = mean_health(std::span{living_.health}.first(bodies_.size()), alive_count_);
+    return live;
 }
 
 } // namespace evod::simulation

@@ -89,6 +89,8 @@ class Island {
     const Fate& fate() const { return fate_; }
     const IslandCounts& counts() const { return counts_; }
     LiveStatistics live_statistics() const;
+    /// All of it but health_mean, for which everybody would have to be looked at.
+    LiveStatistics live_counts() const;
 
   private:
     void place(const Parameters& parameters, std::uint64_t generation, base::Executor& executor);

@@ -44,12 +44,44 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
 /// What happened in the past happens again; only how it is looked at can be changed.
 template <class C>
 std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
-    constexpr bool changes_what_happens =
-        std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> || std::is_same_v<C, SetParameters>;
+    constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
+                                          std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
     if (!changes_what_happens || !entry.recording)
         return std::nullopt;
     return refusal(RefusalCode::FailedPrecondition,
                    "this world shows what has been, and that cannot be changed: fork it");
+}
+
+std::string ids_of(const std::vector<PlannedChange>& planned) {
+    std::string ids;
+    for (const PlannedChange& change : planned)
+        ids += (ids.empty() ? "" : ", ") + std::to_string(change.id);
+    return ids.empty() ? "none: nothing is planned" : ids;
+}
+
+/// Why it cannot be planned; nothing if it can.
+std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& command) {
+    std::vector<base::Violation> violations;
+    const PlannedMoment& at = *command.at;
+    const Moment& now = world.moment();
+    if (!world.is_to_come(at))
+        violations.push_back({at.generation ? "set_parameters.at_generation" : "set_parameters.at_tick",
+                              "at least " + std::to_string(1 + (at.generation ? now.generation : now.tick)),
+                              std::to_string(at.generation ? *at.generation : *at.tick)});
+    for (const Assignment& assignment : command.assignments)
+        if (const auto* description = find_parameter(assignment.name);
+            description != nullptr && !can_be_scheduled(*description))
+            violations.push_back({"set_parameters." + assignment.name,
+                                  "to be set at once, for the next reset: while the world runs it cannot change",
+                                  to_text(assignment.value)});
+    if (!violations.empty())
+        return Refusal{.code = RefusalCode::InvalidArgument,
+                       .message = "this cannot be planned",
+                       .violations = std::move(violations)};
+    if (world.planned().size() >= planned_changes_max)
+        return refusal(RefusalCode::ResourceExhausted, "there are " + std::to_string(planned_changes_max) +
+                                                           " planned changes already: cancel one first");
+    return std::nullopt;
 }
 
 Applied applied_now(const Entry& entry) {
@@ -180,9 +212,9 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
     if (auto refused = refusal_of(command.name))
         return *refused;
-    entries_.push_back(
-        std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{},
-                                      World{command.parameters, command.seed, command.first_population}}));
+    entries_.push_back(std::make_unique<Entry>(
+        Entry{command.name, command.run_id, RunControl{},
+              World{command.parameters, command.seed, command.first_population, command.schedule}}));
     entries_.back()->storage = storage_;
     return Applied{.world = command.name, .tick = 0, .parameters = {}};
 }
@@ -200,8 +232,13 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
-    if (auto faults = faults_of(entry.world.first_population(), entry.world.parameters().requested, "population");
-        !faults.empty())
+    const Result<Parameters> beginning = entry.world.beginning();
+    if (!beginning)
+        return Refusal{.code = RefusalCode::FailedPrecondition,
+                       .message = "the run cannot begin with what its schedule has in generation 1 and the parameters "
+                                  "asked for: change those that are not scheduled, or create another world",
+                       .violations = beginning.error().violations};
+    if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty())
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message =
                            "the world was given its first population, with which a run with the parameters asked "
@@ -279,19 +316,37 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
                                   "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}}};
-    const Result<Parameters> requested = assign(world.parameters().requested, command.assignments, "set_parameters.");
+    if (command.at)
+        if (auto refused = refusal_of_plan(world, command))
+            return *refused;
+    const bool at_generation = command.at && command.at->generation;
+    const Result<Parameters> requested = (at_generation ? request_at_generation : request_of)(
+        world.parameters(), command.assignments, "set_parameters.");
     if (!requested)
         return requested.error();
-    // What waits for a reset may wait for ever, so the rest must go together without it.
-    const Parameters next = taking_effect(world.parameters().active, *requested, base::Effect::NextGeneration);
-    if (auto violations = validate(next, "set_parameters."); !violations.empty())
-        return Refusal{.code = RefusalCode::InvalidArgument,
-                       .message = "some parameters cannot have these values before the world is reset",
-                       .violations = std::move(violations)};
+    if (command.at) {
+        PlannedChange change{.id = 0, .at = *command.at, .assignments = command.assignments, .by = command.by};
+        if (!command.dry_run)
+            change.id = world.plan(change);
+        Applied planned = applied_now(entry);
+        planned.planned = std::move(change);
+        return planned;
+    }
     Applied applied = applied_now(entry);
     applied.parameters = after_request(world.parameters(), *requested);
     if (!command.dry_run)
         world.request_parameters(*requested);
+    return applied;
+}
+
+Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command) {
+    const std::string there_are = ids_of(entry.world.planned());
+    Applied applied = applied_now(entry);
+    applied.planned = entry.world.cancel(command.id);
+    if (!applied.planned)
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = "no change waits under that id: it was made, dropped or cancelled, or never planned",
+                       .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}}};
     return applied;
 }
 

@@ -83,6 +83,8 @@ struct Applied {
     std::string world;
     std::uint64_t tick = 0;                 // from which the change holds
     std::optional<ParameterSet> parameters; // SetParameters: the complete set, or what it would be
+    // SetParameters: what waits now, or with id 0 what would; CancelChange: what waits no more.
+    std::optional<PlannedChange> planned = std::nullopt;
 };
 
 class Laboratory {
@@ -129,6 +131,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const Resume&);
     base::Result<Applied> carry_out(Entry& entry, const SetSpeed&);
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
+    base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
     /// Why there can be no new world of that name; nothing if there can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;

@@ -125,6 +125,7 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name);
 struct Assignment {
     std::string name;
     ParameterValue value;
+    friend bool operator==(const Assignment&, const Assignment&) = default;
 };
 
 /// What is wrong with an assignment on its own: its name, its kind, its range.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace evod::simulation {
@@ -150,7 +151,22 @@ GenerationStatistics generation_statistics(const Island& island, const Parameter
     s.clamp_count = island.born().clamped_count;
     s.too_fast_count = island.counts().too_fast_count;
     s.speed_limit_count = island.counts().speed_limit_count;
+    s.account = island.born().account;
     return s;
+}
+
+double mean_health(std::span<const float> health, std::uint32_t alive_count) {
+    // In whole numbers, so that the sum does not depend on the order of bodies; what is behind the point is summed
+    // apart, so that no health that can be reached overflows either sum.
+    constexpr double parts = 1 << 16;
+    std::int64_t whole = 0, rest = 0;
+    for (const float of_one : health)
+        if (of_one != -std::numeric_limits<float>::infinity()) {
+            const auto units = static_cast<std::int64_t>(of_one);
+            whole += units;
+            rest += std::llrint((static_cast<double>(of_one) - static_cast<double>(units)) * parts);
+        }
+    return alive_count == 0 ? 0 : (static_cast<double>(whole) + static_cast<double>(rest) / parts) / alive_count;
 }
 
 } // namespace evod::simulation

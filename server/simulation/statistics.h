@@ -5,9 +5,11 @@
 
 #include "server/base/executor.h"
 #include "server/evolution/chromosome.h"
+#include "server/evolution/price.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -32,9 +34,13 @@ struct GenerationStatistics {
     std::uint64_t speed_limit_count = 0; // times max_speed_px_s acted
     std::uint32_t best_organism = 0;     // lowest id with the best fitness
     double simulated_s = 0;
+    // How the genes of this generation came from those of the one before. None in the first, and where nobody knows
+    // any more; it is known from the generation's beginning on, so a checkpoint does not have it.
+    std::optional<evolution::SelectionAccount> account = std::nullopt;
 };
 
-/// Calls visit(name, value) for every number, in the order in which files have them as columns.
+/// Calls visit(name, value) for every number but those of the account, in the order in which files have them as
+/// columns; those of the account come after them.
 ///
 /// Statistics  GenerationStatistics, or the same and const.
 template <class Statistics, class Visit>
@@ -81,5 +87,8 @@ struct LiveStatistics {
     std::uint64_t food_eaten = 0, poison_eaten = 0;
     std::uint32_t starved_count = 0, poisoned_count = 0;
 };
+
+/// LiveStatistics::health_mean. health: in any order, −infinity for what is void; alive_count: how many are not.
+double mean_health(std::span<const float> health, std::uint32_t alive_count);
 
 } // namespace evod::simulation

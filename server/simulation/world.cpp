@@ -2,6 +2,7 @@
 
 #include "server/base/assert.h"
 #include "server/base/inline_executor.h"
+#include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
 
 #include <algorithm>
@@ -11,16 +12,20 @@
 #include <utility>
 
 namespace evod::simulation {
-World::World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population)
-    : seed_{seed}, parameters_{parameters, parameters, 1}, first_population_{std::move(first_population)} {
+World::World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule)
+    : seed_{seed}
+    , parameters_{parameters, parameters, 1}
+    , first_population_{std::move(first_population)}
+    , schedule_{std::move(schedule)} {
     begin_run();
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-             base::Executor& executor, FirstPopulation first_population, Founders founders)
+             base::Executor& executor, FirstPopulation first_population, Founders founders, Schedule schedule)
     : seed_{seed}
     , parameters_{opening.parameters}
     , first_population_{std::move(first_population)}
+    , schedule_{std::move(schedule)}
     , moment_{opening.moment}
     , history_{std::move(history)}
     , progress_{opening.progress} {
@@ -43,10 +48,12 @@ World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_s
     History before = history_;
     while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
         before.pop_back();
-    return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_};
+    return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_, schedule_};
 }
 
 void World::become_fork() {
+    planned_.clear();
+    planned_count_ = 0;
     const auto is_inherited = [&](const GenerationRows& rows) {
         return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
     };
@@ -54,9 +61,15 @@ void World::become_fork() {
         history_.pop_front();
 }
 
+base::Result<Parameters> World::beginning() const {
+    return assign(parameters_.requested, schedule_.at(1));
+}
+
 void World::reset(base::Seed seed) {
     seed_ = seed;
-    parameters_.active = parameters_.requested;
+    parameters_.active = parameters_.requested = beginning().value();
+    planned_.clear();
+    planned_count_ = 0;
     history_.clear();
     events_.clear();
     begin_run();
@@ -132,7 +145,11 @@ evolution::Outcome World::outcome() const {
 std::vector<Intention> World::intentions(const Island& island, base::Range ids) const {
     if (generation_over_)
         return std::vector<Intention>(ids.end - ids.begin);
-    return island.intentions(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
+    std::optional<Parameters> first; // as they are once the generation's first tick is taken
+    if (moment_.generation_tick == 0)
+        first = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+    return island.intentions(first ? *first : parameters_.active,
+                             static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
 }
 
 std::uint64_t World::alive_count() const {
@@ -142,20 +159,93 @@ std::uint64_t World::alive_count() const {
     return alive;
 }
 
+std::uint64_t World::plan(PlannedChange change) {
+    EVOD_ASSERT(is_to_come(change.at));
+    return plan_anew(std::move(change));
+}
+
+std::uint64_t World::plan_anew(PlannedChange change) {
+    change.id = ++planned_count_;
+    planned_.push_back(std::move(change));
+    return planned_count_;
+}
+
+std::optional<PlannedChange> World::cancel(std::uint64_t id) {
+    const auto found = std::ranges::find(planned_, id, &PlannedChange::id);
+    if (found == planned_.end())
+        return std::nullopt;
+    PlannedChange cancelled = std::move(*found);
+    planned_.erase(found);
+    return cancelled;
+}
+
+bool World::is_to_come(const PlannedMoment& moment) const {
+    return moment.generation ? *moment.generation > moment_.generation : *moment.tick > moment_.tick;
+}
+
+void World::forget_what_was_due() {
+    std::erase_if(planned_, [&](const PlannedChange& change) { return !is_to_come(change.at); });
+}
+
+void World::make_planned_for(std::uint64_t generation) {
+    if (const auto scheduled = schedule_.at(generation); !scheduled.empty())
+        make_planned(scheduled, request_at_generation(parameters_, scheduled), 0, {});
+    const auto is_due = [&](const PlannedChange& change) { return change.at.generation == generation; };
+    for (const PlannedChange& change : planned_)
+        if (is_due(change))
+            make_planned(change.assignments, request_at_generation(parameters_, change.assignments), change.id,
+                         change.by);
+    std::erase_if(planned_, is_due);
+}
+
+void World::make_planned_now() {
+    const auto is_due = [&](const PlannedChange& change) { return change.at.tick == moment_.tick; };
+    for (const PlannedChange& change : planned_)
+        if (is_due(change)) {
+            make_planned(change.assignments, request_of(parameters_, change.assignments), change.id, change.by);
+            parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+        }
+    std::erase_if(planned_, is_due);
+}
+
+void World::make_planned(std::span<const Assignment> changes, const base::Result<Parameters>& requested,
+                         std::uint64_t id, const std::string& by) {
+    std::vector<std::string> names;
+    for (const Assignment& change : changes)
+        names.push_back(change.name);
+    if (!requested) {
+        events_.push_back(ChangeDropped{
+            .planned = id, .by = by, .names = std::move(names), .violations = requested.error().violations});
+        return;
+    }
+    parameters_.requested = *requested;
+    ++parameters_.revision;
+    events_.push_back(
+        ParametersChanged{.planned = id, .by = by, .names = std::move(names), .revision = parameters_.revision});
+}
+
 void World::turn_over(base::Executor& executor) {
     if (!generation_over_)
         return;
-    parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextGeneration);
+    make_planned_for(moment_.generation + 1);
+    parameters_.active = breeding_with(parameters_.active, parameters_.requested);
     const Parameters& p = parameters_.active;
+    const auto key_of = [&](std::size_t island) -> evolution::BreedingKey {
+        return {.seed = seed_, .island = static_cast<std::uint32_t>(island), .generation = moment_.generation};
+    };
+    if (p.shuffle_fitness)
+        for (std::size_t i = 0; i < islands_.size(); ++i)
+            evolution::shuffle_fitness(fitness_[i], key_of(i), executor);
 
     std::vector<evolution::GeneMatrix> migrated;
     const std::vector<const evolution::GeneMatrix*> genes = parents(migrated);
     std::vector<evolution::NextGeneration> bred(islands_.size());
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
-            bred[i] = evolution::next_generation(
-                fitness_[i], *genes[i], p, p.population_size,
-                {.seed = seed_, .island = static_cast<std::uint32_t>(i), .generation = moment_.generation}, executor);
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            bred[i] = evolution::next_generation(fitness_[i], *genes[i], p, p.population_size, key_of(i), executor);
+            bred[i].account =
+                evolution::account_for(islands_[i].born().genes, *genes[i], bred[i].genes, bred[i].parents, executor);
+        }
     });
 
     ++moment_.generation;
@@ -206,6 +296,8 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
 void World::advance_tick(base::Executor& executor) {
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     turn_over(executor);
+    if (moment_.generation_tick == 0)
+        parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     const Parameters& p = parameters_.active;
     ++moment_.tick;
     ++moment_.generation_tick;
@@ -213,6 +305,7 @@ void World::advance_tick(base::Executor& executor) {
     if (!has_bodies()) {
         end_generation(executor);
         update_hash();
+        make_planned_now();
         return;
     }
 
@@ -235,6 +328,7 @@ void World::advance_tick(base::Executor& executor) {
     update_hash();
     if (ends(moment_.generation_tick, alive))
         end_generation(executor);
+    make_planned_now();
 }
 
 bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
@@ -345,7 +439,10 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     parameters_ = set;
     if (over) {
         find_fitness(executor);
-        close_generation(state.ended);
+        std::vector<GenerationStatistics> ended = state.ended;
+        for (std::size_t i = 0; i < ended.size(); ++i)
+            ended[i].account = islands_[i].born().account; // follows from the beginning
+        close_generation(ended);
     }
     update_hash();
     return {};

@@ -4,8 +4,12 @@
 // there, its dead and living still to be looked at, until the next advance_tick breeds the next generation and takes
 // its first tick. So breeding uses the parameters that hold when it happens.
 //
+// What a schedule plans for a generation is asked for before that one is bred: so many are born, on islands like that.
+// What does not wait for a generation holds from its first tick, so that breeding still goes by what held before. At
+// the first moment of a generation a world therefore has what bred it, and what it is about to have is requested.
+//
 // Threads      called on the simulation thread; work goes to the executor it is handed.
-// Determinism  the state after any tick is a pure function of (parameters, seed, changes at their ticks).
+// Determinism  the state after any tick is a pure function of (parameters, schedule, seed, changes at their ticks).
 #pragma once
 
 #include "server/base/executor.h"
@@ -17,6 +21,7 @@
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
 #include "server/simulation/parameters.h"
+#include "server/simulation/schedule.h"
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
@@ -68,7 +73,8 @@ class World {
     ///
     /// parameters        valid.
     /// first_population  that a world with these parameters can have; nullptr: it is drawn.
-    World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population = {});
+    /// schedule          whose generation 1 is in the parameters.
+    World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population = {}, Schedule schedule = {});
 
     /// At the beginning of a generation of a run, from where it goes on as that run did.
     ///
@@ -77,7 +83,8 @@ class World {
     /// first_population  with which the run began, and begins if it is reset; nullptr: it is drawn.
     /// founders          of who was born; those of the first generation are known anyway.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-          base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {});
+          base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
+          Schedule schedule = {});
 
     /// Another world, as this one was at the first moment of its generation; with what was asked of it since, if this
     /// is still that moment.
@@ -92,7 +99,10 @@ class World {
     /// whoever has the hash of the one that was compares.
     base::Result<void> restore(const WorldState& state, base::Executor& executor);
 
-    /// Begins the run again with the parameters last asked for, and the same first population if one was given, which a
+    /// With what the run begins if it is reset: the parameters last asked for, those that are scheduled as they are in
+    /// generation 1. Refused if they do not go together.
+    base::Result<Parameters> beginning() const;
+    /// Begins the run again with its beginning(), its schedule, and the same first population if one was given, which a
     /// world with those parameters can have.
     void reset(base::Seed seed);
 
@@ -100,7 +110,8 @@ class World {
     /// not Running.
     void advance_tick(base::Executor& executor);
 
-    /// Breeds the next generation and places it, as advance_tick would; does nothing if none has ended.
+    /// Breeds the next generation and places it, as advance_tick would; does nothing if none has ended. Where
+    /// shuffle_fitness holds, the shuffled fitness decides who migrates, stays and breeds, and nothing else.
     void turn_over(base::Executor& executor);
 
     const Moment& moment() const { return moment_; }
@@ -108,6 +119,19 @@ class World {
     base::StateHash hash() const { return hash_; }
     const ParameterSet& parameters() const { return parameters_; }
     const FirstPopulation& first_population() const { return first_population_; }
+    const Schedule& schedule() const { return schedule_; }
+    /// In order of their ids.
+    const std::vector<PlannedChange>& planned() const { return planned_; }
+    /// Has it made at its moment, which is_to_come(); what is due at the same moment is made in order of ids, after
+    /// what is scheduled. Gives it an id, and returns that.
+    std::uint64_t plan(PlannedChange change);
+    /// What waited under that id does so no more; nothing if there is none.
+    std::optional<PlannedChange> cancel(std::uint64_t id);
+    bool is_to_come(const PlannedMoment& moment) const;
+    /// Of a world that was brought to a later moment than where things were planned: plans them again under the same
+    /// ids, and forgets those that were due by now, which have been made there.
+    std::uint64_t plan_anew(PlannedChange change);
+    void forget_what_was_due();
     /// Takes a set that assign() has made from parameters().requested; each parameter holds from when its effect says.
     void request_parameters(const Parameters& requested);
 
@@ -132,7 +156,7 @@ class World {
     std::uint64_t alive_count() const;
 
     const History& history() const { return history_; }
-    /// Forgets the statistics that a fork does not inherit.
+    /// Forgets the statistics that a fork does not inherit, and what waits in its origin.
     void become_fork();
     /// Of the generation that is over: per island, by id. Empty while none is.
     std::span<const std::vector<double>> fitness() const { return fitness_; }
@@ -143,6 +167,15 @@ class World {
   private:
     void begin_run();
     void make_islands();
+    /// What is planned for the generation that is about to be bred.
+    void make_planned_for(std::uint64_t generation);
+    /// What is planned for the tick that is over.
+    void make_planned_now();
+    /// Has all of it asked for, or tells why not.
+    ///
+    /// id, by  as in ParametersChanged.
+    void make_planned(std::span<const Assignment> changes, const base::Result<Parameters>& requested, std::uint64_t id,
+                      const std::string& by);
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
     /// Whether a generation is over after `generation_tick`, with so many alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
@@ -159,6 +192,9 @@ class World {
     base::Seed seed_;
     ParameterSet parameters_;
     FirstPopulation first_population_;
+    Schedule schedule_;
+    std::vector<PlannedChange> planned_; // in order of ids
+    std::uint64_t planned_count_ = 0;    // of this run, so far
     Moment moment_;
     bool generation_over_ = false;
     base::StateHash hash_;

@@ -8,11 +8,15 @@ std::vector<std::string> statistics_columns() {
     std::vector<std::string> columns;
     simulation::for_each_number(simulation::GenerationStatistics{},
                                 [&](const std::string& name, auto) { columns.push_back(name); });
+    evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) { columns.push_back(name); });
     return columns;
 }
 
 void write_row(Table& table, const simulation::GenerationStatistics& statistics) {
     simulation::for_each_number(statistics, [&](const std::string&, auto value) { table.number(value); });
+    evolution::for_each_number(statistics.account, [&](const std::string&, std::optional<double> value) {
+        value ? table.number(*value) : table.nothing();
+    });
     table.end_row();
 }
 

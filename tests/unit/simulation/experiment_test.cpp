@@ -113,6 +113,112 @@ TEST(Experiment, OfItsOwnTextIsTheSame) {
     EXPECT_TRUE(parse_experiment(to_experiment_text(larger))->parameters == larger) << to_experiment_text(larger);
 }
 
+TEST(Experiment, MayHaveValuesByGeneration) {
+    const auto experiment = parse_experiment(R"({"mutation_chance": {"1": 0.2, "30": 0.05, "60": 1}, "elite_count": 3,
+        "selection": {"30": "tournament"}, "food_count": {"1": 30}})");
+    ASSERT_TRUE(experiment) << to_text(experiment.error());
+    EXPECT_EQ(experiment->parameters.mutation_chance, 0.2);
+    EXPECT_EQ(experiment->parameters.selection, evolution::SelectionMethod::Roulette) << "the default until the first";
+    EXPECT_EQ(experiment->parameters.food_count, 30u);
+    EXPECT_FALSE(experiment->schedule.holds("food_count")) << "nothing changes";
+    const auto& changes = experiment->schedule.changes();
+    ASSERT_EQ(changes.size(), 3u);
+    EXPECT_THAT(changes.at(1), testing::ElementsAre(Assignment{"selection", std::string{"roulette"}},
+                                                    Assignment{"mutation_chance", 0.2}));
+    EXPECT_THAT(changes.at(30), testing::ElementsAre(Assignment{"selection", std::string{"tournament"}},
+                                                     Assignment{"mutation_chance", 0.05}));
+    EXPECT_THAT(changes.at(60), testing::ElementsAre(Assignment{"mutation_chance", 1.0}));
+    EXPECT_TRUE(parse_experiment("{}")->schedule.empty());
+}
+
+TEST(Experiment, TheReferencePopulationIsTheFirstOfThoseThatAreScheduled) {
+    const auto experiment =
+        parse_experiment(R"({"population_size": {"1": 30, "5": 60}, "scale_with_population": true})");
+    ASSERT_TRUE(experiment) << to_text(experiment.error());
+    EXPECT_EQ(experiment->parameters.reference_population, 30u);
+    EXPECT_EQ(parse_experiment(R"({"population_size": {"5": 60}})")->parameters.reference_population, 50u);
+    const auto given =
+        parse_experiment(R"({"population_size": {"1": 30, "5": 60}, "reference_population": {"5": 60}})");
+    ASSERT_TRUE(given) << to_text(given.error());
+    EXPECT_EQ(given->parameters.reference_population, 50u) << "given, though not for generation 1: its default";
+}
+
+TEST(Experiment, OfItsOwnTextHasTheSameSchedule) {
+    for (
+        const char* text :
+        {R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "respawn": {"7": false}, "crossover": {"2": "none", "3": "uniform"}})",
+         R"({"population_size": {"1": 30, "5": 60}})", R"({"population_size": {"5": 60}, "reference_population": 7})",
+         R"({"food_health": {"18446744073709551615": 0.1}})", "{}"}) {
+        const auto experiment = parse_experiment(text);
+        ASSERT_TRUE(experiment) << to_text(experiment.error());
+        for (const Written written : {Written::Differences, Written::Everything}) {
+            const std::string again = to_experiment_text(experiment->parameters, written, experiment->schedule);
+            const auto read = parse_experiment(again);
+            ASSERT_TRUE(read) << again << to_text(read.error());
+            EXPECT_TRUE(read->parameters == experiment->parameters) << again;
+            EXPECT_EQ(read->schedule, experiment->schedule) << again;
+        }
+        const auto alone = parse_schedule(to_schedule_text(experiment->schedule));
+        ASSERT_TRUE(alone) << to_text(alone.error());
+        EXPECT_EQ(*alone, experiment->schedule);
+    }
+    for (const char* text : {"[]", R"({"food_count": 3})", R"({"food_count": {"2": 3}})", R"({"x": {"1": 3}})",
+                             R"({"island_count": {"1": 1, "2": 3}})", R"({"tick_s": {"1": -1, "2": 0.1}})"})
+        EXPECT_FALSE(parse_schedule(text)) << text;
+}
+
+TEST(Experiment, NamesWhatIsWrongWithAScheduleByGenerationAndLine) {
+    const std::string refusal = refusal_of(R"({
+  "mutation_chance": {
+    "1": 0.2,
+    "30": 1.5,
+    "0": 0.1,
+    "x": 0.1, "030": 1,
+    "40": null,
+    "40": 0.1
+  },
+  "island_count": {"2": 3},
+  "food_cuont": {"2": 3},
+  "food_count": {},
+  "tick_s": {"2": -1}
+})");
+    EXPECT_THAT(refusal, HasSubstr("mutation_chance at generation 30 (line 4): got 1.5, allowed 0 to 1"));
+    EXPECT_THAT(refusal, HasSubstr("mutation_chance (line 5): got \"0\", allowed generations as keys"));
+    EXPECT_THAT(refusal, HasSubstr("mutation_chance (line 6): got \"x\""));
+    EXPECT_THAT(refusal, HasSubstr("mutation_chance (line 6): got \"030\""));
+    EXPECT_THAT(refusal, HasSubstr("mutation_chance at generation 40 (line 8): got given twice"));
+    EXPECT_THAT(refusal, HasSubstr("island_count (line 10): got values by generation, allowed one value"));
+    EXPECT_THAT(refusal, HasSubstr("food_cuont (line 11)"));
+    EXPECT_THAT(refusal, HasSubstr("did you mean food_count"));
+    EXPECT_THAT(refusal, HasSubstr("food_count (line 12): got {}"));
+    EXPECT_THAT(refusal, HasSubstr("tick_s at generation 2 (line 13): got -1"));
+}
+
+TEST(Experiment, EveryCombinationOfAScheduleIsValidated) {
+    const std::string refusal =
+        refusal_of("{\n\"impulse_max\": {\n\"2\": 300,\n\"7\": 90},\n\"impulse_min\": {\"5\": 100}\n}");
+    EXPECT_THAT(refusal, HasSubstr("impulse_max at generation 7 (line 4): got 90, allowed at least impulse_min (100)"));
+    EXPECT_THAT(refusal_of("{\"impulse_min\":\n{\"5\": 260}}"),
+                HasSubstr("impulse_max at generation 5 (line 2): got 250"));
+    // Those who are born are as large as breeding still makes them.
+    EXPECT_EQ(refusal_of(R"({"population_size": {"2": 250}, "body_size_max": {"2": 100}, "island_width_px": 1280})"),
+              "");
+    EXPECT_THAT(refusal_of(R"({"population_size": {"2": 900}, "body_size_max": {"2": 60}})"),
+                HasSubstr("by what breeding still goes by then"));
+    EXPECT_EQ(refusal_of(R"({"population_size": {"3": 900}, "body_size_max": {"2": 60}})"), "");
+}
+
+TEST(Experiment, ASchedulesSizeIsBounded) {
+    const auto steps = [](std::size_t count) {
+        std::string text = "{\"food_health\": {\"1\": 0";
+        for (std::size_t i = 0; i < count; ++i)
+            text += ", \"" + std::to_string(i + 2) + "\": " + std::to_string(i % 7);
+        return text + "}}";
+    };
+    EXPECT_EQ(refusal_of(steps(Schedule::values_max)), "");
+    EXPECT_THAT(refusal_of(steps(Schedule::values_max + 1)), HasSubstr("the schedule: got 4097, allowed at most 4096"));
+}
+
 TEST(ExperimentsOfTheRepository, AreAllAccepted) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator{EVOD_SOURCE_FOLDER "/experiments"}) {

@@ -1,6 +1,8 @@
 #include "server/simulation/world.h"
 
 #include "server/base/inline_executor.h"
+#include "server/evolution/fitness_shuffle.h"
+#include "server/evolution/migration.h"
 #include "server/simulation/fitness.h"
 #include "tests/support/thread_executor.h"
 
@@ -8,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -199,6 +202,82 @@ TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
     for (const GenerationStatistics& s : world.history().back()) {
         EXPECT_EQ(s.fitness_best, best);
         EXPECT_EQ(s.fitness_worst, best) << "copies of the best take over both islands";
+    }
+}
+
+TEST_F(WorldTest, AccountsForWhatItsGenesDidFromOneGenerationToTheNext) {
+    // Of as many organisms that an island's are cut among threads; their number changes.
+    parameters.island_count = 2;
+    parameters.population_size = 20'000;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.selection = evolution::SelectionMethod::Truncation;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migrant_count = 500;
+    parameters.migration_epoch = 2;
+    support::ThreadExecutor many{3};
+    World world = make(), again = make();
+    for (unsigned generation = 1; generation <= 6; ++generation) {
+        for (World* each : {&world, &again})
+            request(*each, {{"population_size", std::array{20'000u, 23'000u, 17'000u}[generation % 3]}});
+        world.advance_tick(executor);
+        again.advance_tick(many);
+        for (std::size_t island = 0; island < 2; ++island) {
+            const GenerationStatistics& now = world.history().back()[island];
+            ASSERT_EQ(now.account, again.history().back()[island].account);
+            ASSERT_EQ(now.account.has_value(), generation > 1);
+            if (generation == 1)
+                continue;
+            const GenerationStatistics& before = world.history()[generation - 2][island];
+            for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
+                const evolution::GeneAccount& account = (*now.account)[gene];
+                EXPECT_NEAR(account.change, now.genes[gene].mean - before.genes[gene].mean, 1e-10);
+                EXPECT_NEAR(account.selection + account.transmission + account.migration, account.change,
+                            1e-9 * std::abs(account.change));
+                EXPECT_GT(account.selection, 0) << "greater genes are fitter";
+                EXPECT_EQ(account.migration != 0, generation % 2 == 1) << "after each second generation";
+            }
+        }
+    }
+}
+
+TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
+    parameters.island_count = 3;
+    parameters.elite_count = 2;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 1;
+    parameters.food_count = 100; // so that they differ
+    World plain = make();
+    parameters.shuffle_fitness = true;
+    World world = make();
+    run_generation(plain);
+    run_generation(world);
+    ASSERT_EQ(world.hash(), plain.hash());
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(world.fitness()[i], plain.fitness()[i]);
+        EXPECT_EQ(world.history()[0][i].fitness_best, plain.history()[0][i].fitness_best);
+    }
+    // The same by hand: shuffled, then migrated, then bred.
+    std::vector<std::vector<double>> fitness(world.fitness().begin(), world.fitness().end());
+    std::vector<evolution::GeneMatrix> genes;
+    std::vector<evolution::IslandPopulation> populations;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        evolution::shuffle_fitness(fitness[i], {.seed = base::Seed{5}, .island = i, .generation = 1}, executor);
+        EXPECT_NE(fitness[i], world.fitness()[i]);
+        genes.push_back(world.islands()[i].born().genes);
+    }
+    for (std::uint32_t i = 0; i < 3; ++i)
+        populations.push_back({&genes[i], fitness[i]});
+    const std::vector<std::span<const double>> spans(fitness.begin(), fitness.end());
+    evolution::migrate(evolution::choose_migrants(spans, parameters, base::Seed{5}, 1), populations);
+    world.turn_over(executor);
+    plain.turn_over(executor);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto expected = evolution::next_generation(
+            fitness[i], genes[i], parameters, 12, {.seed = base::Seed{5}, .island = i, .generation = 1}, executor);
+        const evolution::NextGeneration& born = world.islands()[i].born();
+        EXPECT_EQ(born.parents, expected.parents);
+        EXPECT_TRUE((born.genes == expected.genes).all());
+        EXPECT_NE(plain.islands()[i].born().parents, expected.parents);
     }
 }
 

@@ -1,0 +1,136 @@
+#include "server/evolution/price.h"
+
+#include "server/base/assert.h"
+
+#include <cstring>
+#include <vector>
+
+namespace evod::evolution {
+namespace {
+
+constexpr std::size_t organisms_per_block = 8192;
+constexpr std::uint32_t prefetched_ahead = 16;
+
+/// A number for each gene, two in a vector: compilers left to themselves take them one by one, at twice the cost.
+class Numbers {
+  public:
+    Numbers() = default;
+    explicit Numbers(ConstGenes genes) {
+        for (unsigned pair = 0; pair < pair_count; ++pair) {
+            FloatPair floats;
+            std::memcpy(&floats, genes.data() + 2 * pair, sizeof floats);
+            pairs_[pair] = __builtin_convertvector(floats, Pair);
+        }
+    }
+    void set(unsigned gene, double number) { pairs_[gene / 2][gene % 2] = number; }
+    double operator[](unsigned gene) const { return pairs_[gene / 2][gene % 2]; }
+
+    Numbers& operator+=(const Numbers& other) {
+        for (unsigned pair = 0; pair < pair_count; ++pair)
+            pairs_[pair] += other.pairs_[pair];
+        return *this;
+    }
+    friend Numbers operator-(Numbers one, const Numbers& other) {
+        for (unsigned pair = 0; pair < pair_count; ++pair)
+            one.pairs_[pair] -= other.pairs_[pair];
+        return one;
+    }
+    friend Numbers middle_of(Numbers one, const Numbers& other) {
+        for (unsigned pair = 0; pair < pair_count; ++pair)
+            one.pairs_[pair] = (one.pairs_[pair] + other.pairs_[pair]) * 0.5;
+        return one;
+    }
+
+  private:
+    static_assert(gene_count % 2 == 0);
+    static constexpr unsigned pair_count = gene_count / 2;
+    using Pair = double __attribute__((vector_size(16)));
+    using FloatPair = float __attribute__((vector_size(8)));
+    Pair pairs_[pair_count] = {};
+};
+
+/// Several sums, each of every gene.
+template <std::size_t count>
+using SumsOf = std::array<Numbers, count>;
+
+/// Adds up over the organisms [0, organisms): `add(i, sums)` adds what organism i has to give.
+template <std::size_t count, class Add>
+SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add& add) {
+    std::vector<SumsOf<count>> blocks((organisms + organisms_per_block - 1) / organisms_per_block);
+    executor.parallel_for(organisms, organisms_per_block, [&](base::Range block) {
+        SumsOf<count> sums{};
+        for (std::size_t i = block.begin; i < block.end; ++i)
+            add(static_cast<std::uint32_t>(i), sums);
+        blocks[block.begin / organisms_per_block] = sums;
+    });
+    SumsOf<count> total{};
+    for (const SumsOf<count>& block : blocks)
+        for (std::size_t which = 0; which < count; ++which)
+            total[which] += block[which];
+    return total;
+}
+
+/// Near the means of the genes, with few digits: differences of genes from it are exact, or nearly, and their sums are
+/// small, so that what the means differ by is known to more digits than the means themselves.
+Numbers centre_of(const GeneMatrix& genes, base::Executor& executor) {
+    const auto organisms = static_cast<std::size_t>(genes.cols());
+    const SumsOf<1> sums =
+        summed<1>(organisms, executor, [&](std::uint32_t i, SumsOf<1>& sum) { sum[0] += Numbers{column(genes, i)}; });
+    Numbers centre;
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        centre.set(gene, static_cast<double>(static_cast<float>(sums[0][gene] / static_cast<double>(organisms))));
+    return centre;
+}
+
+void prefetch(const GeneMatrix& genes, std::uint32_t organism) {
+    const ConstGenes z = column(genes, organism);
+    __builtin_prefetch(&z.front());
+    __builtin_prefetch(&z.back());
+}
+
+} // namespace
+
+SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_from, const GeneMatrix& born,
+                             std::span<const Parents> parents, base::Executor& executor) {
+    EVOD_ASSERT(before.cols() >= 1 && born.cols() >= 1);
+    EVOD_ASSERT(bred_from.cols() == before.cols());
+    EVOD_ASSERT(parents.size() == static_cast<std::size_t>(born.cols()));
+    const auto organisms = static_cast<std::size_t>(before.cols());
+    const Numbers centre = centre_of(before, executor);
+
+    const auto population = summed<1>(
+        organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
+    // Those whom breeding saw, and by how much they are others than were born.
+    SumsOf<2> seen{population[0], {}};
+    if (&before != &bred_from)
+        seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
+            const Numbers z{column(bred_from, i)};
+            sums[0] += z - centre;
+            sums[1] += z - Numbers{column(before, i)};
+        });
+    // The descendants; their parents, each as often as it has descendants; and by how much the ones differ from the
+    // others.
+    const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
+        if (i + prefetched_ahead < parents.size()) {
+            prefetch(bred_from, parents[i + prefetched_ahead].first);
+            prefetch(bred_from, parents[i + prefetched_ahead].second);
+        }
+        const Numbers z{column(born, i)};
+        const Numbers of_parents =
+            middle_of(Numbers{column(bred_from, parents[i].first)}, Numbers{column(bred_from, parents[i].second)});
+        sums[0] += z - centre;
+        sums[1] += of_parents - centre;
+        sums[2] += z - of_parents;
+    });
+
+    SelectionAccount account;
+    const auto n = static_cast<double>(organisms), descendants = static_cast<double>(parents.size());
+    for (unsigned gene = 0; gene < gene_count; ++gene)
+        account[gene] = {.selection = descent[1][gene] / descendants - seen[0][gene] / n,
+                         .transmission = descent[2][gene] / descendants,
+                         .migration = seen[1][gene] / n,
+                         .change = descent[0][gene] / descendants - population[0][gene] / n};
+    return account;
+}
+
+} // namespace evod::evolution
