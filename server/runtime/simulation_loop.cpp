@@ -21,6 +21,13 @@ void give(const CommandAnswer& answer) {
         answer.give();
 }
 
+/// How many ticks may come between two looks at the clock, where one takes so long.
+std::uint32_t ticks_a_look(Clock::duration tick) {
+    constexpr std::int64_t most = 100;
+    return static_cast<std::uint32_t>(
+        tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_looks / tick, 1, most) : 1);
+}
+
 bool changes_something(const simulation::Command& command) {
     const auto* set = std::get_if<simulation::SetParameters>(&command);
     return set == nullptr || !set->dry_run;
@@ -174,7 +181,15 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
     const simulation::Entry* entry = entry_in(command);
     const bool only_a_look =
         entry && entry->recording && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
-    return only_a_look ? std::nullopt : recorder_->refusal();
+    if (only_a_look)
+        return std::nullopt;
+    if (auto refused = recorder_->refusal())
+        return refused;
+    const auto* created = std::get_if<simulation::CreateWorld>(&command);
+    const auto* forked = std::get_if<simulation::ForkWorld>(&command);
+    return created  ? recorder_->refusal_of_place(created->name)
+           : forked ? recorder_->refusal_of_place(forked->name)
+                    : std::nullopt;
 }
 
 base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
@@ -343,19 +358,24 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
     const bool paced = entry.control.speed.has_value();
     auto before = clock_.now();
     do {
-        laboratory_.advance(entry, executor_);
-        if (track.recorder)
-            track.recorder->follow(entry.world);
-        if (entry.recording)
-            past_.follow(entry);
-        ++track.ticks;
-        const bool stopped = !entry.wants_tick();
+        std::uint32_t taken = 0;
+        bool stopped = false;
+        do {
+            laboratory_.advance(entry, executor_);
+            if (track.recorder)
+                track.recorder->follow(entry.world);
+            if (entry.recording)
+                past_.follow(entry);
+            ++taken;
+            stopped = !entry.wants_tick();
+            tell_events();
+        } while (!paced && taken < track.ticks_a_look && !stopped && !mailbox_.pending());
+        track.ticks += taken;
         if (stopped) {
             track.changed = true; // a goal was reached
             track.running = false;
             entry.ticks_per_s = 0;
         }
-        tell_events();
         const auto now = clock_.now();
         if (paced) {
             const auto due = track.due + period(entry);
@@ -366,7 +386,8 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         show(entry, track, now);
         const auto spent = now - std::exchange(before, now);
         if (track.counted)
-            track.counted->tick_time.add(spent);
+            track.counted->tick_time.add(spent / taken, taken);
+        track.ticks_a_look = ticks_a_look(spent / taken);
         mind_checkpoint(entry, track, spent);
         if (stopped || now >= end || (paced && track.due > now))
             return;
@@ -416,7 +437,10 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
             if (island < island_count)
                 island_indices_.push_back(island);
     }
+    const auto began = clock_.now();
     outputs_.picture(pool_.take(entry, island_indices_, track.changed));
+    if (track.counted)
+        track.counted->picture_time.add(clock_.now() - began);
     // Kept on a grid, so that the rate holds on average; begun anew after a pause or a picture out of turn.
     track.next_picture += between;
     if (newcomer || track.changed || track.next_picture <= now)

@@ -45,6 +45,9 @@ class SimulationLoop {
   public:
     static constexpr std::chrono::milliseconds slice{5};
     static constexpr std::chrono::milliseconds catch_up_max{50};
+    /// A world at full speed goes on for about so long before the clock is looked at: in a small one, a tick takes not
+    /// much longer than a look.
+    static constexpr std::chrono::microseconds between_looks{20};
     /// A world whose clock loses more than this part of the time is said to be slowed.
     static constexpr double slowed_from = 0.02;
     /// Worlds that wait for a disk which does write, as they do now and then, are worth telling of only after this.
@@ -82,7 +85,8 @@ class SimulationLoop {
         // Ticks in the second that is being measured.
         Clock::time_point measured_since;
         std::uint64_t ticks = 0;
-        Clock::duration lost{}; // that its clock was slowed by
+        Clock::duration lost{};         // that its clock was slowed by
+        std::uint32_t ticks_a_look = 1; // at full speed
         // For those who watch.
         const Watch* watch = nullptr;
         std::uint64_t newcomers_served = 0;
@@ -116,7 +120,7 @@ class SimulationLoop {
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);
-    /// spent: on the last tick and all that came with it.
+    /// spent: on the ticks since the last look at the clock, and all that came with them.
     void mind_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent);
     void measure(simulation::Entry& entry, Track& track, Clock::time_point now);
     void show(const simulation::Entry& entry, Track& track, Clock::time_point now);

@@ -1,45 +1,27 @@
 #include "server/runtime/snapshot.h"
 
+#include <cstddef>
 #include <utility>
 
 namespace evod::runtime {
 namespace {
 
 void copy(const simulation::Items& items, ItemsSnapshot& to) {
-    to.x.resize(items.size());
-    to.y.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        to.x[i] = items.all()[i].x;
-        to.y[i] = items.all()[i].y;
-    }
-    to.due_tick.clear();
-    if (items.present_count() == items.size())
-        return;
-    to.due_tick.resize(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i)
-        to.due_tick[i] = items.all()[i].due_tick;
+    to.all.assign(items.all().begin(), items.all().end());
+    to.present_count = items.present_count();
 }
 
 void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
-    const std::size_t alive = island.alive_count();
-    to.id.resize(alive);
-    to.x.resize(alive);
-    to.y.resize(alive);
-    to.radius_px.resize(alive);
-    to.health.resize(alive);
     const physics::Circles& bodies = island.bodies();
-    std::size_t k = 0;
-    const auto born = static_cast<std::uint32_t>(island.born().genes.cols());
-    for (std::uint32_t id = 0; id < born; ++id) {
-        const auto body = island.body_of(id);
-        if (!body)
-            continue;
-        to.id[k] = id;
-        to.x[k] = bodies.x[*body];
-        to.y[k] = bodies.y[*body];
-        to.radius_px[k] = bodies.radius[*body];
-        to.health[k++] = island.living().health[*body];
-    }
+    const auto copy = [&](const auto& from, auto& column) {
+        column.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(bodies.size()));
+    };
+    copy(bodies.id, to.id);
+    copy(bodies.x, to.x);
+    copy(bodies.y, to.y);
+    copy(bodies.radius, to.radius_px);
+    copy(island.living().health, to.health);
+    to.alive_count = island.alive_count();
 }
 
 void copy(const simulation::Island& island, const simulation::Parameters& parameters, IslandSnapshot& to) {
@@ -50,7 +32,7 @@ void copy(const simulation::Island& island, const simulation::Parameters& parame
         to.width_px = parameters.island_width_px;
         to.height_px = parameters.island_height_px;
     }
-    to.live = island.live_statistics();
+    to.live = island.live_counts();
     copy_organisms(island, to.organisms);
     copy(island.food(), to.food);
     copy(island.poison(), to.poison);

@@ -1,11 +1,13 @@
 // Snapshot: an immutable picture of a world between two ticks, for those who watch it.
 //
-// Taking one is copying columns; what has to be computed per entity is left to the reader's thread.
+// Taking one is copying columns as they lie, for worlds stand still meanwhile; to put entities in order and to compute
+// anything of them is left to the reader's thread.
 //
 // Owner        shared; the last to let go gives the memory back to the pool it came from.
 // Threads      taken by the simulation thread, read by any.
 #pragma once
 
+#include "server/base/column.h"
 #include "server/base/state_hash.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/laboratory.h"
@@ -18,15 +20,17 @@
 
 namespace evod::runtime {
 
+/// In any order; the dead among them may be left as void places, which are physics::elsewhere.
 struct OrganismsSnapshot {
-    std::vector<std::uint32_t> id; // rising; the living
-    std::vector<physics::Coordinate> x, y;
-    std::vector<float> radius_px, health;
+    base::Column<std::uint32_t> id; // each once
+    base::Column<physics::Coordinate> x, y;
+    base::Column<float> radius_px, health;
+    std::uint32_t alive_count = 0;
 };
 
 struct ItemsSnapshot {
-    std::vector<physics::Coordinate> x, y; // by id, there or not
-    std::vector<std::uint32_t> due_tick;   // 0: there; empty: all of them are
+    base::Column<simulation::Items::Item> all; // by id, there or not
+    std::uint32_t present_count = 0;
 };
 
 struct BoxesSnapshot {
@@ -37,7 +41,7 @@ struct BoxesSnapshot {
 struct IslandSnapshot {
     std::uint32_t island = 0;
     double width_px = 0, height_px = 0;
-    simulation::LiveStatistics live;
+    simulation::LiveStatistics live; // but for health_mean, which follows from what organisms have
     OrganismsSnapshot organisms;
     ItemsSnapshot food, poison;
     BoxesSnapshot boxes; // crates, then obstacles

@@ -274,10 +274,13 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
         return reply(laboratory_, entry.error());
     const std::string name = (*entry)->name;
     if (!looks_.contains(name))
-        return reply(laboratory_, Refusal{.code = RefusalCode::FailedPrecondition,
-                                          .message = "this world lives and cannot be taken to another moment: open its "
-                                                     "past, as evoview does, or serve its file with evod replay",
-                                          .violations = {}});
+        return reply(
+            laboratory_,
+            Refusal{.code = RefusalCode::FailedPrecondition,
+                    .message =
+                        "this world lives and cannot be taken to another moment: open its "
+                        "past, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
+                    .violations = {}});
     const std::string& past_of = (*entry)->recording->past_of;
     const std::string origin = past_of.empty() ? name : past_of;
     once_written(origin, [this, name, origin, request, reply](bool all_is_written) {

@@ -161,6 +161,13 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
     return {};
 }
 
+std::vector<std::string> Archive::world_names() const {
+    std::vector<std::string> names;
+    for (const RunIdentity& identity : identities_)
+        names.push_back(identity.name);
+    return names;
+}
+
 const RunIdentity* Archive::identity_of(const std::string& world) const {
     const auto found = std::ranges::find(identities_, world, &RunIdentity::name);
     return found == identities_.end() ? nullptr : &*found;

@@ -31,6 +31,8 @@ class Archive {
     /// What the run of a world that was brought back began with; nullptr if there is none of that name.
     const RunIdentity* identity_of(const std::string& world) const;
     bool holds_worlds() const { return !identities_.empty(); }
+    /// Of those that were brought back, in order.
+    std::vector<std::string> world_names() const;
     /// The worlds; once.
     simulation::Laboratory take_laboratory() { return std::move(laboratory_); }
     /// Commands that were applied, with their answers, oldest first within a run, those of ended runs first; once.

@@ -1,5 +1,6 @@
 #include "server/storage/breeding.h"
 
+#include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
 #include "server/storage/generation_reader.h"
 
@@ -89,14 +90,28 @@ Result<Bred> breeding_of(RunFile& file, const WantedBreeding& wanted, base::Exec
 
     Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
     const base::Seed seed = file.identity().seed;
+    const bool shuffled = bred.parameters.shuffle_fitness;
+    std::vector<std::vector<double>> own; // fitness, per island, where it is shuffled
+    for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
+        own.push_back(parents->ended->outcomes[island].fitness);
+        evolution::shuffle_fitness(parents->ended->outcomes[island].fitness,
+                                   {.seed = seed, .island = island, .generation = *generation}, executor);
+    }
     const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
     bred.record = evolution::record_breeding(
         parents->ended->outcomes[bred.island].fitness, parents->begun.born[bred.island].genes, bred.parameters,
         bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,
         executor);
+    const std::uint32_t first_contender = std::min(wanted.rows.first_contender, bred.record.contender_count);
+    for (std::size_t i = 0; shuffled && i < bred.record.contenders.size(); ++i)
+        bred.record.contenders[i].own_fitness = own[bred.island][first_contender + i];
     for (const evolution::Migrant& migrant : migrants)
-        if (migrant.replaces - wanted.rows.first_contender < bred.record.contenders.size())
-            bred.record.contenders[migrant.replaces - wanted.rows.first_contender].migrant = migrant;
+        if (migrant.replaces - first_contender < bred.record.contenders.size()) {
+            auto& contender = bred.record.contenders[migrant.replaces - first_contender];
+            contender.migrant = migrant;
+            if (shuffled)
+                contender.own_fitness = own[migrant.from][migrant.organism];
+        }
     if (!are_stored(bred.record.descendants, children->begun.born[bred.island]))
         return damaged(" has bred other descendants than those that are stored");
     return bred;

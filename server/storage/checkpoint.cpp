@@ -202,6 +202,14 @@ std::string pack(const simulation::WorldState& state) {
     return std::move(packer).finish();
 }
 
+StoredCheckpoint pack(const Checkpoint& checkpoint) {
+    return {.moment = checkpoint.state.moment,
+            .parameters = checkpoint.state.parameters,
+            .hash = checkpoint.hash,
+            .journal_entries = checkpoint.journal_entries,
+            .state = pack(checkpoint.state)};
+}
+
 Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
     // What it takes is known before any memory is taken for it.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());

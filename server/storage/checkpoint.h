@@ -6,6 +6,7 @@
 
 #include "server/base/result.h"
 #include "server/simulation/world_state.h"
+#include "server/storage/records.h"
 
 #include <span>
 #include <string>
@@ -15,6 +16,9 @@ namespace evod::storage {
 
 /// state.islands and state.ended, compressed.
 std::string pack(const simulation::WorldState& state);
+
+/// As a run file holds it.
+StoredCheckpoint pack(const Checkpoint& checkpoint);
 
 /// Fills in state.islands and state.ended. Refused unless the bytes are a packed state of such islands.
 base::Result<void> unpack(std::string_view packed, std::span<const simulation::IslandShape> shapes,

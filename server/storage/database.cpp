@@ -42,6 +42,16 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     run("PRAGMA cell_size_check = ON");
+    if (reads)
+        return;
+    // In place of SQLite's own way, which lets the commit wait that makes the log long.
+    sqlite3_wal_hook(
+        handle,
+        [](void* self, sqlite3*, const char*, int pages) {
+            static_cast<Database*>(self)->log_pages_ = static_cast<std::uint32_t>(pages);
+            return SQLITE_OK;
+        },
+        this);
 }
 
 void Database::check(int code) {
@@ -59,6 +69,11 @@ void Database::run(const char* sql) {
 std::int64_t Database::number(const char* sql) {
     Statement statement{*this, sql};
     return statement.row() ? statement.integer(0) : 0;
+}
+
+void Database::copy_log() {
+    if (!failed())
+        sqlite3_wal_checkpoint_v2(handle_.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
 }
 
 void Database::copy_to(const std::string& path) {

@@ -27,6 +27,8 @@ class Database {
     };
     /// vfs  SQLite's name of the way to the disk; nullptr is the usual one.
     Database(const std::string& path, Mode mode, const char* vfs = nullptr);
+    Database(const Database&) = delete; // SQLite knows where it is
+    Database& operator=(const Database&) = delete;
 
     bool failed() const { return !error_.empty(); }
     /// One sentence; empty if nothing has gone wrong.
@@ -38,6 +40,11 @@ class Database {
     void run(const char* sql);
     /// The whole number that a query gives; 0 if it gives none.
     std::int64_t number(const char* sql);
+    /// How many pages the write-ahead log holds, as of the last commit here. It is not copied into the file by itself.
+    std::uint32_t log_pages() const { return log_pages_; }
+    /// Copies into the file what the log holds, as far as nobody reads what was before. What cannot be copied stays in
+    /// the log. At most one of all who have the file open may be at it.
+    void copy_log();
     /// Makes a file with all that is in this database; if it is being read, what was there when that began.
     void copy_to(const std::string& path);
 
@@ -51,6 +58,7 @@ class Database {
     std::unique_ptr<sqlite3, Close> handle_;
     std::string error_;
     bool damaged_ = false;
+    std::uint32_t log_pages_ = 0;
 };
 
 /// A prepared statement; lives no longer than its database.

@@ -56,7 +56,8 @@ base::Result<simulation::Moment> fork(RunFile& origin, std::optional<std::uint64
                          .first_tick = moment.tick,
                          .forked_from = origin.identity().run_id,
                          .inherited_generations = inherited.history.size(),
-                         .first_population = origin.identity().first_population},
+                         .first_population = origin.identity().first_population,
+                         .schedule = origin.identity().schedule},
                         {.keep_every = origin.keep_every()}, &begun, checkpoint ? &*checkpoint : nullptr, &inherited);
     if (!file)
         return file.error();

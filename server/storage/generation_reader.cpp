@@ -63,6 +63,8 @@ Result<void> GenerationReader::advance_tick() {
     if (stop_.stop_requested())
         return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was given up", .violations = {}};
     rerun_->advance_tick(executor_);
+    if (const auto& fault = rerun_->changes().fault())
+        return *fault;
     return {};
 }
 

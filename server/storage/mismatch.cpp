@@ -91,6 +91,30 @@ Found compare(const std::string& which, const simulation::Parameters& stored, co
     return std::nullopt;
 }
 
+/// Where nobody knows the stored one, as in files of before there were any, there is nothing to compare.
+Found compare_account(const std::string& name, const std::string& of_island,
+                      const std::optional<evolution::SelectionAccount>& stored,
+                      const std::optional<evolution::SelectionAccount>& simulated) {
+    if (!stored)
+        return std::nullopt;
+    const auto texts_of = [](const std::optional<evolution::SelectionAccount>& account) {
+        std::vector<std::string> texts;
+        evolution::for_each_number(account, [&](const std::string&, std::optional<double> value) {
+            texts.push_back(value ? text_of(*value) : "none");
+        });
+        return texts;
+    };
+    const std::vector<std::string> ours = texts_of(stored), again = texts_of(simulated);
+    Found found;
+    std::size_t place = 0;
+    evolution::for_each_number(stored, [&](const std::string& number, auto) {
+        if (!found && ours[place] != again[place])
+            found = Mismatch{name + number + of_island, ours[place], again[place]};
+        ++place;
+    });
+    return found;
+}
+
 Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
     const auto genes_of = [](const NextGeneration& born) {
         return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
@@ -111,8 +135,10 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
         return found;
     if (auto found = compare("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count))
         return found;
-    return compare("the number of genes put onto their bounds" + of_island, stored.clamped_count,
-                   simulated.clamped_count);
+    if (auto found = compare("the number of genes put onto their bounds" + of_island, stored.clamped_count,
+                             simulated.clamped_count))
+        return found;
+    return compare_account("the selection account: ", of_island, stored.account, simulated.account);
 }
 
 Found compare_island(const std::string& of_island, const std::vector<std::uint32_t>& stored,
@@ -142,7 +168,7 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
             found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
         ++simulated_text;
     });
-    return found;
+    return found ? found : compare_account("the statistics: ", of_island, stored.account, simulated.account);
 }
 
 Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {

@@ -3,6 +3,7 @@
 #include "server/base/assert.h"
 
 #include <chrono>
+#include <filesystem>
 #include <utility>
 
 namespace evod::storage {
@@ -21,7 +22,8 @@ RunIdentity identity_of(const simulation::Entry& entry) {
             .first_tick = entry.world.moment().tick,
             .forked_from = {},
             .inherited_generations = 0,
-            .first_population = entry.world.first_population()};
+            .first_population = entry.world.first_population(),
+            .schedule = entry.world.schedule()};
 }
 
 } // namespace
@@ -112,6 +114,22 @@ std::optional<base::Refusal> Recorder::refusal() const {
                          .violations = {}};
 }
 
+std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world) const {
+    const auto leaving = leaving_.find(world);
+    if (runs_.contains(world) || (leaving != leaving_.end() && *leaving->second > 0))
+        return std::nullopt;
+    const std::string path = folder_.file_of(world);
+    for (const std::string& taken : {path, DataFolder::next_file_of(path)}) {
+        std::error_code error; // where it cannot be looked at, making it fails, and is told
+        if (std::filesystem::exists(taken, error))
+            return base::refusal(base::RefusalCode::AlreadyExists,
+                                 "the run would be kept in " + taken +
+                                     ", which is there already and belongs to no world of this "
+                                     "server: move it away, or choose another name");
+    }
+    return std::nullopt;
+}
+
 RunRecorder* Recorder::of(const std::string& world) {
     const auto found = runs_.find(world);
     return found == runs_.end() ? nullptr : &found->second;
@@ -168,6 +186,16 @@ void Recorder::end(const std::string& world, const simulation::RunId& run_id, Co
     const auto run = runs_.find(world);
     EVOD_ASSERT(run != runs_.end());
     const std::uint64_t tick = command.tick;
+    std::erase_if(leaving_, [](const auto& item) { return *item.second == 0; });
+    auto& leaving = leaving_[world];
+    if (!leaving)
+        leaving = std::make_shared<Leaving>(0);
+    ++*leaving;
+    command.done = [leaving = leaving, done = std::move(command.done)] {
+        --*leaving;
+        if (done)
+            done();
+    };
     thread_.close(run->second.number_,
                   run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command)));
     runs_.erase(run);

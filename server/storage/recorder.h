@@ -7,6 +7,7 @@
 #include "server/storage/data_folder.h"
 #include "server/storage/storage_thread.h"
 
+#include <atomic>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -83,6 +84,9 @@ class Recorder {
 
     /// Why a command cannot be taken now; nothing if it can.
     std::optional<base::Refusal> refusal() const;
+    /// Why no world of that name can begin: the place of its file is taken by one that is no world's here. Nothing if
+    /// it can, or there is such a world.
+    std::optional<base::Refusal> refusal_of_place(const std::string& world) const;
     /// Whether worlds may go on: what they have to say can be kept.
     bool has_room() const { return thread_.has_room(); }
     /// Why nothing gets onto the disk at present; nothing if it does.
@@ -121,6 +125,9 @@ class Recorder {
     DataFolder& folder_;
     StorageThread& thread_;
     std::map<std::string, RunRecorder, std::less<>> runs_; // by world
+    /// How many runs of a world are over whose file still has its name, for all that is known here.
+    using Leaving = std::atomic<std::size_t>;
+    std::map<std::string, std::shared_ptr<Leaving>, std::less<>> leaving_; // by world
 };
 
 } // namespace evod::storage

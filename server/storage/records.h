@@ -32,6 +32,7 @@ struct RunIdentity {
     std::optional<simulation::RunId> forked_from = std::nullopt;
     std::uint64_t inherited_generations = 0; // right before its first, of which it has its origin's statistics
     simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
+    simulation::Schedule schedule = {};                // that it was created with, or its origin
 };
 
 /// Who asked for a command, and how.

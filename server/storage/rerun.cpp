@@ -20,6 +20,11 @@ Refusal damaged(const RunFile& file, const std::string& what) {
     return damaged(file.path(), what);
 }
 
+Refusal not_to_be_had(const std::string& path, const ParameterChange& change) {
+    return damaged(path, "entry " + std::to_string(change.entry) +
+                             " of its journal asks for parameters that no world can have");
+}
+
 /// The command that a request was; nothing if it is none that this program knows.
 std::optional<simulation::Command> command_of(const std::string& request) {
     v1::Request message;
@@ -46,7 +51,10 @@ Result<std::vector<ParameterChange>> parameter_changes(RunFile& file) {
                                      " of its journal is from an earlier tick than the one before");
         tick = entry.tick;
         if (auto* change = std::get_if<simulation::SetParameters>(&*command))
-            changes.push_back({entry.number, entry.tick, std::move(change->assignments)});
+            changes.push_back(
+                {entry.number, entry.tick, std::move(change->assignments), change->at, entry.origin.client});
+        if (const auto* cancel = std::get_if<simulation::CancelChange>(&*command))
+            changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
     }
     return changes;
 }
@@ -72,6 +80,8 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
             rerun->turn_over(executor);
         else
             rerun->advance_tick(executor);
+    if (rerun && rerun->changes().fault())
+        return *rerun->changes().fault();
     return rerun;
 }
 
@@ -112,8 +122,9 @@ Result<Rerun> Rerun::begun_at(RunFile& file, std::uint64_t generation, const Sto
                            file.path() + " does not hold the beginning of generation " + std::to_string(generation),
                        .violations = {}};
     if (!*begun)
-        return with_changes(file, simulation::World{identity.parameters, identity.seed, identity.first_population},
-                            changes, 0);
+        return with_changes(
+            file, simulation::World{identity.parameters, identity.seed, identity.first_population, identity.schedule},
+            changes, 0);
     // Of a run that begins within a generation, nothing before is known.
     std::optional<StoredCheckpoint> first;
     if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
@@ -135,9 +146,14 @@ Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, con
                           std::span<const ParameterChange> changes, simulation::World::History history,
                           base::Executor& executor) {
     const simulation::Moment& opening = begun.opening.moment;
-    simulation::World world{file.identity().seed, begun.opening, begun.born,
-                            std::move(history),   executor,      file.identity().first_population,
-                            begun.founders};
+    simulation::World world{file.identity().seed,
+                            begun.opening,
+                            begun.born,
+                            std::move(history),
+                            executor,
+                            file.identity().first_population,
+                            begun.founders,
+                            file.identity().schedule};
     if (checkpoint == nullptr) {
         // A change that came between the end of a generation and the beginning of the next is in that beginning
         // already.
@@ -164,34 +180,73 @@ Result<Rerun> Rerun::from(const RunFile& file, const GenerationBegun& begun, con
 
 Result<Rerun> Rerun::with_changes(const RunFile& file, simulation::World world,
                                   std::span<const ParameterChange> changes, std::uint64_t after_entry) {
-    ComingChanges coming{world, after_entry};
+    if (auto planned = ComingChanges::plan_again(file.path(), changes, after_entry, world); !planned)
+        return planned.error();
+    ComingChanges coming{after_entry};
     if (auto extended = coming.extend(file.path(), changes); !extended)
         return extended.error();
-    return Rerun{std::move(world), std::move(coming)};
+    Rerun rerun{std::move(world), std::move(coming)};
+    if (const auto& fault = rerun.changes().fault())
+        return *fault;
+    return rerun;
+}
+
+Result<void> ComingChanges::plan_again(const std::string& path, std::span<const ParameterChange> changes,
+                                       std::uint64_t after_entry, simulation::World& world) {
+    for (const ParameterChange& change : changes) {
+        if (change.entry > after_entry)
+            break;
+        if (change.cancels && !world.cancel(*change.cancels))
+            return not_to_be_had(path, change);
+        if (!change.at)
+            continue;
+        if (std::ranges::any_of(change.assignments,
+                                [](const auto& assignment) { return fault_of(assignment).has_value(); }) ||
+            (change.at->tick && *change.at->tick <= change.tick))
+            return not_to_be_had(path, change);
+        (void)world.plan_anew({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+    }
+    world.forget_what_was_due();
+    return {};
 }
 
 Result<void> ComingChanges::extend(const std::string& path, std::span<const ParameterChange> changes) {
     for (const ParameterChange& change : changes) {
         if (change.entry <= last_entry_)
             continue;
-        // As Laboratory accepted it: whenever generations begin, what waits for a reset stays as it is.
-        const auto assigned = simulation::assign(requested_, change.assignments);
-        if (!assigned || !validate(taking_effect(active_, *assigned, base::Effect::NextGeneration)).empty())
-            return damaged(path, "entry " + std::to_string(change.entry) +
-                                     " of its journal asks for parameters that no world can have");
-        requested_ = *assigned;
+        for (const simulation::Assignment& assignment : change.assignments)
+            if (fault_of(assignment))
+                return not_to_be_had(path, change);
         last_entry_ = change.entry;
-        requests_.push_back({change.entry, change.tick, requested_});
+        changes_.push_back(change);
     }
+    path_ = path;
     return {};
 }
 
+bool ComingChanges::make(const ParameterChange& change, simulation::World& world) {
+    if (change.cancels)
+        return world.cancel(*change.cancels).has_value();
+    if (change.at) {
+        const bool can_be = world.is_to_come(*change.at) && world.planned().size() < simulation::planned_changes_max;
+        if (can_be)
+            (void)world.plan({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+        return can_be;
+    }
+    const auto requested = request_of(world.parameters(), change.assignments);
+    if (requested)
+        world.request_parameters(*requested);
+    return requested.has_value();
+}
+
 void ComingChanges::make_due(simulation::World& world, std::uint64_t last) {
-    const auto is_due = [&](const Request& request) {
-        return request.tick <= world.moment().tick && request.entry <= last;
+    const auto is_due = [&](const ParameterChange& change) {
+        return change.tick <= world.moment().tick && change.entry <= last;
     };
-    for (; next_ < requests_.size() && is_due(requests_[next_]); ++next_)
-        world.request_parameters(requests_[next_].parameters);
+    for (; !fault_ && next_ < changes_.size() && is_due(changes_[next_]); ++next_) {
+        if (!make(changes_[next_], world))
+            fault_ = not_to_be_had(path_, changes_[next_]);
+    }
 }
 
 void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
@@ -222,6 +277,8 @@ Result<Recovered> recover(RunFile& file, base::Executor& executor) {
                                      " has another state hash than the one that is stored");
     }
     rerun->advance_to(last_tick, executor);
+    if (const auto& fault = rerun->changes().fault())
+        return *fault;
     if (rerun->world().moment().tick != last_tick)
         return damaged(file, "it tells of tick " + std::to_string(last_tick) + ", and the run is over at tick " +
                                  std::to_string(rerun->world().moment().tick));

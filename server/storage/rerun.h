@@ -12,11 +12,14 @@
 
 namespace evod::storage {
 
-/// A change of parameters that a journal tells of.
+/// A change of parameters that a journal tells of, made there or planned; or that one is not to be made any more.
 struct ParameterChange {
     std::uint64_t entry = 0; // its number in the journal
     std::uint64_t tick = 0;  // after which it came
     std::vector<simulation::Assignment> assignments;
+    std::optional<simulation::PlannedMoment> at = std::nullopt; // when it is to be made; nothing: there
+    std::string by = {};                                        // who plans it
+    std::optional<std::uint64_t> cancels = std::nullopt;        // what is not to be made; nothing: it is a change
 };
 
 /// Those of a file's journal, in order of ticks. Refused where an entry is no command, or earlier than the one before.
@@ -25,28 +28,35 @@ base::Result<std::vector<ParameterChange>> parameter_changes(RunFile& file);
 /// What was asked of a world's parameters from some moment on, and when.
 class ComingChanges {
   public:
-    /// world        at that moment.
     /// after_entry  the journal's entries up to this one are in the world already.
-    ComingChanges(const simulation::World& world, std::uint64_t after_entry)
-        : active_{world.parameters().active}, requested_{world.parameters().requested}, last_entry_{after_entry} {}
+    explicit ComingChanges(std::uint64_t after_entry) : last_entry_{after_entry} {}
 
-    /// Takes in those that are new. Refused if one asks for parameters that no world can have.
+    /// Has a world wait for what was planned before that moment, and is not due yet. Refused if that cannot have been.
+    ///
+    /// world        at that moment.
+    /// after_entry  what the journal's entries up to this one asked for at once is in it already.
+    static base::Result<void> plan_again(const std::string& path, std::span<const ParameterChange> changes,
+                                         std::uint64_t after_entry, simulation::World& world);
+
+    /// Takes in those that are new. Refused if one asks for values that no world can have.
     ///
     /// path  of the file that tells of them.
     base::Result<void> extend(const std::string& path, std::span<const ParameterChange> changes);
-    /// Makes those that came after the tick at which the world is now, up to the journal's entry `last`.
+    /// Makes those that came after the tick at which the world is now, up to the journal's entry `last`; none any more
+    /// once there is a fault.
     void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
+    /// That a change cannot have been accepted with the parameters that held then: the file is damaged.
+    const std::optional<base::Refusal>& fault() const { return fault_; }
 
   private:
-    /// What was asked for, all in all, after a change.
-    struct Request {
-        std::uint64_t entry, tick;
-        simulation::Parameters parameters;
-    };
-    simulation::Parameters active_, requested_;
-    std::uint64_t last_entry_;
-    std::vector<Request> requests_;
-    std::size_t next_ = 0;
+    /// Whether it can be made there, as Laboratory accepted it.
+    static bool make(const ParameterChange& change, simulation::World& world);
+
+    std::uint64_t last_entry_; // that was taken in
+    std::string path_;         // of the file that told of it
+    std::vector<ParameterChange> changes_;
+    std::size_t next_ = 0; // of changes_
+    std::optional<base::Refusal> fault_;
 };
 
 class Rerun {

@@ -117,10 +117,17 @@ RowWriter& RowWriter::bytes(std::span<const std::byte> value) {
     return *this;
 }
 
-void RowWriter::finish() {
-    statement_.bind(column_, checksum_.finish());
+RowWriter& RowWriter::covers(std::int64_t checksum) {
+    checksum_.add(checksum);
+    return *this;
+}
+
+std::int64_t RowWriter::finish() {
+    const std::int64_t checksum = checksum_.finish();
+    statement_.bind(column_, checksum);
     statement_.done();
     column_ = 0;
+    return checksum;
 }
 
 RowReader::RowReader(Database& database, const std::string& table, const std::vector<std::string>& columns,

@@ -52,7 +52,10 @@ class RowWriter {
     RowWriter& real(std::optional<double> value);
     RowWriter& text(std::string_view value);
     RowWriter& bytes(std::span<const std::byte> value);
-    void finish();
+    /// The checksum of another row, which that of this one covers too.
+    RowWriter& covers(std::int64_t checksum);
+    /// returns  its checksum.
+    std::int64_t finish();
 
   private:
     Statement statement_;
@@ -78,6 +81,10 @@ class RowReader {
     std::optional<double> optional_real();
     std::string text();
     std::string bytes();
+    /// As RowWriter has it.
+    void covers(std::int64_t checksum) { checksum_.add(checksum); }
+    /// Once all columns are read.
+    std::int64_t checksum() const { return statement_.integer(column_); }
     /// Whether the checksum is that of the row.
     bool sound();
 

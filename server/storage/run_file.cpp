@@ -27,10 +27,16 @@ const Columns generation_columns = {"generation",   "first_tick",        "simula
 const Columns population_columns = {"generation",     "island",        "organism_count", "elite_count",
                                     "survivor_count", "clamped_count", "chromosomes",    "parents"};
 const Columns founders_columns = {"generation", "island", "founders"};
+const Columns account_columns = [] {
+    Columns columns{"generation", "island"};
+    evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) { columns.push_back(name); });
+    return columns;
+}();
 const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
 const Columns link_columns = {"tick", "low", "high"};
 const Columns checkpoint_columns = {
     "tick", "generation", "generation_tick", "simulated_s", "parameters", "journal_entries", "low", "high", "state"};
+const Columns part_columns = {"tick", "part", "bytes"};
 const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
 const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
 const Columns run_columns = {"key", "value"};
@@ -49,10 +55,27 @@ CREATE TABLE checkpoint (tick INTEGER PRIMARY KEY, generation INTEGER NOT NULL, 
     high INTEGER NOT NULL, state BLOB NOT NULL, checksum INTEGER NOT NULL) STRICT;
 )";
 
+constexpr const char* part_table = R"(
+CREATE TABLE checkpoint_part (tick INTEGER NOT NULL, part INTEGER NOT NULL, bytes BLOB NOT NULL,
+    checksum INTEGER NOT NULL, PRIMARY KEY (tick, part)) STRICT;
+)";
+/// Parts of checkpoints that were not written to their end, or are not there any more.
+constexpr const char* belonging_to_none = "tick NOT IN (SELECT tick FROM checkpoint)";
+
 constexpr const char* founders_table = R"(
 CREATE TABLE founders (generation INTEGER NOT NULL, island INTEGER NOT NULL, founders BLOB NOT NULL,
     checksum INTEGER NOT NULL, PRIMARY KEY (generation, island)) STRICT;
 )";
+
+constexpr const char* account_table = "selection_account";
+
+std::string account_table_ddl() {
+    std::string sql = "CREATE TABLE " + std::string{account_table} +
+                      " (generation INTEGER NOT NULL, "
+                      "island INTEGER NOT NULL, ";
+    evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) { sql += name + " REAL, "; });
+    return sql + "checksum INTEGER NOT NULL, PRIMARY KEY (generation, island)) STRICT;";
+}
 
 constexpr const char* inherited_statistics = "inherited_statistics"; // the table
 
@@ -141,6 +164,13 @@ simulation::GenerationStatistics read_statistics(RowReader& row) {
     return statistics;
 }
 
+void write_account(RowWriter& row, std::int64_t generation, std::int64_t island,
+                   const std::optional<evolution::SelectionAccount>& account) {
+    row.integer(generation).integer(island);
+    evolution::for_each_number(account, [&](const std::string&, std::optional<double> value) { row.real(value); });
+    row.finish();
+}
+
 Refusal emptied(const std::string& path) {
     return refusal(RefusalCode::DataLoss, path + " is damaged: it holds nothing");
 }
@@ -151,6 +181,17 @@ Result<void> expect_bytes(const std::string& path) {
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1)
         return emptied(path);
     return {};
+}
+
+/// A fork may begin with anything; a run of its own, with what its schedule has in generation 1.
+bool begins_with_its_schedule(const RunIdentity& identity) {
+    return identity.forked_from || std::ranges::all_of(identity.schedule.at(1), [&](const auto& scheduled) {
+               return simulation::find_parameter(scheduled.name)->get(identity.parameters) == scheduled.value;
+           });
+}
+
+std::string accounts_of_generation(std::uint64_t generation) {
+    return "the selection accounts of generation " + std::to_string(generation);
 }
 
 std::string row_of(const char* table, std::uint64_t key) {
@@ -166,22 +207,25 @@ struct RunFile::Writers {
         , generation{database, "generation", generation_columns}
         , population{database, "population", population_columns}
         , founders{database, "founders", founders_columns}
+        , account{database, account_table, account_columns}
         , outcome{database, "outcome", outcome_columns}
         , statistics{database, "statistics", statistics_columns()}
         , link{database, "state_hash", link_columns}
         , checkpoint{database, "checkpoint", checkpoint_columns}
+        , part{database, "checkpoint_part", part_columns}
         , end{database, "end_mark", end_columns}
         , thinned{database, "thinned", thinned_columns} {}
 
-    RowWriter journal, parameters, generation, population, founders, outcome, statistics, link, checkpoint, end,
-        thinned;
+    RowWriter journal, parameters, generation, population, founders, account, outcome, statistics, link, checkpoint,
+        part, end, thinned;
 };
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
-    : path_{path}, database_{path, mode, options.vfs}, file_bytes_max_{options.file_bytes_max} {
+    : path_{path}, database_{path, mode, options.vfs}, options_{options} {
     if (mode == Database::Mode::Read || mode == Database::Mode::ReadAtRest)
         return;
     database_.run("PRAGMA journal_mode = WAL");
+    database_.run("PRAGMA journal_size_limit = 16777216"); // it is cut back to so much once it begins anew
     database_.run(options.durability == Durability::Full ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
 }
 
@@ -240,6 +284,12 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
     return open(path, options);
 }
 
+void RunFile::copy_log(const std::string& path, const Options& options) {
+    Database file{path, Database::Mode::Write, options.vfs};
+    (void)file.number("SELECT count(*) FROM sqlite_schema"); // before which it does not look for a log
+    file.copy_log();
+}
+
 Result<void> RunFile::settle() {
     if (database_.number("PRAGMA wal_checkpoint(TRUNCATE)") != 0)
         return refusal(RefusalCode::Unavailable, path_ + " is being read by somebody");
@@ -268,6 +318,8 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
     if (auto read = file->read_identity(); !read)
         return read.error();
     file->marked_ = true;
+    if (file->thinning_.until_generation > 0) // perhaps not to its end
+        file->sweep_ = Sweep{};
     return file;
 }
 
@@ -369,12 +421,22 @@ CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEG
     database_.run(statistics_table("statistics").c_str());
     database_.run(statistics_table(inherited_statistics).c_str());
     database_.run(checkpoint_table);
+    database_.run(part_table);
     database_.run(founders_table);
+    database_.run(account_table_ddl().c_str());
 }
 
 void RunFile::bring_up_to_date() {
     if (format_ == format_version)
         return;
+    if (format_ < 3)
+        bring_up_to_format_3();
+    bring_up_to_format_4();
+    database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
+    format_ = format_version;
+}
+
+void RunFile::bring_up_to_format_3() {
     RowWriter run{database_, "run", run_columns};
     if (format_ < 2) {
         database_.run(checkpoint_table);
@@ -386,8 +448,18 @@ void RunFile::bring_up_to_date() {
     RowWriter founders{database_, "founders", founders_columns};
     for (Statement born{database_, "SELECT generation, island FROM population"}; born.row();)
         founders.integer(born.integer(0)).integer(born.integer(1)).bytes({}).finish(); // nobody knows
-    database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
-    format_ = format_version;
+}
+
+void RunFile::bring_up_to_format_4() {
+    RowWriter{database_, "run", run_columns}.text("schedule").text(simulation::to_schedule_text({})).finish();
+    database_.run(part_table);
+    database_.run(account_table_ddl().c_str());
+    RowWriter accounts{database_, account_table, account_columns};
+    for (Statement known{database_, "SELECT generation, island FROM population "
+                                    "UNION SELECT generation, island FROM statistics "
+                                    "UNION SELECT generation, island FROM inherited_statistics"};
+         known.row();)
+        write_account(accounts, known.integer(0), known.integer(1), std::nullopt); // nobody knows
 }
 
 void RunFile::write_identity(const RunIdentity& identity) {
@@ -405,6 +477,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("first_tick", std::to_string(identity.first_tick));
     put("forked_from", identity.forked_from ? to_text(*identity.forked_from) : "");
     put("inherited_generations", std::to_string(identity.inherited_generations));
+    put("schedule", to_schedule_text(identity.schedule));
     put("keep_every", std::to_string(keep_every_));
     if (!identity.first_population)
         return;
@@ -470,6 +543,11 @@ Result<void> RunFile::read_identity() {
             good = experiment.has_value();
             if (good)
                 identity_.parameters = experiment->parameters;
+        } else if (key == "schedule") {
+            const auto schedule = simulation::parse_schedule(value);
+            good = schedule.has_value();
+            if (good)
+                identity_.schedule = *schedule;
         } else if (key == "evod_version") {
             identity_.evod_version = value;
         } else if (key == "build") {
@@ -493,8 +571,9 @@ Result<void> RunFile::read_identity() {
     }
     if (database_.failed())
         return failure();
-    const std::size_t keys = format < 2 ? 9 : format < 3 ? 10 : 11;
-    if (known != keys || identity_.inherited_generations >= std::max<std::uint64_t>(identity_.first_generation, 1))
+    const std::size_t keys = format < 2 ? 9 : format < 3 ? 10 : format < 4 ? 11 : 12;
+    if (known != keys || !begins_with_its_schedule(identity_) ||
+        identity_.inherited_generations >= std::max<std::uint64_t>(identity_.first_generation, 1))
         return damaged("its table run");
     if (format < 2)
         identity_.first_tick = static_cast<std::uint64_t>(database_.number(
@@ -807,6 +886,30 @@ Result<simulation::Founders> RunFile::founders_of(const GenerationBegun& begun) 
     return known ? std::move(islands) : simulation::Founders{};
 }
 
+Result<RunFile::Accounts> RunFile::accounts_of(std::uint64_t generation, std::size_t island_count) {
+    Accounts islands;
+    if (format_ < 4)
+        return Accounts(island_count);
+    const auto bad = [&] { return damaged(accounts_of_generation(generation)); };
+    RowReader rows{database_,
+                   account_table,
+                   account_columns,
+                   "generation = ? ORDER BY island",
+                   {static_cast<std::int64_t>(generation)}};
+    while (rows.next()) {
+        (void)rows.integer();
+        const std::uint64_t island = rows.natural();
+        islands.push_back(evolution::account_from([&] { return rows.optional_real(); }));
+        if (!rows.sound() || island + 1 != islands.size())
+            return bad();
+    }
+    if (database_.failed())
+        return failure();
+    if (islands.size() != island_count)
+        return bad();
+    return islands;
+}
+
 Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
     auto opening = opening_of(generation);
     if (!opening)
@@ -821,6 +924,11 @@ Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t gener
     if (!founders)
         return founders.error();
     begun.founders = *std::move(founders);
+    const auto accounts = accounts_of(generation, begun.born.size());
+    if (!accounts)
+        return accounts.error();
+    for (std::size_t island = 0; island < accounts->size(); ++island)
+        begun.born[island].account = (*accounts)[island];
     return std::optional{std::move(begun)};
 }
 
@@ -870,6 +978,13 @@ Result<std::vector<simulation::GenerationStatistics>> RunFile::statistics_of(std
     }
     if (database_.failed())
         return failure();
+    if (statistics.empty())
+        return statistics;
+    const auto accounts = accounts_of(generation, statistics.size());
+    if (!accounts)
+        return accounts.error();
+    for (std::size_t island = 0; island < statistics.size(); ++island)
+        statistics[island].account = (*accounts)[island];
     return statistics;
 }
 
@@ -896,16 +1011,30 @@ Result<void> RunFile::read_history(const char* table, std::uint64_t first, std::
                       statistics_columns(),
                       "generation >= ? AND generation < ? ORDER BY generation, island",
                       {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)}};
+    // Beside it, the accounts of the same generations, and of one more if the last has not ended.
+    std::optional<RowReader> accounts;
+    if (format_ >= 4)
+        accounts.emplace(database_, account_table, account_columns,
+                         "generation >= ? AND generation < ? ORDER BY generation, island",
+                         std::vector{static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)});
     std::uint64_t expected = first;
     std::vector<simulation::GenerationStatistics> rows; // of that generation
     while (numbers.next()) {
-        const simulation::GenerationStatistics statistics = read_statistics(numbers);
+        simulation::GenerationStatistics statistics = read_statistics(numbers);
         if (statistics.island == 0 && !rows.empty()) {
             history.emplace_back(std::exchange(rows, {}));
             ++expected;
         }
         if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size())
             return damaged(row_of(table, expected));
+        if (accounts) {
+            const bool there =
+                accounts->next() && accounts->natural() == expected && accounts->natural() == statistics.island;
+            if (there)
+                statistics.account = evolution::account_from([&] { return accounts->optional_real(); });
+            if (!there || !accounts->sound())
+                return damaged(accounts_of_generation(expected));
+        }
         rows.push_back(statistics);
     }
     if (!rows.empty())
@@ -929,11 +1058,31 @@ Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t 
         link.hash.high = reader.natural();
         if (!reader.sound())
             return damaged(row_of("state_hash", link.tick));
-        links.push_back(link);
+        if (is_link_held(link.tick)) // or it is about to be taken out
+            links.push_back(link);
     }
     if (database_.failed())
         return failure();
     return links;
+}
+
+Result<std::string> RunFile::parts_of(std::uint64_t tick, std::vector<std::int64_t>& checksums) {
+    std::string bytes;
+    if (format_ < 4)
+        return bytes;
+    RowReader parts{
+        database_, "checkpoint_part", part_columns, "tick = ? ORDER BY part", {static_cast<std::int64_t>(tick)}};
+    while (parts.next()) {
+        (void)parts.integer();
+        const std::uint64_t part = parts.natural(), expected = checksums.size() + 1;
+        bytes += parts.bytes();
+        checksums.push_back(parts.checksum());
+        if (!parts.sound() || part != expected)
+            return damaged("part " + std::to_string(expected) + " of " + row_of("checkpoint", tick));
+    }
+    if (database_.failed())
+        return failure();
+    return bytes;
 }
 
 Result<std::vector<StoredCheckpoint>> RunFile::checkpoints_where(const std::string& condition,
@@ -952,7 +1101,14 @@ Result<std::vector<StoredCheckpoint>> RunFile::checkpoints_where(const std::stri
         checkpoint.journal_entries = reader.natural();
         checkpoint.hash.low = reader.natural();
         checkpoint.hash.high = reader.natural();
-        checkpoint.state = reader.bytes();
+        // As long as its row is being read, a server takes none of its parts away.
+        std::vector<std::int64_t> checksums;
+        auto parts = parts_of(checkpoint.moment.tick, checksums);
+        if (!parts)
+            return parts.error();
+        for (const std::int64_t checksum : checksums)
+            reader.covers(checksum);
+        checkpoint.state = *std::move(parts) + reader.bytes();
         if (!reader.sound())
             return damaged(row_of("checkpoint", checkpoint.moment.tick));
         const auto set = parameter_set(parameters);
@@ -1142,8 +1298,11 @@ std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
 void RunFile::write(const Inherited& inherited) {
     RowWriter statistics{database_, inherited_statistics, statistics_columns()};
     for (const simulation::GenerationRows& generation : inherited.history)
-        for (const simulation::GenerationStatistics& island : generation)
+        for (const simulation::GenerationStatistics& island : generation) {
             write_statistics(statistics, island);
+            write_account(writers().account, static_cast<std::int64_t>(island.generation), island.island,
+                          island.account);
+        }
 }
 
 void RunFile::write(const GenerationBegun& begun) {
@@ -1177,6 +1336,8 @@ void RunFile::write(const GenerationBegun& begun) {
             .natural(island)
             .bytes(begun.founders.empty() ? std::span<const std::byte>{} : bytes_of(begun.founders[island]))
             .finish();
+        write_account(writers().account, static_cast<std::int64_t>(opening.moment.generation),
+                      static_cast<std::int64_t>(island), born.account);
     }
     // The one before is the last no more.
     const std::uint64_t before = opening.moment.generation - 1;
@@ -1184,6 +1345,7 @@ void RunFile::write(const GenerationBegun& begun) {
         return;
     for (const char* table : tables_of_held_generations)
         database_.run(("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before)).c_str());
+    tidy_ = false;
 }
 
 void RunFile::write(const GenerationEnded& ended) {
@@ -1206,29 +1368,105 @@ void RunFile::write(const HashLink& link) {
 }
 
 void RunFile::write(const Checkpoint& checkpoint) {
-    const simulation::Moment& moment = checkpoint.state.moment;
-    if (database_.failed() || !is_held(moment.generation))
-        return; // packing would be for nothing
-    const std::int64_t parameters = number_of(checkpoint.state.parameters);
-    const std::string state = pack(checkpoint.state);
-    writers()
-        .checkpoint.natural(moment.tick)
+    if (!database_.failed() && is_held(checkpoint.state.moment.generation)) // or packing would be for nothing
+        write(pack(checkpoint));
+}
+
+void RunFile::write(const StoredCheckpoint& checkpoint) {
+    if (database_.failed() || !is_held(checkpoint.moment.generation))
+        return;
+    HalfWritten half{.tick = checkpoint.moment.tick};
+    while (!write_next(checkpoint, half)) {
+    }
+}
+
+bool RunFile::has_checkpoint(std::uint64_t tick) {
+    return database_.number(("SELECT count(*) FROM checkpoint WHERE tick = " + std::to_string(tick)).c_str()) != 0;
+}
+
+Result<bool> RunFile::write_part(const StoredCheckpoint& checkpoint) {
+    const std::uint64_t tick = checkpoint.moment.tick;
+    const bool begun = half_written_ && half_written_->tick == tick;
+    // After one tick of a run all that can be there is this one: when it was written it was not known that it had been.
+    if (!is_held(checkpoint.moment.generation) || (!begun && format_ >= 2 && has_checkpoint(tick))) {
+        half_written_.reset();
+        tidy_ = false;
+        if (database_.failed())
+            return failure();
+        return true;
+    }
+    begin();
+    if (!begun)
+        half_written_ = HalfWritten{.tick = tick};
+    const bool last = write_next(checkpoint, *half_written_);
+    if (auto committed = commit(); !committed)
+        return committed.error();
+    if (last)
+        half_written_.reset();
+    return last;
+}
+
+bool RunFile::write_next(const StoredCheckpoint& checkpoint, HalfWritten& half) {
+    const simulation::Moment& moment = checkpoint.moment;
+    if (half.checksums.empty()) // what a server left that was killed, or one that is replaced
+        database_.run(("DELETE FROM checkpoint_part WHERE tick = " + std::to_string(half.tick)).c_str());
+    const std::size_t size = options_.part_bytes;
+    const auto left = std::as_bytes(std::span{checkpoint.state}).subspan(half.checksums.size() * size);
+    if (left.size() > size) {
+        half.checksums.push_back(
+            writers().part.natural(half.tick).natural(half.checksums.size() + 1).bytes(left.first(size)).finish());
+        return false;
+    }
+    const std::int64_t parameters = number_of(checkpoint.parameters);
+    RowWriter& row = writers().checkpoint;
+    row.natural(moment.tick)
         .natural(moment.generation)
         .natural(moment.generation_tick)
         .real(moment.simulated_s)
         .integer(parameters)
         .natural(checkpoint.journal_entries)
         .natural(checkpoint.hash.low)
-        .natural(checkpoint.hash.high)
-        .bytes(std::as_bytes(std::span{state}))
-        .finish();
+        .natural(checkpoint.hash.high);
+    for (const std::int64_t checksum : half.checksums)
+        row.covers(checksum);
+    row.bytes(left).finish();
     database_.run(("DELETE FROM checkpoint WHERE tick != " + std::to_string(identity_.first_tick) +
                    " AND tick NOT IN (SELECT tick FROM checkpoint ORDER BY tick DESC LIMIT " +
                    std::to_string(checkpoints_kept) + ")")
                       .c_str());
+    tidy_ = false;
+    return true;
+}
+
+Result<bool> RunFile::tidy() {
+    if (marked_ || (tidy_ && !sweep_))
+        return false;
+    if (tidy_) {
+        if (auto swept = sweep(); !swept)
+            return swept.error();
+        return true;
+    }
+    std::string where = belonging_to_none;
+    if (half_written_)
+        where += " AND tick != " + std::to_string(half_written_->tick);
+    tidy_ = database_.number(("SELECT count(*) FROM checkpoint_part WHERE " + where).c_str()) == 0;
+    if (database_.failed())
+        return failure();
+    if (tidy_)
+        return sweep_.has_value();
+    begin();
+    constexpr int parts_at_once = 2;
+    database_.run(("DELETE FROM checkpoint_part WHERE rowid IN (SELECT rowid FROM checkpoint_part WHERE " + where +
+                   " LIMIT " + std::to_string(parts_at_once) + ")")
+                      .c_str());
+    if (auto committed = commit(); !committed)
+        return committed.error();
+    return true;
 }
 
 void RunFile::write(EndMark mark) {
+    half_written_.reset();
+    database_.run((std::string{"DELETE FROM checkpoint_part WHERE "} + belonging_to_none).c_str());
     const EndMark found = contents();
     mark.journal_entries = found.journal_entries;
     mark.generations = found.generations;
@@ -1252,31 +1490,27 @@ Result<void> RunFile::commit() {
 }
 
 bool RunFile::is_large() {
-    return (database_.number("PRAGMA page_count") - database_.number("PRAGMA freelist_count")) *
-               database_.number("PRAGMA page_size") >
-           file_bytes_max_;
+    return !sweep_ && (database_.number("PRAGMA page_count") - database_.number("PRAGMA freelist_count")) *
+                              database_.number("PRAGMA page_size") >
+                          options_.file_bytes_max;
 }
 
 Result<void> RunFile::thin_if_large() {
     const std::uint64_t last = last_generation();
     // The last two may still be written to.
-    if (!is_large() || last < identity_.first_generation + 2 || last - 2 <= thinning_.until_generation)
+    if (sweep_ || !is_large() || last < identity_.first_generation + 2 || last - 2 <= thinning_.until_generation)
         return {};
     // Once only the first is left of the older ones, there is nothing to halve.
     const std::uint64_t twice = thinning_.keep_every > last ? 1 : 2;
     Thinning next{.keep_every = twice * std::max(thinning_.keep_every, keep_every_),
                   .until_generation = last - 2,
                   .until_tick = 0};
-    const std::string until = std::to_string(next.until_generation), every = std::to_string(next.keep_every);
     next.until_tick = static_cast<std::uint64_t>(database_.number(
         ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(next.until_generation + 1)).c_str()));
     begin();
-    for (const char* table : tables_of_held_generations)
-        database_.run(("DELETE FROM " + std::string{table} + " WHERE generation <= " + until + " AND (generation - " +
-                       std::to_string(identity_.first_generation) + ") % " + every + " != 0")
-                          .c_str());
-    database_.run(("DELETE FROM state_hash WHERE tick <= " + std::to_string(next.until_tick) + " AND tick / " +
-                   std::to_string(ticks_per_link) + " % " + every + " != 0")
+    database_.run(("DELETE FROM checkpoint WHERE generation <= " + std::to_string(next.until_generation) +
+                   " AND (generation - " + std::to_string(identity_.first_generation) + ") % " +
+                   std::to_string(next.keep_every) + " != 0")
                       .c_str());
     writers()
         .thinned.integer(1 + database_.number("SELECT max(number) FROM thinned"))
@@ -1287,6 +1521,51 @@ Result<void> RunFile::thin_if_large() {
     if (auto committed = commit(); !committed)
         return committed;
     thinning_ = next;
+    tidy_ = false;
+    sweep_ = Sweep{};
+    return {};
+}
+
+Result<void> RunFile::sweep() {
+    const std::string first = std::to_string(identity_.first_generation), every = std::to_string(thinning_.keep_every);
+    constexpr std::uint64_t generations_at_once = 1000, links_at_once = 1000;
+    constexpr std::int64_t pages_at_once = 64;
+    if (sweep_->generation < thinning_.until_generation) {
+        const std::uint64_t until = std::min(thinning_.until_generation, sweep_->generation + generations_at_once);
+        std::vector<std::int64_t> generations;
+        for (Statement left{database_, "SELECT DISTINCT generation FROM population WHERE generation > " +
+                                           std::to_string(sweep_->generation) +
+                                           " AND generation <= " + std::to_string(until) + " AND (generation - " +
+                                           first + ") % " + every + " != 0 ORDER BY generation LIMIT 64"};
+             left.row();)
+            generations.push_back(left.integer(0));
+        if (generations.empty()) {
+            sweep_->generation = until;
+            return {};
+        }
+        begin();
+        const auto free_pages = [this] { return database_.number("PRAGMA freelist_count"); };
+        const std::int64_t enough = free_pages() + pages_at_once;
+        for (std::size_t i = 0; i < generations.size() && free_pages() < enough; ++i)
+            // The population last: by it a generation is found again of which not all has been taken out.
+            for (const char* table : {"outcome", "founders", "population"})
+                if (free_pages() < enough)
+                    database_.run(
+                        ("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(generations[i]))
+                            .c_str());
+        return commit();
+    }
+    if (sweep_->tick < thinning_.until_tick) {
+        const std::uint64_t until = std::min(thinning_.until_tick, sweep_->tick + links_at_once * ticks_per_link);
+        begin();
+        database_.run(("DELETE FROM state_hash WHERE tick > " + std::to_string(sweep_->tick) +
+                       " AND tick <= " + std::to_string(until) + " AND tick / " + std::to_string(ticks_per_link) +
+                       " % " + every + " != 0")
+                          .c_str());
+        sweep_->tick = until;
+        return commit();
+    }
+    sweep_.reset();
     return {};
 }
 

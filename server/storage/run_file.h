@@ -27,8 +27,9 @@ enum class Durability {
 class RunFile {
   public:
     static constexpr std::int64_t application_id = 0x45564f44; // "EVOD", at byte 68 of the file
-    // 1 had no checkpoints; 2 no founders, and a fork did not know what had been before it.
-    static constexpr std::int64_t format_version = 3;
+    // 1 had no checkpoints; 2 no founders, and a fork did not know what had been before it; 3 no schedules, no accounts
+    // of selection, and no checkpoints in parts.
+    static constexpr std::int64_t format_version = 4;
 
     static constexpr int checkpoints_kept = 3;
 
@@ -39,6 +40,8 @@ class RunFile {
         // Of new files: only each of so many generations, counted from the file's first, is held for good; and the
         // last, while it is. A file keeps this to its end.
         std::uint64_t keep_every = 1;
+        std::size_t part_bytes = 256 << 10; // of a checkpoint, at most; see write_part()
+        std::uint32_t log_pages_max = 1000; // beyond this a log is copied into its file
     };
 
     /// A new file; refused if there is one. It is there whole, or not at all. Nobody else may be making it.
@@ -54,6 +57,11 @@ class RunFile {
     /// A new file under a name that is not its own yet; as after begin(). Until commit() it holds nothing.
     static base::Result<std::unique_ptr<RunFile>> begin_new(const std::string& path, const RunIdentity& identity,
                                                             const Options& options);
+    /// What the write-ahead log held after the last commit.
+    std::uint32_t log_pages() const { return database_.log_pages(); }
+    /// As Database does. The other: of a file that is open here, for another thread to do.
+    void copy_log() { database_.copy_log(); }
+    static void copy_log(const std::string& path, const Options& options);
     /// Puts what has been committed into the file itself, which then needs no log beside it.
     base::Result<void> settle();
     /// Of a file from begin_new(): whether whoever was to make it did not come to the end of it.
@@ -139,25 +147,45 @@ class RunFile {
     void write(const HashLink& link);
     /// The newest checkpoints_kept stay, and the one with which the run begins. Nothing, where its generation is not
     /// held any more.
+    void write(const StoredCheckpoint& checkpoint);
     void write(const Checkpoint& checkpoint);
     /// What the mark counts is counted here.
     void write(EndMark mark);
     /// Refused with the reason; then it is unknown whether what was written since begin() is there.
     base::Result<void> commit();
 
+    /// The next part of a checkpoint, in a transaction of its own, so that a large one holds nobody up; not between
+    /// begin() and commit(). It counts once its last part is there; one is written to its end before the next is begun.
+    ///
+    /// returns  whether there is no more to be written of it: it is there, or its generation is not held any more.
+    base::Result<bool> write_part(const StoredCheckpoint& checkpoint);
+    /// Takes out a little of what belongs to nothing, in a transaction of its own; not between begin() and commit().
+    /// Not before something else has been committed: a file that is only opened stays as it is.
+    ///
+    /// returns  whether there was anything.
+    base::Result<bool> tidy();
+
     /// If the file takes more than Options::file_bytes_max, half of the older generations' populations and outcomes,
-    /// and half of the older hashes, are taken out, evenly; again next time. The first generation, the last ones, the
-    /// journal and all statistics stay, so a very long run may pass the bound all the same. Not between begin() and
-    /// commit().
+    /// and half of the older hashes, are held no more, evenly; tidy() takes them out; again next time. The first
+    /// generation, the last ones, the journal and all statistics stay, so a very long run may pass the bound all the
+    /// same. Not between begin() and commit().
     base::Result<void> thin_if_large();
     /// Whether it takes more than that.
     bool is_large();
 
   private:
     struct Writers;
+    using Accounts = std::vector<std::optional<evolution::SelectionAccount>>;
+    /// A checkpoint whose last part is not there yet.
+    struct HalfWritten {
+        std::uint64_t tick = 0;
+        std::vector<std::int64_t> checksums = {}; // of the parts that are
+    };
     RunFile(const std::string& path, Database::Mode mode, const Options& options);
     void create_tables();
     void bring_up_to_date();
+    void bring_up_to_format_3();
+    void bring_up_to_format_4();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
     base::Result<void> check_checkpoints(const EndMark& found);
@@ -169,10 +197,19 @@ class RunFile {
     base::Result<void> read_first_population();
     bool holds_nothing();
     bool is_held(std::uint64_t generation);
+    bool has_checkpoint(std::uint64_t tick);
+    /// Takes out a little of what thinning left.
+    base::Result<void> sweep();
+    /// All of a checkpoint's state but what is in its row.
+    base::Result<std::string> parts_of(std::uint64_t tick, std::vector<std::int64_t>& checksums);
+    /// Whether it was the last.
+    bool write_next(const StoredCheckpoint& checkpoint, HalfWritten& half);
     /// The first tick after this one of which is_link_held().
     std::uint64_t next_link_held(std::uint64_t after) const;
     base::Result<std::vector<evolution::NextGeneration>> born_in(const simulation::Opening& opening);
     base::Result<simulation::Founders> founders_of(const GenerationBegun& begun);
+    /// One per island; empty in a file of before there were accounts. Of a fork, also of generations that it inherited.
+    base::Result<Accounts> accounts_of(std::uint64_t generation, std::size_t island_count);
     /// Adds the generations of a table of statistics that follow the last, or `first`, and come before `end`.
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
                                     simulation::World::History& history);
@@ -195,7 +232,14 @@ class RunFile {
     bool marked_ = false; // there may be an end mark
     Thinning thinning_;
     std::uint64_t keep_every_ = 1;
-    std::int64_t file_bytes_max_;
+    std::optional<HalfWritten> half_written_;
+    bool tidy_ = false; // no part is left that belongs to no checkpoint
+    /// What thinning left to be taken out: nothing up to this generation, nor then of hashes up to this tick.
+    struct Sweep {
+        std::uint64_t generation, tick;
+    };
+    std::optional<Sweep> sweep_;
+    const Options options_;
 
   public:
     ~RunFile();

@@ -71,6 +71,8 @@ class StretchCheck {
         const std::uint64_t began_tick = rerun->world().moment().tick;
         for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i)
             check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, told);
+        if (const auto& fault = rerun->changes().fault())
+            return *fault;
         done_.ticks = rerun->world().moment().tick - began_tick;
         done_.simulated_s = rerun->world().moment().simulated_s - began_s;
         return done_;
@@ -110,7 +112,7 @@ class StretchCheck {
         const RunIdentity& identity = file_.identity();
         const StoredGeneration& first = stretch_.front();
         if (!identity.forked_from) {
-            const World world{identity.parameters, identity.seed, identity.first_population};
+            const World world{identity.parameters, identity.seed, identity.first_population, identity.schedule};
             const GenerationBegun begun = beginning_of(world);
             (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
         } else {

@@ -6,10 +6,13 @@
 #include "tests/support/manual_clock.h"
 #include "tests/unit/storage/recorded_run.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <future>
 #include <set>
@@ -219,6 +222,36 @@ TEST_F(Loop, MeasuresTicksPerSecond) {
     EXPECT_EQ(world().ticks_per_s, 0);
 }
 
+TEST_F(Loop, LooksAtTheClockNowAndThenWhereTicksAreShort) {
+    send(create("w"));
+    send(simulation::SetSpeed{"w", {}});
+    send(simulation::Run{"w", {}});
+    clock.per_look = 1us;
+    loop.pass();
+    const std::uint64_t ticks_before = tick("w");
+    const auto began = clock.now();
+    loop.pass();
+    const auto looks = (clock.now() - began) / 1us;
+    const std::uint64_t ticks = tick("w") - ticks_before;
+    EXPECT_GT(static_cast<double>(ticks), 2.0 * static_cast<double>(looks));
+    ASSERT_EQ(counted.list().size(), 1u);
+    EXPECT_EQ(counted.list()[0]->tick_time.count(), tick("w")) << "each is counted";
+
+    clock.per_look = 50us;
+    loop.pass();
+    const std::uint64_t before_long_ones = tick("w");
+    const auto long_began = clock.now();
+    loop.pass();
+    EXPECT_LE(tick("w") - before_long_ones, static_cast<std::uint64_t>((clock.now() - long_began) / 50us));
+
+    clock.per_look = 1us;
+    loop.pass();
+    const std::uint64_t end = tick("w") + 7;
+    send(simulation::RunUntilTick{"w", end});
+    loop.pass();
+    EXPECT_EQ(tick("w"), end) << "a goal is not passed";
+}
+
 TEST_F(Loop, CountsTheTicksOfEachWorldWhileItIsThere) {
     send(create("a"));
     send(create("b", 2));
@@ -322,6 +355,48 @@ TEST_F(Loop, OnlyTheIslandsThatAreWatchedAreCopied) {
     ASSERT_EQ(pictures[0]->islands.size(), 2);
     EXPECT_EQ(pictures[0]->islands[1].island, 3);
     EXPECT_EQ(pictures[0]->island_count, 5);
+}
+
+TEST_F(Loop, APictureHasEverybodyWhoLivesAndEveryItem) {
+    auto command = create("w");
+    command.parameters.population_size = 200;
+    command.parameters.food_count = 40;
+    command.parameters.respawn_s = 10;
+    command.parameters.health_loss_per_s = 190; // of 80 to 120
+    send(command);
+    send(simulation::Run{"w", {}});
+    watch("w", 1000);
+    std::size_t seen_void = 0, seen_away = 0;
+    for (int i = 0; i < 60; ++i) {
+        live_through(10ms);
+        ASSERT_FALSE(pictures.empty());
+        const IslandSnapshot& picture = pictures.back()->islands[0];
+        const simulation::Island& island = world().world.islands()[0];
+        ASSERT_EQ(pictures.back()->hash, world().world.hash());
+        std::size_t alive = 0;
+        for (std::size_t k = 0; k < picture.organisms.id.size(); ++k) {
+            if (picture.organisms.x[k] == physics::elsewhere)
+                continue;
+            const auto body = island.body_of(picture.organisms.id[k]);
+            ASSERT_TRUE(body);
+            EXPECT_EQ(picture.organisms.x[k], island.bodies().x[*body]);
+            EXPECT_EQ(picture.organisms.y[k], island.bodies().y[*body]);
+            EXPECT_EQ(picture.organisms.radius_px[k], island.bodies().radius[*body]);
+            EXPECT_EQ(picture.organisms.health[k], island.living().health[*body]);
+            ++alive;
+        }
+        EXPECT_EQ(alive, island.alive_count());
+        EXPECT_EQ(picture.organisms.alive_count, alive);
+        EXPECT_EQ(picture.food.all.size(), 40);
+        EXPECT_EQ(picture.food.present_count,
+                  std::ranges::count(picture.food.all, 0u, &simulation::Items::Item::due_tick));
+        EXPECT_EQ(simulation::mean_health(picture.organisms.health, picture.organisms.alive_count),
+                  island.live_statistics().health_mean);
+        seen_void += picture.organisms.id.size() - alive;
+        seen_away += 40 - picture.food.present_count;
+    }
+    EXPECT_GT(seen_void, 0);
+    EXPECT_GT(seen_away, 0);
 }
 
 TEST_F(Loop, APictureStaysAsItWasAndItsMemoryComesBack) {
@@ -478,6 +553,52 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
+    storage::TemporaryFolder folder;
+    auto data = storage::DataFolder::open(folder.path());
+    storage::StorageThread thread{{}};
+    storage::Recorder recorder{*data, thread};
+    Mailbox letters;
+    SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
+                        {},      &recorder};
+    std::string said;
+    const auto tell = [&](simulation::Command command) {
+        letters.try_push(CommandMail{std::move(command), {}, [&](auto&&, auto&&, const auto& applied) -> CommandAnswer {
+                                         said = applied ? "" : to_text(applied.error());
+                                         return {};
+                                     }});
+        kept.pass();
+    };
+    const std::string taken = data->file_of("taken");
+    std::ofstream{taken} << "somebody else's";
+    tell(create("taken"));
+    EXPECT_THAT(said, testing::HasSubstr("the run would be kept in " + taken + ", which is there already"));
+    std::ofstream{storage::DataFolder::next_file_of(data->file_of("next"))} << "somebody else's";
+    tell(create("next"));
+    EXPECT_THAT(said, testing::HasSubstr("next.evod-next, which is there already"));
+    EXPECT_TRUE(kept.laboratory().entries().empty());
+    tell(create("w"));
+    EXPECT_EQ(said, "");
+    tell(create("w"));
+    EXPECT_THAT(said, testing::HasSubstr("there is a world of that name already"));
+    tell(simulation::ForkWorld{.world = "w", .name = "taken", .at_generation = {}, .run_id = {4, 4}});
+    EXPECT_THAT(said, testing::HasSubstr(taken));
+    // A name is free at once, though its file may not be yet.
+    for (int i = 0; i < 20; ++i) {
+        tell(simulation::DeleteWorld{"w"});
+        EXPECT_EQ(said, "");
+        tell(create("w", static_cast<std::uint64_t>(i) + 10));
+        EXPECT_EQ(said, "");
+    }
+    EXPECT_FALSE(recorder.trouble());
+    while (!thread.idle())
+        std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(storage::RunFile::open_read_only(data->file_of("w")));
+    std::filesystem::remove(taken);
+    tell(create("taken", 99));
+    EXPECT_EQ(said, "");
+}
+
 // ---- a disk that cannot be written to --------------------------------------------------------------------------
 
 /// A loop that writes into a folder which can be taken away, so that no new file can be made there.
@@ -548,13 +669,16 @@ class LoopWithADisk : public Loop {
 
     /// A world at full speed whose ticks are generations of half a megabyte.
     void run_crowd() {
+        make_crowd();
+        send(simulation::Run{"crowd", {}});
+    }
+    void make_crowd() {
         auto crowd = create("crowd", 2);
         crowd.parameters.population_size = 10'000;
         crowd.parameters.scale_with_population = true;
         crowd.parameters.fitness = simulation::FitnessFunction::GeneSum;
         send(crowd);
         send(simulation::SetSpeed{"crowd", {}});
-        send(simulation::Run{"crowd", {}});
     }
 
     storage::TemporaryFolder folder;
@@ -579,8 +703,10 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
                               look = *name;
                           }});
     pass_until([&] { return !look.empty(); });
+    make_crowd();
+    pass_until([&] { return thread.idle(); });
     take_away();
-    run_crowd();
+    send(simulation::Run{"crowd", {}});
     pass_until([&] { return state() == simulation::StorageState::Stalled; });
     EXPECT_EQ(entry("w").storage->state, simulation::StorageState::Stalled);
     EXPECT_EQ(entry("w").ticks_per_s, 0);
@@ -603,8 +729,10 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     EXPECT_GE(news, news_before + 2) << "of room, and of the end of the trouble";
     pass_until([&] { return tick("w") > stands; });
     // While the queue has room, before it is full and when it was emptied, the disk is told to fail only;
-    // how long either lasts is the disk's affair, and it may be too short to be seen.
+    // how long either lasts is the disk's affair, and it may be too short to be seen. Until it is found to fail, it
+    // may be behind.
     std::erase(told, simulation::StorageState::Failing);
+    std::erase(told, simulation::StorageState::Behind);
     EXPECT_EQ(told, (std::vector{simulation::StorageState::Stalled, simulation::StorageState::KeepsUp}));
 }
 

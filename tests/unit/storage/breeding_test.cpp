@@ -1,5 +1,6 @@
 #include "server/storage/breeding.h"
 
+#include "server/evolution/fitness_shuffle.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <algorithm>
@@ -135,6 +136,65 @@ TEST_P(HeldInPart, WhatIsSimulatedAgainIsGivenUpWhenNobodyWantsItAnyMore) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Storage, HeldInPart, testing::Values(4));
+
+TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
+    for (const std::uint64_t keep_every : {1, 4}) {
+        TemporaryFolder folder;
+        DataFolder data{*DataFolder::open(folder.path())};
+        std::vector<GenerationEnded> ended;
+        {
+            StorageThread thread{{.durability = Durability::Relaxed, .vfs = nullptr, .keep_every = keep_every}};
+            RecordedRun run{data, thread};
+            run.command(set_parameter("shuffle_fitness", true));
+            run.command(set_parameter("elite_count", 2u));
+            for (int tick = 0; tick < 540; ++tick) {
+                run.advance(1);
+                if (run.world().generation_over())
+                    ended.push_back(end_of(run.world()));
+            }
+            run.recorder().close_all(run.laboratory());
+        }
+        const auto file = *RunFile::open_read_only(data.file_of("w"));
+        base::InlineExecutor executor;
+        std::size_t migrants = 0, others = 0;
+        for (std::uint64_t generation = 1; generation <= 4; ++generation)
+            for (std::uint32_t island = 0; island < 2; ++island) {
+                // Refused if other descendants came of it than those that are stored.
+                const auto bred = breeding_of(
+                    *file, {.generation = generation, .seen_from = 5, .island = island, .rows = {.count_max = ~0u}},
+                    executor, {});
+                ASSERT_TRUE(bred) << to_text(bred.error());
+                const std::vector<std::vector<double>> own{ended[generation - 1].outcomes[0].fitness,
+                                                           ended[generation - 1].outcomes[1].fitness};
+                std::vector<std::vector<double>> dealt = own;
+                for (std::uint32_t i = 0; i < 2; ++i)
+                    evolution::shuffle_fitness(dealt[i], {.seed = base::Seed{7}, .island = i, .generation = generation},
+                                               executor);
+                for (std::uint32_t id = 0; id < 12; ++id) {
+                    const auto& contender = bred->record.contenders[id];
+                    const std::uint32_t from = contender.migrant ? contender.migrant->from : island;
+                    const std::uint32_t organism = contender.migrant ? contender.migrant->organism : id;
+                    EXPECT_EQ(contender.own_fitness, own[from][organism]);
+                    EXPECT_EQ(contender.fitness, dealt[from][organism]);
+                    migrants += contender.migrant.has_value();
+                    others += contender.fitness != *contender.own_fitness;
+                }
+                // Rows from the middle are of those organisms.
+                const auto some = breeding_of(*file,
+                                              {.generation = generation,
+                                               .seen_from = 5,
+                                               .island = island,
+                                               .rows = {.first_contender = 5, .count_max = 3}},
+                                              executor, {});
+                ASSERT_TRUE(some);
+                ASSERT_EQ(some->record.contenders.size(), 3u);
+                for (std::size_t i = 0; i < 3; ++i)
+                    EXPECT_EQ(some->record.contenders[i].own_fitness, bred->record.contenders[5 + i].own_fitness);
+            }
+        EXPECT_GT(migrants, 0u);
+        EXPECT_GT(others, 50u); // of 96
+    }
+}
 
 TEST(Breeding, ARunInItsFirstGenerationHasBredNobody) {
     TemporaryFolder folder;

@@ -2,6 +2,7 @@
 
 #include "server/storage/archive.h"
 #include "server/storage/verify.h"
+#include "tests/support/older_run_file.h"
 #include "tests/support/thread_executor.h"
 #include "tests/unit/storage/recorded_run.h"
 
@@ -245,8 +246,7 @@ TEST_F(CheckpointTest, AFileOfTheFormatBeforeIsReadAndGoneOnWith) {
         hash = run.world().hash();
     }
     (void)file_left();
-    change("DROP TABLE checkpoint; DROP TABLE founders; DROP TABLE inherited_statistics;"
-           "DELETE FROM run WHERE key IN ('first_tick', 'inherited_generations'); PRAGMA user_version = 1");
+    change(support::as_of_format(1).c_str());
     {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
@@ -265,6 +265,114 @@ TEST_F(CheckpointTest, AFileOfTheFormatBeforeIsReadAndGoneOnWith) {
     ASSERT_TRUE(file) << to_text(file.error());
     EXPECT_THAT(ticks_of(**file), ElementsAre(170));
     expect_agrees(**file, 1);
+}
+
+TEST_F(CheckpointTest, AFileWithWholeOnesIsReadAndGoneOnWith) {
+    base::StateHash hash;
+    {
+        RecordedRun run{data, *thread};
+        run.advance(170);
+        run.checkpoint();
+        run.advance(30);
+        run.recorder().close_all(run.laboratory());
+        hash = run.world().hash();
+    }
+    (void)file_left();
+    change(support::as_of_format(3).c_str());
+    {
+        const auto file = RunFile::open_read_only(data.file_of("w"));
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_THAT(ticks_of(**file), ElementsAre(170));
+        expect_agrees(**file, 1);
+        EXPECT_EQ(Rerun::before(**file, 199, executor)->world().moment().tick, 170u);
+        EXPECT_EQ(recover(**file, executor)->world.hash(), hash);
+    }
+    {
+        const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
+        const auto recovered = recover(**file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        const StoredCheckpoint checkpoint = pack(checkpoint_of(recovered->world, 0, executor));
+        int parts = 1;
+        for (; !*(*file)->write_part(checkpoint); ++parts)
+            EXPECT_THAT(ticks_of(**file), ElementsAre(170));
+        EXPECT_GT(parts, 3);
+    }
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_THAT(ticks_of(**file), ElementsAre(170, 200));
+    expect_agrees(**file, 2);
+    EXPECT_EQ(recover(**file, executor)->world.hash(), hash);
+}
+
+TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
+    RecordedRun run{data, *thread};
+    run.advance(170);
+    const StoredCheckpoint checkpoint = pack(checkpoint_of(run.world(), 0, executor));
+    thread.reset();
+    const auto part_count = [&] {
+        return Database{data.file_of("w"), Database::Mode::Read}.number("SELECT count(*) FROM checkpoint_part");
+    };
+    {
+        const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
+        EXPECT_FALSE(*(*file)->write_part(checkpoint));
+        EXPECT_FALSE(*(*file)->write_part(checkpoint));
+    }
+    EXPECT_EQ(part_count(), 2);
+    {
+        const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 256});
+        EXPECT_THAT(ticks_of(**file), ElementsAre());
+        expect_agrees(**RunFile::open_read_only(data.file_of("w")), 0);
+        EXPECT_FALSE(*(*file)->tidy()) << "a file that is only opened stays as it is";
+        EXPECT_EQ(part_count(), 2);
+        // Once it is written to, what is left of one goes.
+        (*file)->begin();
+        ASSERT_TRUE((*file)->commit());
+        EXPECT_TRUE(*(*file)->tidy());
+        EXPECT_FALSE(*(*file)->tidy());
+        EXPECT_EQ(part_count(), 0);
+        EXPECT_FALSE(*(*file)->write_part(checkpoint));
+        EXPECT_FALSE(*(*file)->tidy()) << "one that is being written stays";
+        EXPECT_EQ(part_count(), 1);
+    }
+    {
+        // From its beginning, over what is left.
+        const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 200});
+        while (!*(*file)->write_part(checkpoint))
+            EXPECT_THAT(ticks_of(**file), ElementsAre());
+        EXPECT_EQ(part_count(), static_cast<std::int64_t>((checkpoint.state.size() - 1) / 200));
+        const auto read = *(*file)->last_checkpoint(170);
+        EXPECT_EQ(read->state, checkpoint.state);
+        EXPECT_EQ(read->hash, checkpoint.hash);
+        expect_agrees(**RunFile::open_read_only(data.file_of("w")), 1);
+        // A commit of which it was not known whether it had been done.
+        EXPECT_TRUE(*(*file)->write_part(checkpoint));
+        expect_agrees(**RunFile::open_read_only(data.file_of("w")), 1);
+    }
+    const std::int64_t parts = part_count();
+    for (const auto& [damage, named] : {
+             std::pair{"UPDATE checkpoint_part SET bytes = zeroblob(length(bytes)) WHERE part = 2",
+                       "part 2 of the row 170 of its table checkpoint"},
+             {"UPDATE checkpoint_part SET part = 100 WHERE part = 1", "part 1 of the row 170 of its table checkpoint"},
+             {"DELETE FROM checkpoint_part WHERE part = 3", "part 3 of the row 170 of its table checkpoint"},
+             {"DELETE FROM checkpoint_part WHERE part = (SELECT max(part) FROM checkpoint_part)",
+              "the row 170 of its table checkpoint"},
+             {"DELETE FROM checkpoint_part", "the row 170 of its table checkpoint"},
+             {"UPDATE checkpoint SET state = zeroblob(length(state))", "the row 170 of its table checkpoint"},
+         }) {
+        const std::string sound = data.file_of("w") + ".sound";
+        std::filesystem::copy_file(data.file_of("w"), sound, std::filesystem::copy_options::overwrite_existing);
+        change(damage);
+        {
+            const auto file = RunFile::open_read_only(data.file_of("w"));
+            for (const auto& refused : {(*file)->check().error(), recover(**file, executor).error()}) {
+                EXPECT_EQ(refused.code, base::RefusalCode::DataLoss) << damage;
+                EXPECT_THAT(refused.message, HasSubstr(named)) << damage;
+            }
+        }
+        ASSERT_TRUE(RunFile::remove(data.file_of("w")));
+        std::filesystem::rename(sound, data.file_of("w"));
+        EXPECT_EQ(part_count(), parts);
+    }
 }
 
 TEST_F(CheckpointTest, ARunMayBeginWithOne) {

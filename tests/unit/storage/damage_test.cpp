@@ -86,7 +86,7 @@ class DamageTest : public testing::TestWithParam<Left> {
     /// Four generations and a half with a command every 13 ticks and a checkpoint every 90, of which three are kept.
     DamageTest() {
         auto data = DataFolder::open(folder.path());
-        StorageThread thread{{}};
+        StorageThread thread{{.part_bytes = 600}}; // so that checkpoints have several parts
         RecordedRun run{*data, thread, {7}};
         const std::string path = data->file_of("w");
         std::unique_ptr<RunFile> reading;

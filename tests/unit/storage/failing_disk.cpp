@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <atomic>
+#include <utility>
 
 namespace evod::storage {
 namespace {
@@ -10,9 +11,13 @@ namespace {
 std::atomic<std::uint64_t> operations_left = 0;
 std::atomic<bool> failed = false;
 std::atomic<Failure> how_to_fail = Failure::InputOutput;
+std::atomic<std::uint64_t> operations_to_call = 0;
+std::function<void()> to_call; // set while operations_to_call is 0
 
 /// Whether the operation that is asked for now is to fail.
 bool fails_now() {
+    if (operations_to_call.load() != 0 && operations_to_call.fetch_sub(1) == 1)
+        to_call();
     if (failed && how_to_fail.load() == Failure::Gone)
         return true;
     if (operations_left.load() == 0 || operations_left.fetch_sub(1) != 1)
@@ -144,6 +149,11 @@ void fail_operation(std::uint64_t count, Failure how) {
     how_to_fail = how;
     failed = false;
     operations_left = count;
+}
+
+void call_before_operation(std::uint64_t count, std::function<void()> call) {
+    to_call = std::move(call);
+    operations_to_call = count;
 }
 
 bool has_failed() {

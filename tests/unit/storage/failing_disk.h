@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 namespace evod::storage {
 
@@ -17,6 +18,9 @@ const char* failing_disk();
 
 /// The number `count` operation from now on fails, and no other unless the disk is Gone; 0: none does.
 void fail_operation(std::uint64_t count, Failure how);
+
+/// Calls this once, on the thread that asks for it, before the number `count` operation from now on.
+void call_before_operation(std::uint64_t count, std::function<void()> call);
 
 /// Whether the operation that was to fail has.
 bool has_failed();

@@ -1,5 +1,6 @@
 // Founders in run files: families are told apart in worlds that are made again from their file, whatever the way.
 #include "server/storage/rerun.h"
+#include "tests/support/older_run_file.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -57,10 +58,9 @@ TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
     }
 }
 
-TEST_F(FoundersTest, OfAFileOfTheFormatBeforeNobodyKnows) {
+TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
     record(1);
-    change("DROP TABLE founders; DROP TABLE inherited_statistics;"
-           "DELETE FROM run WHERE key = 'inherited_generations'; PRAGMA user_version = 2");
+    change(support::as_of_format(2).c_str());
     {
         const auto file = RunFile::open_read_only(path());
         ASSERT_TRUE(file) << to_text(file.error());

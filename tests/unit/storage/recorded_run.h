@@ -62,10 +62,12 @@ class RecordedRun {
   public:
     /// folder, thread: outlive it.
     RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
-                simulation::FirstPopulation first_population = {})
+                simulation::FirstPopulation first_population = {}, const simulation::Schedule& schedule = {})
         : recorder_{folder, thread} {
-        EXPECT_TRUE(
-            laboratory_.apply(simulation::CreateWorld{"w", small_world(), seed, {1, 2}, std::move(first_population)}));
+        auto parameters = simulation::assign(small_world(), schedule.at(1));
+        EXPECT_TRUE(parameters) << to_text(parameters.error());
+        EXPECT_TRUE(laboratory_.apply(
+            simulation::CreateWorld{"w", *parameters, seed, {1, 2}, std::move(first_population), schedule}));
         recorder_.begin(entry());
     }
 
@@ -110,8 +112,10 @@ class RecordedRun {
 
     void command(
         v1::Request request, StorageThread::Done done = [] {}) {
-        const auto command = protocol::to_command(with_key(request), {});
+        auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
+        if (auto* set = std::get_if<simulation::SetParameters>(&*command))
+            set->by = "somebody"; // as a server does
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
         recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));

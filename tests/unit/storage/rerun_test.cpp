@@ -39,6 +39,8 @@ TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
         RecordedRun run{data, *thread};
         run.advance(random() % 200);
         run.command(set_parameter("mutation_chance", 0.3));
+        if (round % 2 == 1)
+            run.command(set_parameter("shuffle_fitness", true));
         run.advance(random() % 200);
         run.command(set_parameter("food_health", 3.0));
         run.command(set_parameter("population_size", 17u)); // from the next generation on

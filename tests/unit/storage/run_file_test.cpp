@@ -200,8 +200,8 @@ TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
     EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
     std::filesystem::remove(path);
     const std::string newer = recorded();
-    change(newer, "PRAGMA user_version = 4");
-    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 4"));
+    change(newer, "PRAGMA user_version = 5");
+    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 5"));
 }
 
 TEST_F(RunFileTest, AnOlderFileDoesNotTellItsBuild) {

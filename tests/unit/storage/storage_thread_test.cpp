@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <future>
@@ -77,6 +78,65 @@ TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
     fail_operation(0, Failure::Full);
 }
 
+TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
+    StorageThread thread{{}, 1ms};
+    RecordedRun run{data, thread};
+    std::atomic<int> told = 0;
+    double value = 0;
+    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++told; }); };
+    const std::string path = data.file_of("w"), away = path + ".away";
+    command();
+    while (!thread.idle())
+        std::this_thread::yield();
+    for (const bool another : {false, true}) {
+        std::filesystem::rename(path, away);
+        if (another)
+            std::ofstream{path} << "somebody else's";
+        while (!thread.trouble()) { // it looks once a second
+            command();
+            std::this_thread::sleep_for(10ms);
+        }
+        EXPECT_THAT(*thread.trouble(),
+                    testing::HasSubstr(path + (another ? " is another file than the one that is written"
+                                                       : " has been moved or deleted")));
+        const int at_trouble = told;
+        command();
+        std::this_thread::sleep_for(20ms);
+        EXPECT_EQ(told, at_trouble) << "nobody is told of what has no name";
+        std::filesystem::rename(away, path);
+        while (told < static_cast<int>(value))
+            std::this_thread::yield();
+        while (thread.trouble())
+            std::this_thread::yield();
+    }
+    EXPECT_EQ((*RunFile::open_read_only(path))->journal()->size(), static_cast<std::size_t>(value));
+}
+
+TEST_F(StorageThreadTest, SaysAtItsEndWhatItCouldNotWrite) {
+    std::promise<void> told;
+    testing::internal::CaptureStdout();
+    {
+        StorageThread thread{{.vfs = failing_disk()}, 1h};
+        RecordedRun run{data, thread};
+        run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
+        told.get_future().wait();
+        fail_operation(1, Failure::Gone); // and all after it
+        bool late = false;
+        run.command(set_parameter("food_health", 2.0), [&] { late = true; });
+        while (!thread.trouble())
+            std::this_thread::yield();
+        run.command(set_parameter("food_health", 3.0), [&] { late = true; });
+        EXPECT_FALSE(late);
+    }
+    fail_operation(0, Failure::Gone);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said,
+                testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
+                                       "commands, and where it stood last. " +
+                                       data.file_of("w") + " has all that was answered"));
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal()->size(), 1u);
+}
+
 TEST_F(StorageThreadTest, NothingWaitsOnceAllIsWritten) {
     StorageThread thread{{}};
     RecordedRun run{data, thread};
@@ -140,6 +200,118 @@ TEST_F(StorageThreadTest, WhatSomebodyWaitsForIsThereBeforeACheckpointIsPacked) 
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->checkpoints(0, 70)->size(), 1u);
 }
 
+/// Of checkpoints that are there, and of such as are not, or not whole.
+struct PartCount {
+    std::int64_t of_whole = 0, of_none = 0;
+};
+PartCount parts_in(const std::string& path) {
+    Database file{path, Database::Mode::Read};
+    const std::string parts = "SELECT count(*) FROM checkpoint_part WHERE tick ";
+    const PartCount count{file.number((parts + "IN (SELECT tick FROM checkpoint)").c_str()),
+                          file.number((parts + "NOT IN (SELECT tick FROM checkpoint)").c_str())};
+    EXPECT_FALSE(file.failed()) << file.error();
+    return count;
+}
+
+TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
+    StorageThread thread{{.vfs = failing_disk(), .part_bytes = 64}};
+    RecordedRun run{data, thread};
+    run.advance(70);
+    run.checkpoint();
+    while (!thread.idle())
+        std::this_thread::yield();
+    const std::int64_t parts = parts_in(data.file_of("w")).of_whole;
+    ASSERT_GT(parts, 20);
+
+    run.advance(70);
+    while (!thread.idle())
+        std::this_thread::yield();
+    std::promise<void> written_to, go_on, told;
+    call_before_operation(40, [&] { // a part takes several: pages and a sync
+        written_to.set_value();
+        go_on.get_future().wait();
+    });
+    run.checkpoint();
+    written_to.get_future().wait();
+    PartCount when_told;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        when_told = parts_in(data.file_of("w"));
+        told.set_value();
+    });
+    go_on.set_value();
+    told.get_future().wait();
+    EXPECT_EQ(when_told.of_whole, parts);
+    EXPECT_GT(when_told.of_none, 0);
+    EXPECT_LT(when_told.of_none, parts / 2);
+    while (!thread.idle())
+        std::this_thread::yield();
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->checkpoints(0, 140)->size(), 2u);
+    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
+}
+
+TEST_F(StorageThreadTest, OfCheckpointsThatAreKeptNoMoreNothingStays) {
+    StorageThread thread{{.part_bytes = 256}};
+    RecordedRun run{data, thread};
+    for (int count = 0; count < 6; ++count) {
+        run.advance(30);
+        run.checkpoint();
+        while (!thread.idle())
+            std::this_thread::yield();
+        EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
+    }
+    EXPECT_GT(parts_in(data.file_of("w")).of_whole, 3 * 2);
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->checkpoints(0, 180)->size(), 3u);
+    EXPECT_TRUE((*file)->check());
+}
+
+TEST_F(StorageThreadTest, ACheckpointThatIsNotWrittenWhenItsRunEndsIsLeftOut) {
+    StorageThread thread{{.part_bytes = 256}};
+    RecordedRun run{data, thread};
+    std::promise<void> at_work, go_on, told;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        at_work.set_value();
+        go_on.get_future().wait();
+    });
+    at_work.get_future().wait();
+    run.advance(70);
+    run.checkpoint();
+    run.reset({2}, {3, 4}, [&] { told.set_value(); });
+    go_on.set_value();
+    told.get_future().wait();
+    while (!thread.idle())
+        std::this_thread::yield();
+    const std::string path = data.ended_file_of("w", {1, 2});
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->end_mark()->value().tick, 70u);
+    EXPECT_TRUE((*file)->checkpoints(0, 70)->empty());
+    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ(parts_in(path).of_none, 0);
+}
+
+TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
+    StorageThread thread{{.log_pages_max = 16}};
+    RecordedRun run{data, thread};
+    const auto command = [&](double value) {
+        std::promise<void> told;
+        run.command(set_parameter("food_health", value), [&] { told.set_value(); });
+        told.get_future().wait();
+    };
+    command(0);
+    const auto bytes = std::filesystem::file_size(data.file_of("w"));
+    for (int number = 1; number <= 100; ++number)
+        command(number);
+    while (!thread.idle())
+        std::this_thread::yield();
+    EXPECT_GT(std::filesystem::file_size(data.file_of("w")), bytes);
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->journal()->size(), 101u);
+    EXPECT_TRUE((*file)->check());
+}
+
 std::vector<std::uint64_t> ticks_of_checkpoints(RunFile& file) {
     std::vector<std::uint64_t> ticks;
     for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
@@ -185,7 +357,8 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
         base::StateHash ended_hash, hash;
         std::atomic<int> told = 0;
         {
-            StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk()}, 1ms};
+            StorageThread thread{
+                {.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700, .log_pages_max = 32}, 1ms};
             RecordedRun run{data, thread};
             for (int round = 0; round < 4; ++round) {
                 std::promise<void> durable;
@@ -198,6 +371,8 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                 run.checkpoint();
                 ended_hash = run.world().hash();
             }
+            while (!thread.idle()) // or the last checkpoint would be left out
+                std::this_thread::yield();
             std::promise<void> begun_again;
             run.reset({9}, {3, 4}, [&] {
                 ++told;
@@ -219,6 +394,7 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
             ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
             const auto checked = (*file)->check();
             ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
+            EXPECT_EQ(parts_in(path).of_none, 0) << "operation " << operation;
             EXPECT_EQ((*file)->journal()->size(), commands);
             EXPECT_EQ(ticks_of_checkpoints(**file), checkpoints) << "operation " << operation;
             const auto recovered = recover(**file, executor);
@@ -244,6 +420,7 @@ INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput,
 /// As if a server had been killed right before each of its operations of the disk in turn.
 TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
     std::uint64_t operation = 0;
+    int half_written = 0;
     { DataFolder taken = std::move(data); }
     do {
         ASSERT_LT(++operation, 10'000u);
@@ -255,7 +432,7 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
         std::uint64_t asked = 0;
         {
             auto own = DataFolder::open(folder.path());
-            StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk()}, 1ms};
+            StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700}, 1ms};
             RecordedRun run{*own, thread};
             const auto tells = [&] {
                 ++asked;
@@ -291,6 +468,9 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
                 std::ifstream{path, std::ios::binary}.read(head.data(), std::ssize(head));
                 EXPECT_EQ(head.substr(68), "EVOD") << path;
             }
+        const std::string path = folder.path() + "/w.evod";
+        if (std::filesystem::exists(path))
+            half_written += parts_in(path).of_none > 0;
         const auto archive = Archive::open(folder.path(), {}, executor);
         ASSERT_TRUE(archive) << to_text(archive.error());
         for (const auto& file : std::filesystem::directory_iterator{folder.path()})
@@ -309,8 +489,12 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
         EXPECT_TRUE(told == 0 || laboratory.find("w"));
         (*archive)->recorder().close_all(laboratory);
         (*archive)->close();
+        if (std::filesystem::exists(path)) {
+            EXPECT_EQ(parts_in(path).of_none, 0);
+        }
     } while (has_failed());
     EXPECT_GT(operation, 10u);
+    EXPECT_GT(half_written, 0);
     fail_operation(0, Failure::Gone);
 }
 

@@ -11,7 +11,7 @@
 namespace evod::storage {
 namespace {
 
-constexpr std::int64_t bytes_max = 230 << 10;
+constexpr std::int64_t bytes_max = 300 << 10;
 
 /// A hundred generations in a file that has room for some thirty of them whole.
 class ThinningTest : public testing::Test {
@@ -164,6 +164,82 @@ TEST_F(ThinningTest, ALinkThatIsMissingWithoutHavingBeenTakenOutIsNamed) {
     }
     const auto file = RunFile::open_read_only(data.file_of("w"));
     EXPECT_EQ((*file)->check().error().code, base::RefusalCode::DataLoss);
+}
+
+TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
+    const TemporaryFolder folder;
+    DataFolder data = *DataFolder::open(folder.path());
+    base::InlineExecutor executor;
+    std::vector<base::StateHash> hashes; // by tick
+    {
+        StorageThread thread{{.durability = Durability::Relaxed}};
+        RecordedRun run{data, thread};
+        for (int tick = 0; tick < 4900; ++tick) {
+            hashes.push_back(run.world().hash());
+            run.advance(1);
+        }
+        hashes.push_back(run.world().hash());
+        run.recorder().close_all(run.laboratory());
+    }
+    const std::string path = data.file_of("w");
+    const auto held_in = [](RunFile& file) {
+        std::vector<std::uint64_t> generations;
+        for (std::uint64_t generation = 1; generation <= 41; ++generation)
+            if (*file.beginning_of(generation))
+                generations.push_back(generation);
+        return generations;
+    };
+    const auto rows = [&](const char* of) {
+        return Database{path, Database::Mode::Read}.number((std::string{"SELECT count(DISTINCT "} + of).c_str());
+    };
+    const auto generations = [&] { return rows("generation) FROM population"); };
+    const auto expect_whole = [&](RunFile& file) {
+        const auto checked = file.check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        const auto recovered = recover(file, executor);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        EXPECT_GE(recovered->world.moment().tick, 4860u) << "its last hash";
+        EXPECT_EQ(recovered->world.hash(), hashes[recovered->world.moment().tick]);
+        for (const HashLink& link : *file.links(0, 4900))
+            EXPECT_EQ(link.hash, hashes[link.tick]);
+    };
+    const std::vector<std::uint64_t> halved = [] {
+        std::vector<std::uint64_t> odd; // counted from the first; and the last two, which may be written to
+        for (std::uint64_t generation = 1; generation <= 39; generation += 2)
+            odd.push_back(generation);
+        odd.insert(odd.end(), {40, 41});
+        return odd;
+    }();
+    {
+        const auto file = RunFile::open(path, {.file_bytes_max = 1000});
+        ASSERT_TRUE(file) << to_text(file.error());
+        ASSERT_TRUE((*file)->is_large());
+        ASSERT_TRUE((*file)->thin_if_large());
+        EXPECT_EQ(held_in(**file), halved);
+        EXPECT_EQ(generations(), 41) << "nothing is taken out yet";
+        EXPECT_FALSE((*file)->is_large()) << "as far as is known before it is";
+        ASSERT_TRUE((*file)->thin_if_large());
+        EXPECT_EQ(held_in(**file), halved);
+        expect_whole(**file);
+        EXPECT_TRUE(*(*file)->tidy()); // that no part of a checkpoint is left over
+        EXPECT_TRUE(*(*file)->tidy());
+        EXPECT_LT(generations(), 41);
+        EXPECT_GE(generations(), std::ssize(halved));
+        expect_whole(**file);
+    }
+    // Whoever opens it next finishes it.
+    const auto file = RunFile::open(path, {});
+    EXPECT_FALSE(*(*file)->tidy()) << "a file that is only opened stays as it is";
+    (*file)->begin();
+    ASSERT_TRUE((*file)->commit());
+    int times = 0;
+    while (*(*file)->tidy())
+        ASSERT_LT(++times, 1000);
+    EXPECT_EQ(generations(), std::ssize(halved));
+    EXPECT_EQ(rows("tick) FROM state_hash"), std::ssize(*(*file)->links(0, 4900)));
+    EXPECT_LT(rows("tick) FROM state_hash"), 60);
+    EXPECT_EQ(held_in(**file), halved);
+    expect_whole(**file);
 }
 
 } // namespace

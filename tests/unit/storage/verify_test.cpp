@@ -114,6 +114,33 @@ TEST_F(VerifyTest, ARunAgreesWithItselfOnAnyNumberOfThreads) {
     }
 }
 
+TEST_F(VerifyTest, ARunWhoseFitnessWasShuffledForAWhileAgrees) {
+    std::vector<std::vector<evolution::Parents>> parents;
+    for (const bool shuffled : {false, true}) {
+        folder.clear();
+        {
+            StorageThread thread{{}};
+            RecordedRun run{data, thread};
+            run.advance(130);
+            if (shuffled)
+                run.command(set_parameter("shuffle_fitness", true)); // for the breeding of generations 3 …
+            run.advance(230);
+            if (shuffled)
+                run.command(set_parameter("shuffle_fitness", false)); // … but not of 4, though 3 is over
+            run.advance(180);
+            parents.push_back(run.world().islands()[0].born().parents);
+            run.recorder().close_all(run.laboratory());
+        }
+        for (base::Executor* executor : std::initializer_list<base::Executor*>{&one_thread, &many}) {
+            const auto result = verified(*executor);
+            ASSERT_TRUE(result) << to_text(result.error());
+            EXPECT_FALSE(result->difference) << result->difference->part;
+            EXPECT_EQ(result->ticks, 540u);
+        }
+    }
+    EXPECT_NE(parents[0], parents[1]);
+}
+
 TEST_F(VerifyTest, EveryMomentOfAKillLeavesARunThatAgrees) {
     for (const std::uint64_t ticks : {0, 1, 59, 60, 119, 120, 121, 180, 239, 240, 241, 299, 300, 301}) {
         record(ticks);
