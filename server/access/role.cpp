@@ -56,6 +56,7 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
         return of_own_past ? Role::Viewer : Role::Controller;
     case Case::kResetWorld:
     case Case::kSetParameters:
+    case Case::kCancelChange:
     case Case::kReleaseLease:
     case Case::kRenewLease:
         return Role::Controller;

@@ -22,14 +22,16 @@ ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const wire::S
     const auto ticks = ticks_between(*about_, *about);
     const bool goes_on = ticks && wire::follows(*scene, *footing_->scene);
     auto picture = std::make_shared<ChainPicture>(std::move(about), scene, *compressor_);
-    if (!goes_on)
+    if (!goes_on || !with_delta)
         return picture;
-    picture->footing_ = std::make_shared<const wire::Footing>(wire::moved_on(*footing_, std::move(scene), *ticks));
-    if (with_delta) {
-        picture->base_ = footing_;
-        picture->base_sequence_ = sequence();
-        picture->ticks_ = *ticks;
-    }
+    // What stayed is paired once for both: the next footing, and the delta, which whoever keeps up is sent.
+    auto footing = std::make_shared<wire::Footing>(wire::standing(std::move(scene)));
+    footing->ticks = *ticks > 0 ? *ticks : footing_->ticks;
+    const wire::MovedOn moved{.organisms = {footing->organisms.x, footing->organisms.y},
+                              .crates = {footing->crates.x, footing->crates.y}};
+    picture->delta_body_ = wire::encode_delta(*footing_, *footing->scene, *ticks, &moved, &picture->delta_seams_);
+    picture->footing_ = std::move(footing);
+    picture->base_sequence_ = sequence();
     return picture;
 }
 
@@ -43,10 +45,16 @@ const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression,
         frame.set_base_sequence(base_sequence_);
         wire::leave_out_unchanging(frame);
     }
-    std::string body =
-        as_delta ? wire::encode_delta(*base_, *footing_->scene, ticks_) : wire::encode_keyframe(*footing_);
+    wire::Seams seams;
+    std::string body;
+    if (as_delta) {
+        body = delta_body_;
+        seams = delta_seams_;
+    } else {
+        body = wire::encode_keyframe(*footing_, &seams);
+    }
     frame.set_checksum(wire::checksum_of(frame, body));
-    set_body(frame, std::move(body), compression, *compressor_);
+    set_body(frame, std::move(body), seams, compression, *compressor_);
     return bytes = std::make_shared<const std::string>(frame.SerializeAsString());
 }
 

@@ -1,7 +1,8 @@
 // Chains: the pictures of an island at one rate, each told from the one before, for whoever takes deltas.
 //
-// A picture is encoded when the first session asks for it, once in each form, and the sessions share the bytes. All
-// viewers of a world at one rate are shown the same pictures, so that what is a delta for one is a delta for all.
+// A delta is made with its picture, for whoever keeps up is sent it; any other form when the first session asks for it.
+// Each is made once, and the sessions share the bytes. All viewers of a world at one rate are shown the same pictures,
+// so that what is a delta for one is a delta for all.
 //
 // Owner        Streams; a ChainPicture lives as long as a session is to send it.
 // Threads      the network thread.
@@ -40,13 +41,18 @@ class ChainPicture {
     /// compressor  there as long as forms of the picture are asked for.
     ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
 
-    /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all.
+    /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
+    /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
     std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const wire::Scene> scene, bool with_delta) const;
 
     std::uint64_t sequence() const { return about_->sequence(); }
     /// Who was sent that picture last can take the delta; 0: there is none.
     std::uint64_t base_sequence() const { return base_sequence_; }
 
+    /// As it is told to somebody who was sent that picture last; 0: none.
+    const SharedBytes& after(std::uint64_t sequence_sent, v1::Compression compression) {
+        return sequence_sent != 0 && sequence_sent == base_sequence_ ? delta(compression) : keyframe(compression);
+    }
     const SharedBytes& keyframe(v1::Compression compression) { return form(keyframe_, compression, false); }
     const SharedBytes& delta(v1::Compression compression) { return form(delta_, compression, true); }
 
@@ -55,9 +61,10 @@ class ChainPicture {
     const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
 
     AboutPtr about_;
-    std::shared_ptr<const wire::Footing> footing_, base_; // base_ is null where there is no delta
+    std::shared_ptr<const wire::Footing> footing_;
     std::uint64_t base_sequence_ = 0;
-    std::uint16_t ticks_ = 0; // since the base
+    std::string delta_body_; // if there is one
+    wire::Seams delta_seams_;
     wire::Compressor* compressor_;
     Forms keyframe_, delta_;
 };
@@ -83,9 +90,10 @@ class Chain {
 ///
 /// message  a SnapshotFrame or a TilePicture.
 template <class Message>
-void set_body(Message& message, std::string body, v1::Compression compression, wire::Compressor& compressor) {
+void set_body(Message& message, std::string body, const wire::Seams& seams, v1::Compression compression,
+              wire::Compressor& compressor) {
     if (compression == v1::COMPRESSION_ZSTD) {
-        std::string shorter = compressor.compress(body);
+        std::string shorter = compressor.compress(body, seams);
         if (shorter.size() < body.size()) {
             body = std::move(shorter);
             message.set_compression(v1::COMPRESSION_ZSTD);

@@ -60,7 +60,9 @@ v1::Response response_to(const v1::Request& request, const simulation::Laborator
         return protocol::refusing(request.request_id(), protocol::with_paths(applied.error(), name_of(request)));
     v1::Response response = response_to(request.request_id());
     response.set_applied_tick(applied->tick);
-    if (applied->parameters)
+    if (applied->planned)
+        *response.mutable_planned_change() = protocol::to_proto(*applied->planned);
+    else if (applied->parameters)
         *response.mutable_parameters() = protocol::to_proto(*applied->parameters);
     else if (const auto entry = laboratory.find(applied->world); entry && !request.has_delete_world())
         *response.mutable_world() = protocol::to_proto(**entry);
@@ -284,6 +286,8 @@ void Dispatcher::handle_own(v1::Request request) {
 
 bool Dispatcher::carry_out(simulation::Command command, const v1::Request& request, const From& from,
                            Answered answered) {
+    if (auto* change = std::get_if<simulation::SetParameters>(&command))
+        change->by = from.by;
     // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
     // the command cannot be lost any more.
     auto reply = [this, request, from, answered = std::move(answered)](
@@ -302,7 +306,7 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
         if (!applied) {
             told->refused = applied.error();
             if (applied.error().code == base::RefusalCode::ResourceExhausted)
-                limit_counters_.met(Limit::Worlds); // nothing else that commands make is bounded there
+                limit_counters_.met(request.has_set_parameters() ? Limit::PlannedChanges : Limit::Worlds);
         } else if (demand_.events_wanted()) {
             told->event = protocol::event_of(applied_command, *applied, from.by, laboratory);
         }

@@ -60,6 +60,7 @@ enum class Limit : std::uint8_t {
     SnapshotRate,
     Tiles,
     Worlds,
+    PlannedChanges,
     Pasts,
     Lease,
     Exports,

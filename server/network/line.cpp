@@ -1,12 +1,19 @@
 #include "server/network/line.h"
 
+#include "server/base/assert.h"
+
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <linux/sockios.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <utility>
 
 namespace evod::network {
@@ -46,6 +53,27 @@ asio::awaitable<Line::Transferred> Line::read_some(asio::mutable_buffer buffer) 
     if (tls_)
         co_return co_await tls_->async_read_some(buffer, no_throw);
     co_return co_await socket_.async_read_some(buffer, no_throw);
+}
+
+Line::Transferred Line::write_now(std::span<const asio::const_buffer> buffers) {
+    if (tls_)
+        return {};
+    std::array<iovec, buffers_at_once> parts;
+    EVOD_ASSERT(buffers.size() <= parts.size());
+    std::transform(buffers.begin(), buffers.end(), parts.begin(), [](const asio::const_buffer& buffer) {
+        return iovec{const_cast<void*>(buffer.data()), buffer.size()}; // is not written to
+    });
+    msghdr message{};
+    message.msg_iov = parts.data();
+    message.msg_iovlen = buffers.size();
+    const ssize_t sent = ::sendmsg(socket_.native_handle(), &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent >= 0) {
+        given_ += static_cast<std::uint64_t>(sent);
+        return {boost::system::error_code{}, static_cast<std::size_t>(sent)};
+    }
+    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)
+        return {};
+    return {boost::system::error_code{errno, boost::system::system_category()}, 0};
 }
 
 asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buffer>& buffers) {

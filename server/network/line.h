@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -32,6 +33,10 @@ class Line {
     static boost::system::error_code not_tls();
 
     asio::awaitable<Transferred> read_some(asio::mutable_buffer buffer);
+    /// As much of at most buffers_at_once of them as the system takes without waiting, which may be nothing; of TLS it
+    /// always is.
+    Transferred write_now(std::span<const asio::const_buffer> buffers);
+    static constexpr std::size_t buffers_at_once = 16;
     /// All of them.
     asio::awaitable<Transferred> write(const std::vector<asio::const_buffer>& buffers);
 

@@ -23,16 +23,37 @@
 
 namespace evod::network {
 
+namespace {
+
+/// "population_size (50, not 60), selection (roulette, not tournament)".
+std::string parameters_that_differ(const simulation::Parameters& there, const simulation::Parameters& wanted) {
+    std::string text;
+    for (const simulation::ParameterDescription& parameter : simulation::parameter_registry())
+        if (const auto is = parameter.get(there), asked = parameter.get(wanted); !(is == asked))
+            text += (text.empty() ? "" : ", ") + std::string{parameter.name} + " (" + simulation::to_text(is) +
+                    ", not " + simulation::to_text(asked) + ")";
+    return text;
+}
+
+} // namespace
+
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
     if (server->options_.replay) {
         auto replay = runtime::TimeTravel::replay_of(server->options_.replay->path, server->options_.replay->generation,
                                                      *server->executor_);
-        if (!replay)
-            return replay.error();
+        if (!replay) {
+            base::Refusal refused = replay.error();
+            for (base::Violation& violation : refused.violations)
+                if (violation.field == "generation")
+                    violation.field = "--generation";
+            return refused;
+        }
         server->replay_ = *std::move(replay);
     } else if (auto opened = server->open_archive(); !opened) {
         return opened.error();
+    } else if (auto begun = server->world_to_begin(); !begun) {
+        return begun.error();
     }
     auto tls = access::server_context(server->options_.tls);
     if (!tls)
@@ -115,9 +136,12 @@ base::Result<void> Server::open_archive() {
                              .violations = {}};
     };
     if (there && !(there->parameters == wanted.parameters))
-        return differs("parameters");
+        return differs("parameters: " + parameters_that_differ(there->parameters, wanted.parameters));
+    if (there && there->schedule != wanted.schedule)
+        return differs("schedule of parameters");
     if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value)
-        return differs("seed (" + std::to_string(there->seed.value) + ")");
+        return differs("seed (" + std::to_string(there->seed.value) + ", not " + std::to_string(wanted.seed.value) +
+                       ")");
     if (there && wanted.first_population && !simulation::same(there->first_population, wanted.first_population))
         return differs("organisms");
     return {};
@@ -129,6 +153,24 @@ bool Server::creates_first_world() const {
     if (!archive_)
         return true;
     return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->holds_worlds();
+}
+
+base::Result<std::string> Server::world_to_begin() const {
+    const std::string& first = options_.first_world.name;
+    if (creates_first_world() || options_.first_world_asked || !(options_.first_speed || options_.first_run))
+        return first;
+    const std::vector<std::string> names = archive_->world_names();
+    if (names.size() == 1)
+        return names.front();
+    std::string all;
+    for (const std::string& name : names) {
+        if (name == first)
+            return first;
+        all += (all.empty() ? "" : ", ") + name;
+    }
+    return refusal(base::RefusalCode::FailedPrecondition,
+                   "--speed and --start are for one world, and " + options_.data_folder + " holds " + all +
+                       ": start without them, and say it with evoctl --world NAME speed, and run");
 }
 
 std::optional<base::Seed> Server::first_seed() const {
@@ -155,12 +197,18 @@ void Server::begin_first_world() {
             assignment.set_name(std::string{parameter.name});
             *assignment.mutable_value() = protocol::to_proto(value);
         }
+        *create.mutable_schedule() = protocol::to_proto(world.schedule, 1);
         protocol::add_population(create, world.first_population);
         dispatcher_.handle_own(std::move(request));
     }
+    const std::string begun = *world_to_begin(); // open() has seen that there is one
+    const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
+    if ((options_.first_speed || options_.first_run) && others > 0)
+        log::info({.world = begun}, "--speed and --start are for world \"{}\" alone; {} others go on as they were",
+                  begun, others);
     if (options_.first_speed) {
         v1::Request request;
-        request.mutable_set_speed()->set_world(world.name);
+        request.mutable_set_speed()->set_world(begun);
         if (*options_.first_speed)
             request.mutable_set_speed()->mutable_speed()->set_real_time_factor(**options_.first_speed);
         else
@@ -169,7 +217,7 @@ void Server::begin_first_world() {
     }
     if (options_.first_run) {
         v1::Request request;
-        request.mutable_run()->set_world(world.name);
+        request.mutable_run()->set_world(begun);
         dispatcher_.handle_own(std::move(request));
     }
 }

@@ -46,7 +46,8 @@ struct ServerOptions {
     simulation::CreateWorld first_world; // made if there is none of its name
     bool first_world_asked = false;      // otherwise it is made only if there is no world at all
     bool first_seed_asked = false;       // a world that goes on must have begun with the seed of first_world
-    // Then applied to first_world, before any other command.
+    // Then applied to first_world, before any other command; if that was not asked for, to the only world there is, or
+    // `default` of several. Refused where there are several, and none of that name.
     std::optional<simulation::Speed> first_speed;
     bool first_run = false; // without end
 };
@@ -80,6 +81,8 @@ class Server {
     base::Result<void> open_http();
     /// The commands that options ask for.
     bool creates_first_world() const;
+    /// Which world first_speed and first_run are for.
+    base::Result<std::string> world_to_begin() const;
     void begin_first_world();
     /// Every now and then: for tokens that are revoked, and for clients that take nothing.
     void look_around();

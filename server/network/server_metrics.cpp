@@ -33,10 +33,13 @@ void add_worlds(v1::Metrics& to, const metrics::Worlds& counted) {
     auto rate = add_gauge(to, "evod_ticks_per_second", "Ticks in the last second or so; 0 while a world stands");
     auto tick_time = add_histogram(to, "evod_tick_seconds",
                                    "Time of a tick; at full speed with what is written down and shown between two");
+    auto picture_time = add_histogram(
+        to, "evod_picture_seconds", "Time that the simulation takes to give a picture away; encoding is no part of it");
     for (const auto& world : worlds) {
         ticks.add(number(world->tick_time.count()), {{"world", world->name}});
         rate.add(world->ticks_per_s.value(), {{"world", world->name}});
         tick_time.add(world->tick_time, {{"world", world->name}});
+        picture_time.add(world->picture_time, {{"world", world->name}});
     }
 }
 
@@ -137,8 +140,10 @@ v1::Metrics Server::metrics() {
     add_thread("network", pthread_self());
     if (simulation_ && !going_away_)
         add_thread("simulation", simulation_->handle());
-    if (archive_ && archive_->thread() != nullptr)
+    if (archive_ && archive_->thread() != nullptr) {
         add_thread("storage", archive_->thread()->handle());
+        add_thread("packing", archive_->thread()->packing_handle());
+    }
     add_gauge(told, "process_resident_memory_bytes", "Memory in use").add(number(process.resident_bytes));
     add_gauge(told, "process_virtual_memory_bytes", "Addresses in use").add(number(process.virtual_bytes));
     add_gauge(told, "process_open_fds", "Open files and connections").add(number(process.open_files));

@@ -9,6 +9,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <google/protobuf/wire_format_lite.h>
 
 #include <netinet/tcp.h>
 
@@ -24,7 +25,9 @@ namespace {
 constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::size_t batch_frames_max = 64;
-constexpr std::size_t gathered_parts_max = 12; // Asio hands 16 buffers at once to the system; more are put together
+// Many parts of a picture, or a few that are short, are put together before they are handed to the system.
+constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
+static_assert(gathered_parts_max + 2 <= Line::buffers_at_once, "there are a header and a tail, too");
 
 tcp::endpoint peer_of(const tcp::socket& socket) {
     boost::system::error_code ignored; // one who has gone already is at no address
@@ -317,7 +320,8 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_protocol_version(wire::protocol_version);
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
-    for (const char* feature : {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view"})
+    for (const char* feature :
+         {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view", "planned_changes"})
         welcome.add_features(feature);
     *welcome.mutable_limits() = host_.limits;
     welcome.set_durability(host_.durability);
@@ -384,6 +388,8 @@ void Session::count_dropped_events(std::uint64_t count) {
 }
 
 void Session::count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count) {
+    if (count == 0)
+        return;
     of.dropped_count += count;
     host_.traffic.pictures_dropped.add(count);
 }
@@ -402,7 +408,14 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
     of.shown.reset();
     of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
     of.waiting = std::move(picture);
-    wake_writer();
+}
+
+void Session::send_waiting() {
+    // Without waking the writer: with many viewers that would cost as much as all the rest.
+    if (idle_ && may_send_pictures())
+        send_pictures();
+    else
+        wake_writer();
 }
 
 void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
@@ -422,10 +435,9 @@ void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, Sn
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.not_before = {};
     of.shown.reset();
-    if (of.waiting)
-        wake_writer();
-    else
+    if (!of.waiting)
         picture(subscription_id, island, std::move(newest));
+    wake_writer(); // and no more: the answer to what asked for this goes first
 }
 
 void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
@@ -460,24 +472,19 @@ bool Session::next_picture() {
             turns_.push_back(taken);
         return true;
     }
-    outgoing_ = {};
     return false;
 }
 
 bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscription,
                    SnapshotSubscription::Island& island) {
     outgoing_.parts.clear();
-    v1::SnapshotFrame of_viewer;
-    of_viewer.set_subscription_id(subscription_id);
-    of_viewer.set_dropped_count(subscription.dropped_count);
-    outgoing_.tail = of_viewer.SerializeAsString();
-    const SnapshotSubscription::Waiting& picture = island.waiting;
+    set_tail(outgoing_, subscription_id, subscription.dropped_count);
+    outgoing_.picture = island.waiting;
+    const SnapshotSubscription::Waiting& picture = outgoing_.picture;
     if (picture.columns) {
-        outgoing_.parts.push_back(picture.columns);
+        outgoing_.parts.push_back(&picture.columns);
     } else if (picture.chained) {
-        const bool has_base = island.last_sent != 0 && island.last_sent == picture.chained->base_sequence();
-        outgoing_.parts.push_back(has_base ? picture.chained->delta(subscription.compression)
-                                           : picture.chained->keyframe(subscription.compression));
+        outgoing_.parts.push_back(&picture.chained->after(island.last_sent, subscription.compression));
     } else {
         const v1::View& view = *subscription.view;
         const wire::TileLayout& layout = picture.tiled->layout();
@@ -519,27 +526,83 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
     return true;
 }
 
-std::size_t Session::Outgoing::body_bytes() const {
-    return std::accumulate(parts.begin(), parts.end(), tail.size(),
-                           [](std::size_t bytes, const SharedBytes& part) { return bytes + part->size(); });
+void Session::set_tail(Outgoing& of, std::uint32_t subscription_id, std::uint64_t dropped_count) {
+    using google::protobuf::internal::WireFormatLite;
+    std::uint8_t* end = WireFormatLite::WriteUInt32ToArray(v1::SnapshotFrame::kSubscriptionIdFieldNumber,
+                                                           subscription_id, of.tail_room.data());
+    if (dropped_count > 0)
+        end = WireFormatLite::WriteUInt64ToArray(v1::SnapshotFrame::kDroppedCountFieldNumber, dropped_count, end);
+    of.tail_bytes = static_cast<std::size_t>(end - of.tail_room.data());
 }
 
-const std::vector<asio::const_buffer>& Session::frame_of_outgoing() {
-    auto& [parts, tail, header, together, buffers] = outgoing_;
-    header = wire::encode_header(
-        {.channel = wire::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(outgoing_.body_bytes())});
-    buffers.assign({asio::buffer(header)});
-    if (parts.size() <= gathered_parts_max) {
-        for (const SharedBytes& part : parts)
-            buffers.push_back(asio::buffer(*part));
+std::size_t Session::Outgoing::body_bytes() const {
+    return std::accumulate(parts.begin(), parts.end(), tail_bytes,
+                           [](std::size_t bytes, const SharedBytes* part) { return bytes + (*part)->size(); });
+}
+
+bool Session::may_send_pictures() const {
+    return begun_ && !finishing_ && !ended_ && !input_over_ && queue_.empty() && sending_.empty() &&
+           dropped_events_ == 0;
+}
+
+void Session::send_pictures() {
+    while (may_send_pictures() && next_picture())
+        send_outgoing();
+    outgoing_.picture = {}; // nobody counts what it holds
+    if (next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures())
+        wake_writer();
+}
+
+void Session::send_outgoing() {
+    const auto& parts = outgoing_.parts;
+    const auto& header = outgoing_.header;
+    const auto tail_begin = reinterpret_cast<const char*>(outgoing_.tail_room.data());
+    const std::size_t body_bytes = outgoing_.body_bytes();
+    outgoing_.header =
+        wire::encode_header({.channel = wire::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
+    const bool together = parts.size() > gathered_parts_max || body_bytes < gathered_bytes_min;
+    std::array<asio::const_buffer, Line::buffers_at_once> buffers;
+    std::size_t buffer_count = 0;
+    if (together) {
+        host_.frame.assign(reinterpret_cast<const char*>(header.data()), header.size());
+        for (const SharedBytes* part : parts)
+            host_.frame += **part;
+        host_.frame.append(tail_begin, outgoing_.tail_bytes);
+        buffers[buffer_count++] = asio::buffer(host_.frame);
     } else {
-        together.clear();
-        for (const SharedBytes& part : parts)
-            together += *part;
-        buffers.push_back(asio::buffer(together));
+        buffers[buffer_count++] = asio::buffer(header);
+        for (const SharedBytes* part : parts)
+            buffers[buffer_count++] = asio::buffer(**part);
+        buffers[buffer_count++] = asio::buffer(tail_begin, outgoing_.tail_bytes);
     }
-    buffers.push_back(asio::buffer(tail));
-    return buffers;
+    const auto [error, count] = line_.write_now(std::span{buffers}.first(buffer_count));
+    if (error)
+        return close();
+    host_.traffic.sent_stream_bytes.add(count);
+    if (count == header.size() + body_bytes)
+        return host_.traffic.pictures_sent.add();
+    // Parts are held as what they are, shared by all who are sent them.
+    rest_.buffers.clear();
+    if (together) {
+        const auto rest = std::make_shared<const std::string>(host_.frame, count);
+        sending_.push_back({{host_.buffers, rest}, Kind::Picture});
+        rest_.buffers.push_back(asio::buffer(*rest));
+        return;
+    }
+    rest_.header = header;
+    rest_.tail.assign(tail_begin, outgoing_.tail_bytes);
+    rest_.buffers.push_back(asio::buffer(rest_.header));
+    for (const SharedBytes* part : parts) {
+        sending_.push_back({{host_.buffers, *part}, Kind::Picture});
+        rest_.buffers.push_back(asio::buffer(**part));
+    }
+    rest_.buffers.push_back(asio::buffer(rest_.tail));
+    std::size_t gone = count;
+    for (asio::const_buffer& buffer : rest_.buffers) {
+        const std::size_t of_this = std::min(gone, buffer.size());
+        buffer += of_this;
+        gone -= of_this;
+    }
 }
 
 void Session::enqueue(SharedBytes frame, Kind kind) {
@@ -562,13 +625,16 @@ void Session::written(const Queued& queued) {
 }
 
 void Session::wake_writer() {
-    writer_signal_.cancel();
+    if (std::exchange(idle_, false))
+        writer_signal_.cancel();
 }
 
 asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
     // Woken by cancelling: whoever does runs on this thread too, so none comes between the look and the wait.
+    idle_ = true;
     writer_signal_.expires_at(until);
     co_await writer_signal_.async_wait(no_throw);
+    idle_ = false;
 }
 
 asio::awaitable<void> Session::write() {
@@ -577,6 +643,14 @@ asio::awaitable<void> Session::write() {
         buffers.clear();
         if (!begun_) {
             co_await wait_for_work();
+        } else if (!sending_.empty()) {
+            const auto [error, count] = co_await line_.write(rest_.buffers);
+            host_.traffic.sent_stream_bytes.add(count);
+            if (error)
+                break;
+            sending_.clear(); // nobody counts any more what it held
+            rest_ = {};
+            host_.traffic.pictures_sent.add();
         } else if (!queue_.empty()) {
             // Answers and events first: they are small, and somebody waits for them.
             while (!queue_.empty() && sending_.size() < batch_frames_max) {
@@ -603,18 +677,11 @@ asio::awaitable<void> Session::write() {
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
             enqueue(encode_event(std::move(event)), Kind::Event);
         } else if (!finishing_ && next_picture()) {
-            for (const SharedBytes& part : outgoing_.parts)
-                sending_.push_back({{host_.buffers, part}, Kind::Picture});
-            const auto [error, count] = co_await line_.write(frame_of_outgoing());
-            host_.traffic.sent_stream_bytes.add(count);
-            if (error)
-                break;
-            sending_.clear();
-            outgoing_ = {}; // nobody counts any more what it holds
-            host_.traffic.pictures_sent.add();
+            send_outgoing();
         } else if (finishing_) {
             break;
         } else {
+            outgoing_.picture = {}; // nobody counts what it holds
             co_await wait_for_work(next_budget_);
         }
     }

@@ -51,6 +51,7 @@ struct SessionHost {
     asio::ssl::context* tls = nullptr;       // nullptr: in the clear
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
+    std::string frame = {}; // working memory: where frames of pictures are put together
     /// Who comes with a token, from an address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
     std::function<void(Session&, v1::Request)> handle = {};
@@ -126,8 +127,10 @@ class Session : public std::enable_shared_from_this<Session> {
     void count_dropped_events(std::uint64_t count);
     /// Pictures of one of its subscriptions that were replaced by newer ones.
     void count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count);
-    /// Takes a picture for a subscription in the place of one that has not been sent.
+    /// Takes a picture for a subscription in the place of one that has not been sent; send_waiting() is to follow.
     void picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture);
+    /// Sends pictures that wait: at once, as far as they may be sent and the line takes them.
+    void send_waiting();
     /// What this subscription is sent next of an island is a keyframe: one that waits, or else `newest`.
     void keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest);
     /// Something else is to be seen of an island now: of the picture that waits, or else of `newest`.
@@ -170,21 +173,25 @@ class Session : public std::enable_shared_from_this<Session> {
     void on_frame(const wire::Frame& frame);
     void on_hello(const v1::Hello& hello);
     void on_acknowledgement(const v1::AcknowledgePicture& acknowledged);
-    /// A picture that is being sent.
+    /// A picture whose turn it is.
     struct Outgoing {
-        std::vector<SharedBytes> parts; // fields 1 to 49
-        std::string tail;               // fields 50 and up
+        SnapshotSubscription::Waiting picture; // has the parts
+        std::vector<const SharedBytes*> parts; // fields 1 to 49
         std::array<std::byte, wire::header_bytes> header;
-        std::string together; // what many parts come to
-        std::vector<asio::const_buffer> buffers;
+        std::array<std::uint8_t, 24> tail_room; // begins with fields 50 and up
+        std::size_t tail_bytes = 0;
         std::size_t body_bytes() const;
     };
     /// Puts the picture whose turn it is into outgoing_; false: none may be sent now.
     bool next_picture();
+    /// Sends the pictures that may be sent now, as far as the line takes them at once. What is left of one goes into
+    /// sending_ and rest_, and the writer sees to it.
+    void send_pictures();
+    void send_outgoing();
+    static void set_tail(Outgoing& of, std::uint32_t subscription_id, std::uint64_t dropped_count);
+    bool may_send_pictures() const;
     /// The same of this one. false: the budget does not allow it yet.
     bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
-    /// The whole frame of outgoing_, as long as that is not changed.
-    const std::vector<asio::const_buffer>& frame_of_outgoing();
     void enqueue(SharedBytes frame, Kind kind);
     void written(const Queued& queued);
     void wake_writer();
@@ -203,12 +210,18 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a frame has begun to come
     bool begun_ = false;        // the line can be written to
+    bool idle_ = false;         // the writer waits for work, and has not been woken
     bool greeted_ = false, finishing_ = false, ended_ = false;
     bool input_over_ = false; // the client will send nothing more
     int coroutines_ = 0;      // that still run
 
     std::deque<Queued> queue_;
-    std::vector<Queued> sending_;                      // not empty: the line is being written to
+    std::vector<Queued> sending_; // not empty: the line is being written to, or is to be
+    struct Rest {
+        std::array<std::byte, wire::header_bytes> header;
+        std::string tail;
+        std::vector<asio::const_buffer> buffers;       // of these, and of what is in sending_
+    } rest_;                                           // of a picture that the line did not take at once
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
     Line::Progress progress_;
     runtime::Clock::time_point progressed_; // when it was last seen that something was taken, or nothing waited

@@ -6,47 +6,11 @@
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
-#include <bit>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace evod::network {
 namespace {
-
-/// The items that are there, with their ids.
-struct PresentItems {
-    std::vector<std::uint32_t> id;
-    std::vector<std::int32_t> x, y;
-};
-
-wire::ItemColumns columns_of(const runtime::ItemsSnapshot& items, PresentItems& present) {
-    const std::size_t count = items.x.size();
-    if (items.due_tick.empty()) {
-        present.id.resize(count);
-        std::iota(present.id.begin(), present.id.end(), 0u);
-        return {present.id, items.x, items.y};
-    }
-    present.id.resize(count);
-    present.x.resize(count);
-    present.y.resize(count);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count; ++i) { // without a branch: which items are away is unpredictable
-        present.id[kept] = static_cast<std::uint32_t>(i);
-        present.x[kept] = items.x[i];
-        present.y[kept] = items.y[i];
-        kept += items.due_tick[i] == 0;
-    }
-    present.id.resize(kept);
-    present.x.resize(kept);
-    present.y.resize(kept);
-    return {present.id, present.x, present.y};
-}
-
-wire::BoxColumns columns_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end) {
-    const auto part = [=](const auto& column) { return std::span{column}.subspan(begin, end - begin); };
-    return {part(boxes.x), part(boxes.y), part(boxes.half_width_px), part(boxes.half_height_px)};
-}
 
 /// All of a picture's frame but what is in it, and its sequence.
 v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
@@ -63,7 +27,9 @@ v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::Isl
     *frame.mutable_speed() = protocol::to_proto(snapshot.speed);
     frame.set_state_hash(base::to_text(snapshot.hash));
     frame.set_item_radius_px(snapshot.item_radius_px);
-    *frame.mutable_live() = protocol::to_proto(island.live, island.island);
+    simulation::LiveStatistics live = island.live;
+    live.health_mean = simulation::mean_health(island.organisms.health, island.organisms.alive_count);
+    *frame.mutable_live() = protocol::to_proto(live, island.island);
     frame.set_ticks_per_s(snapshot.ticks_per_s);
     frame.set_slowed(snapshot.slowed);
     return frame;
@@ -160,6 +126,8 @@ void Streams::update_demand() {
         }
     }
     groups_ = std::move(groups);
+    if (watches.empty())
+        columns_ = {}; // nobody needs that memory now
     for (auto& [world, watch] : watches) {
         std::sort(watch.islands.begin(), watch.islands.end());
         watch.islands.erase(std::unique(watch.islands.begin(), watch.islands.end()), watch.islands.end());
@@ -199,8 +167,14 @@ class Pace {
 /// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
 class EncodedIslands {
   public:
-    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, wire::Compressor& compressor)
-        : snapshot_{snapshot}, sequence_{sequence}, compressor_{compressor}, islands_(snapshot.islands.size()) {}
+    /// columns  working memory, one for each island or more.
+    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, std::vector<SnapshotColumns>& columns,
+                   wire::Compressor& compressor)
+        : snapshot_{snapshot}
+        , sequence_{sequence}
+        , columns_{columns}
+        , compressor_{compressor}
+        , islands_(snapshot.islands.size()) {}
 
     const std::shared_ptr<const v1::SnapshotFrame>& about(std::size_t i) {
         Island& island = islands_[i];
@@ -236,33 +210,22 @@ class EncodedIslands {
 
   private:
     struct Island {
-        PresentItems food, poison;
-        std::optional<wire::IslandColumns> of_snapshot; // and of the items above
+        std::optional<wire::IslandColumns> in_order;
         std::shared_ptr<const v1::SnapshotFrame> about;
         SharedBytes columns;
         std::shared_ptr<const wire::Scene> scene;
         std::shared_ptr<IslandTiles> tiles;
     };
     const wire::IslandColumns& columns_of(std::size_t i) {
-        const runtime::IslandSnapshot& from = snapshot_.islands[i];
-        Island& island = islands_[i];
-        const std::size_t crates = from.crate_count, boxes = from.boxes.x.size();
-        if (!island.of_snapshot)
-            island.of_snapshot = wire::IslandColumns{
-                .width_px = from.width_px,
-                .height_px = from.height_px,
-                .position_fraction_bits = std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
-                .organisms = {from.organisms.id, from.organisms.x, from.organisms.y, from.organisms.radius_px,
-                              from.organisms.health},
-                .food = network::columns_of(from.food, island.food),
-                .poison = network::columns_of(from.poison, island.poison),
-                .crates = network::columns_of(from.boxes, 0, crates),
-                .obstacles = network::columns_of(from.boxes, crates, boxes)};
-        return *island.of_snapshot;
+        std::optional<wire::IslandColumns>& in_order = islands_[i].in_order;
+        if (!in_order)
+            in_order = columns_[i].of(snapshot_.islands[i]);
+        return *in_order;
     }
 
     const runtime::Snapshot& snapshot_;
     std::uint64_t& sequence_;
+    std::vector<SnapshotColumns>& columns_;
     wire::Compressor& compressor_;
     std::vector<Island> islands_;
 };
@@ -271,20 +234,36 @@ class EncodedIslands {
 
 void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
     const runtime::Snapshot& snapshot = *picture.snapshot;
-    EncodedIslands encoded{snapshot, sequence_, compressor_};
-    // The groups that are shown this picture, and what each of its islands comes to with it.
-    std::map<const Group*, std::vector<SnapshotSubscription::Waiting>> shown;
-    for (auto& [name, group] : groups_)
-        if (name.world == snapshot.world && Pace{name.rate_hz, group.next_picture}.takes(picture, now))
-            shown[&group].resize(snapshot.islands.size());
+    columns_.resize(std::max(columns_.size(), snapshot.islands.size()));
+    EncodedIslands encoded{snapshot, sequence_, columns_, compressor_};
+    struct Shown {
+        double rate_hz;
+        bool in_tiles;
+        Group* group;
+        runtime::Clock::duration between;
+        std::vector<SnapshotSubscription::Waiting> islands; // what they come to with it
+    };
+    std::vector<Shown> shown; // the groups that are shown this picture
+    for (auto& [name, group] : groups_) {
+        if (name.world != snapshot.world)
+            continue;
+        Pace pace{name.rate_hz, group.next_picture};
+        if (pace.takes(picture, now))
+            shown.push_back({name.rate_hz, name.in_tiles, &group, pace.between(), {}});
+    }
+    for (Shown& of_group : shown)
+        of_group.islands.resize(snapshot.islands.size());
     for (const auto& [number, session] : sessions_) {
+        bool has_some = false;
         for (auto& [id, subscription] : session->snapshots) {
             if (subscription.world != snapshot.world)
                 continue;
-            Pace pace{subscription.rate_hz, subscription.next_picture};
-            Group* const group = subscription.codec == v1::CODEC_DELTA ? &groups_.at(group_of(subscription)) : nullptr;
-            const auto of_group = shown.find(group);
-            if (group ? of_group == shown.end() : !pace.takes(picture, now))
+            const bool in_group = subscription.codec == v1::CODEC_DELTA;
+            const auto of_group = std::ranges::find_if(shown, [&wanted = subscription](const Shown& of) {
+                return of.rate_hz == wanted.rate_hz && of.in_tiles == wanted.view.has_value();
+            });
+            if (in_group ? of_group == shown.end()
+                         : !Pace{subscription.rate_hz, subscription.next_picture}.takes(picture, now))
                 continue;
             session->count_dropped_pictures(subscription, picture.replaced_count);
             for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
@@ -292,23 +271,26 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
                 if (subscription.island && *subscription.island != island)
                     continue;
                 SnapshotSubscription::Waiting of_viewer;
-                SnapshotSubscription::Waiting& waiting = group ? of_group->second[i] : of_viewer;
+                SnapshotSubscription::Waiting& waiting = in_group ? of_group->islands[i] : of_viewer;
                 if (waiting) {
                     // Made for another of the group.
-                } else if (!group) {
+                } else if (!in_group) {
                     waiting.columns = encoded.columns(i);
                 } else if (subscription.view) {
-                    TiledPicturePtr& tiled = group->tiled[island];
+                    TiledPicturePtr& tiled = of_group->group->tiled[island];
                     tiled = waiting.tiled =
-                        std::make_shared<TiledPicture>(encoded.tiles(i), tiled, now, pace.between());
+                        std::make_shared<TiledPicture>(encoded.tiles(i), tiled, now, of_group->between);
                 } else {
-                    waiting.chained =
-                        group->chains[island].add(encoded.about(i), encoded.scene(i), compressor_, now, pace.between());
+                    waiting.chained = of_group->group->chains[island].add(encoded.about(i), encoded.scene(i),
+                                                                          compressor_, now, of_group->between);
                 }
                 waiting.sequence = encoded.about(i)->sequence();
                 session->picture(id, island, waiting);
+                has_some = true;
             }
         }
+        if (has_some)
+            session->send_waiting();
     }
 }
 

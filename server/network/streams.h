@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/network/session.h"
+#include "server/network/snapshot_columns.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
@@ -73,6 +74,7 @@ class Streams {
     runtime::Demand& demand_;
     runtime::Mailbox& mailbox_;
     std::uint64_t newcomers_ = 0, sequence_ = 0;
+    std::vector<SnapshotColumns> columns_; // working memory, of the islands of one snapshot
     wire::Compressor compressor_;
     std::map<GroupName, Group> groups_;
 };

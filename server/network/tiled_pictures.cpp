@@ -23,7 +23,8 @@ const SharedBytes& IslandTiles::about_bytes() {
     return about_bytes_;
 }
 
-SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, v1::Compression compression) {
+SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, const wire::Seams& seams,
+                                v1::Compression compression) {
     using google::protobuf::internal::WireFormatLite;
     using google::protobuf::io::CodedOutputStream;
     const wire::Counts counts = scene_.counts(tile.tile());
@@ -34,7 +35,7 @@ SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, v1::Comp
     tile.set_obstacle_count(counts[4]);
     tile.set_sequence(about_.sequence());
     tile.set_checksum(wire::checksum_of(about_, tile, body));
-    set_body(tile, std::move(body), compression, *compressor_);
+    set_body(tile, std::move(body), seams, compression, *compressor_);
 
     constexpr std::uint32_t tag =
         WireFormatLite::MakeTag(v1::SnapshotFrame::kTilesFieldNumber, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
@@ -56,7 +57,7 @@ const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1
         v1::TilePicture picture;
         picture.set_tile(tile);
         picture.set_detail(detail);
-        bytes = encode(std::move(picture), dots ? scene_.dots(tile) : scene_.density(tile), compression);
+        bytes = encode(std::move(picture), dots ? scene_.dots(tile) : scene_.density(tile), {}, compression);
     }
     return bytes;
 }
@@ -93,13 +94,15 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
     picture.set_tile(tile);
     picture.set_detail(detail);
     std::string body;
+    wire::Seams seams;
     switch (form) {
     case Form::Keyframe:
-        body = wire::encode_keyframe(footing(tile));
+        body = wire::encode_keyframe(footing(tile), &seams);
         break;
     case Form::Delta:
         picture.set_base_sequence(of.base_sequence);
         body = of.delta;
+        seams = of.delta_seams;
         break;
     case Form::Again: {
         picture.set_base_sequence(sequence());
@@ -108,16 +111,16 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
         break;
     }
     }
-    return bytes = island_->encode(std::move(picture), std::move(body), compression);
+    return bytes = island_->encode(std::move(picture), std::move(body), seams, compression);
 }
 
 TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
-    Tile& of = tiles_[tile];
-    if (std::exchange(of.there, true))
-        return of;
+    if (tiles_[tile])
+        return *tiles_[tile];
+    Tile& of = *(tiles_[tile] = std::make_unique<Tile>());
     of.keyframe_made = now_;
-    if (before_ && before_->tiles_[tile].there) {
-        const Tile& before = before_->tiles_[tile];
+    if (before_ && before_->tiles_[tile]) {
+        const Tile& before = *before_->tiles_[tile];
         const wire::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
         const auto part = [&](Displacements& all, std::size_t k) {
             return wire::MovedOn::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
@@ -125,12 +128,11 @@ TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
         };
         const wire::SceneView scene = island_->scene().full(tile);
         const wire::MovedOn to{.organisms = part(organisms_, 0), .crates = part(crates_, 3)};
-        of.ticks = ticks_ > 0 ? ticks_ : before.ticks;
-        // The next picture would come too late to be the keyframe.
-        if (now_ + between_ > before.keyframe_made + keyframe_interval) {
-            wire::move_on(before_->footing(tile), scene, ticks_, to);
-        } else {
-            of.delta = wire::encode_delta(before_->footing(tile), scene, ticks_, &to);
+        // Otherwise the next picture would come too late to be the keyframe. In that nothing has moved yet, as in a
+        // chain's.
+        if (now_ + between_ <= before.keyframe_made + keyframe_interval) {
+            of.ticks = ticks_ > 0 ? ticks_ : before.ticks;
+            of.delta = wire::encode_delta(before_->footing(tile), scene, ticks_, &to, &of.delta_seams);
             of.base_sequence = before_->sequence();
             of.keyframe_made = before.keyframe_made;
         }
@@ -148,17 +150,21 @@ wire::FootingView TiledPicture::footing(std::uint32_t tile) const {
     footing.scene = island_->scene().full(tile);
     footing.organisms = part(organisms_, 0);
     footing.crates = part(crates_, 3);
-    footing.ticks = tiles_[tile].ticks;
+    footing.ticks = tiles_[tile]->ticks;
     return footing;
 }
 
 void TilesSent::add_parts(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail,
-                          v1::Compression compression, std::vector<SharedBytes>& parts) const {
-    parts.push_back(picture.about());
-    seen.each(picture.layout(), [&](std::uint32_t tile) {
-        const bool has = full_.contains(picture.layout(), tile);
-        parts.push_back(picture.tile(tile, detail, compression, has ? sequence_ : 0));
-    });
+                          v1::Compression compression, std::vector<const SharedBytes*>& parts) const {
+    parts.push_back(&picture.about());
+    const std::uint32_t columns = picture.layout().columns;
+    for (std::uint32_t row = seen.row_begin; row < seen.row_end; ++row) {
+        const bool has_row = row >= full_.row_begin && row < full_.row_end;
+        for (std::uint32_t column = seen.column_begin; column < seen.column_end; ++column) {
+            const bool has = has_row && column >= full_.column_begin && column < full_.column_end;
+            parts.push_back(&picture.tile(row * columns + column, detail, compression, has ? sequence_ : 0));
+        }
+    }
 }
 
 void TilesSent::sent(const TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail) {

@@ -34,7 +34,7 @@ class IslandTiles {
     /// Fields 1 to 49 but for the tiles.
     const SharedBytes& about_bytes();
     /// One of the frame's `tiles`: all of TilePicture but what is not the same at every detail and rate is set here.
-    SharedBytes encode(v1::TilePicture tile, std::string body, v1::Compression compression);
+    SharedBytes encode(v1::TilePicture tile, std::string body, const wire::Seams& seams, v1::Compression compression);
     /// A tile at DETAIL_DOTS or DETAIL_DENSITY.
     const SharedBytes& coarse(std::uint32_t tile, v1::Detail detail, v1::Compression compression);
 
@@ -67,11 +67,11 @@ class TiledPicture {
     enum class Form { Keyframe, Delta, Again };
     /// A tile that somebody was sent.
     struct Tile {
-        bool there = false;
-        std::uint16_t ticks = 0;                         // that its displacements took
-        std::uint64_t base_sequence = 0;                 // 0: it is a keyframe for all
-        runtime::Clock::time_point keyframe_made;        // the last that was one for all
-        std::string delta;                               // its body, if base_sequence is not 0
+        std::uint16_t ticks = 0;                  // that its displacements took
+        std::uint64_t base_sequence = 0;          // 0: it is a keyframe for all
+        runtime::Clock::time_point keyframe_made; // the last that was one for all
+        std::string delta;                        // its body, if base_sequence is not 0
+        wire::Seams delta_seams;
         std::array<std::array<SharedBytes, 2>, 3> forms; // each as it is, and compressed
     };
     Tile& full(std::uint32_t tile);
@@ -82,7 +82,7 @@ class TiledPicture {
     std::uint16_t ticks_ = 0;              // since then
     runtime::Clock::time_point now_;
     runtime::Clock::duration between_;
-    std::vector<Tile> tiles_;
+    std::vector<std::unique_ptr<Tile>> tiles_; // by index; null: nobody was sent it
     struct Displacements {
         std::vector<std::uint32_t> x, y; // tile after tile
     };
@@ -94,9 +94,9 @@ using TiledPicturePtr = std::shared_ptr<TiledPicture>;
 /// What of an island a viewer was sent last, which is what its next frame can be told from.
 class TilesSent {
   public:
-    /// Adds the parts of a frame to `parts`: together its fields 1 to 49.
+    /// Adds the parts of a frame to `parts`: together its fields 1 to 49. They are there as long as the picture is.
     void add_parts(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail, v1::Compression compression,
-                   std::vector<SharedBytes>& parts) const;
+                   std::vector<const SharedBytes*>& parts) const;
 
     /// That frame has been sent.
     void sent(const TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail);

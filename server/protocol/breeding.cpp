@@ -37,6 +37,8 @@ v1::Contender to_proto(const evolution::BreedingRecord::Contender& contender) {
         to.mutable_migrant()->set_island(contender.migrant->from);
         to.mutable_migrant()->set_organism(contender.migrant->organism);
     }
+    if (contender.own_fitness)
+        to.set_own_fitness(*contender.own_fitness);
     return to;
 }
 

@@ -51,6 +51,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
             command.first_population = first_population_of(request, missing);
             const auto faults = faults_of(command.first_population, command.parameters, "create_world.population");
             missing.insert(missing.end(), faults.begin(), faults.end());
+            command.schedule = to_schedule(request.schedule(), command.parameters, "create_world.", missing);
         }
         violations.insert(violations.end(), missing.begin(), missing.end());
     }
@@ -128,7 +129,18 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
         command.assignments = to_assignments(request.parameters(), "set_parameters.", violations);
     if (request.has_expected_revision())
         command.expected_revision = request.expected_revision();
+    if (request.has_at_generation() && request.has_at_tick())
+        violations.push_back(
+            {"set_parameters.at_tick", "nothing beside at_generation", std::to_string(request.at_tick())});
+    else if (request.has_at_generation())
+        command.at = simulation::PlannedMoment{.generation = request.at_generation(), .tick = {}};
+    else if (request.has_at_tick())
+        command.at = simulation::PlannedMoment{.generation = {}, .tick = request.at_tick()};
     return command;
+}
+
+simulation::Command command_of(const v1::CancelChange& request, const Draws&, Violations&) {
+    return simulation::CancelChange{lookup_name(request.world()), request.id()};
 }
 
 simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws, Violations& violations) {
@@ -225,6 +237,7 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kResume:
     case RequestCase::kSetSpeed:
     case RequestCase::kSetParameters:
+    case RequestCase::kCancelChange:
     case RequestCase::kForkWorld:
         return RequestKind::Command;
     case RequestCase::kListWorlds:
@@ -288,6 +301,8 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return command_of(request.set_speed(), draws, violations);
         case RequestCase::kSetParameters:
             return command_of(request.set_parameters(), draws, violations);
+        case RequestCase::kCancelChange:
+            return command_of(request.cancel_change(), draws, violations);
         case RequestCase::kForkWorld:
             return command_of(request.fork_world(), draws, violations);
         default:

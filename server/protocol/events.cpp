@@ -2,11 +2,18 @@
 
 #include "server/base/overloaded.h"
 #include "server/protocol/parameters.h"
+#include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
 namespace evod::protocol {
 
 using base::Overloaded;
+
+namespace {
+
+constexpr const char* by_the_schedule = "the schedule";
+
+} // namespace
 
 v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory& laboratory) {
     v1::Event told;
@@ -37,6 +44,26 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    [&](const simulation::RunTerminated& terminated) {
                        told.mutable_run_terminated()->set_outcome(to_proto(terminated.outcome));
                    },
+                   [&](const simulation::ParametersChanged& changed) {
+                       auto& to = *told.mutable_parameters_changed();
+                       to.set_by(changed.planned == 0 ? by_the_schedule : changed.by);
+                       to.set_revision(changed.revision);
+                       to.set_planned_change(changed.planned);
+                       if (const auto entry = laboratory.find(event.world))
+                           for (const std::string& name : changed.names)
+                               *to.add_changed() =
+                                   state_of(*simulation::find_parameter(name), (*entry)->world.parameters());
+                   },
+                   [&](const simulation::ChangeDropped& dropped) {
+                       auto& to = *told.mutable_change_dropped();
+                       to.set_by(dropped.planned == 0 ? by_the_schedule : dropped.by);
+                       to.set_planned_change(dropped.planned);
+                       to.mutable_name()->Assign(dropped.names.begin(), dropped.names.end());
+                       *to.mutable_violations() = to_proto(base::Refusal{.code = base::RefusalCode::InvalidArgument,
+                                                                         .message = {},
+                                                                         .violations = dropped.violations})
+                                                      .violations();
+                   },
                    [&](const simulation::GoalReached&) {
                        auto& to = *told.mutable_run_control_changed();
                        if (const auto entry = laboratory.find(event.world))
@@ -66,7 +93,13 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                    [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
                    [&](const simulation::DeleteWorld&) { told.mutable_world_deleted()->set_by(std::string{by}); },
                    [&](const simulation::SetParameters& set) {
-                       if (set.dry_run || !applied.parameters)
+                       if (set.dry_run)
+                           return;
+                       if (applied.planned) {
+                           *told.mutable_change_planned()->mutable_change() = to_proto(*applied.planned);
+                           return;
+                       }
+                       if (!applied.parameters)
                            return;
                        auto& to = *told.mutable_parameters_changed();
                        to.set_by(std::string{by});
@@ -74,6 +107,12 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                        for (const auto& assignment : set.assignments)
                            if (const auto* description = simulation::find_parameter(assignment.name))
                                *to.add_changed() = state_of(*description, *applied.parameters);
+                   },
+                   [&](const simulation::CancelChange&) {
+                       auto& to = *told.mutable_change_cancelled();
+                       to.set_by(std::string{by});
+                       if (applied.planned)
+                           *to.mutable_change() = to_proto(*applied.planned);
                    },
                    [&](const auto&) { tell_world(*told.mutable_run_control_changed()); },
                },

@@ -3,6 +3,8 @@
 #include "server/protocol/refusals.h"
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace evod::protocol {
 namespace {
@@ -92,6 +94,36 @@ v1::ParameterSet to_proto(const simulation::ParameterSet& set) {
     return to;
 }
 
+google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const simulation::Schedule& schedule,
+                                                                std::uint64_t after_generation) {
+    google::protobuf::RepeatedPtrField<v1::ScheduledValue> values;
+    const auto& changes = schedule.changes();
+    for (auto change = changes.upper_bound(after_generation); change != changes.end(); ++change)
+        for (const simulation::Assignment& assignment : change->second) {
+            v1::ScheduledValue& to = *values.Add();
+            to.set_name(assignment.name);
+            to.set_generation(change->first);
+            *to.mutable_value() = to_proto(assignment.value);
+        }
+    return values;
+}
+
+v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
+    v1::PlannedChange to;
+    to.set_id(change.id);
+    if (change.at.generation)
+        to.set_generation(*change.at.generation);
+    else
+        to.set_tick(*change.at.tick);
+    for (const simulation::Assignment& assignment : change.assignments) {
+        v1::ParameterAssignment& assigned = *to.add_parameters();
+        assigned.set_name(assignment.name);
+        *assigned.mutable_value() = to_proto(assignment.value);
+    }
+    to.set_by(change.by);
+    return to;
+}
+
 std::vector<simulation::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations) {
@@ -116,6 +148,54 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
                 violations.push_back(*std::move(fault));
     }
     return made;
+}
+
+simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,
+                                 const simulation::Parameters& parameters, std::string_view field_prefix,
+                                 std::vector<base::Violation>& violations) {
+    simulation::Schedule schedule;
+    constexpr std::size_t most = simulation::Schedule::values_max;
+    if (static_cast<std::size_t>(values.size()) > most) {
+        violations.push_back({std::string{field_prefix} + "schedule", "at most " + std::to_string(most) + " values",
+                              std::to_string(values.size())});
+        return schedule;
+    }
+    const auto field = [&](const std::string& name, std::uint64_t generation) {
+        return std::string{field_prefix} + name + " at generation " + std::to_string(generation);
+    };
+    const auto fault_of = [&](const v1::ScheduledValue& value) -> std::optional<base::Violation> {
+        const auto* description = simulation::find_parameter(value.name());
+        if (description == nullptr)
+            return simulation::fault_of({value.name(), simulation::ParameterValue{0u}});
+        if (!can_be_scheduled(*description))
+            return base::Violation{{}, "one value, as it can only change when a world is reset", "a scheduled one"};
+        if (value.generation() < 2)
+            return base::Violation{{}, "a generation from 2 on", std::to_string(value.generation())};
+        if (value.value().value_case() == v1::ParameterValue::VALUE_NOT_SET)
+            return base::Violation{{}, description->allowed(), "no value"};
+        return simulation::fault_of({value.name(), to_value(value.value())});
+    };
+    std::set<std::pair<std::uint64_t, std::string_view>> seen;
+    const std::size_t before = violations.size();
+    for (const v1::ScheduledValue& value : values) {
+        auto fault = fault_of(value);
+        if (!fault && !seen.emplace(value.generation(), value.name()).second)
+            fault = base::Violation{{}, "given once", "given twice"};
+        if (fault) {
+            fault->field = field(value.name(), value.generation());
+            violations.push_back(*std::move(fault));
+        } else {
+            schedule.add(value.generation(), {value.name(), to_value(value.value())});
+        }
+    }
+    if (violations.size() > before)
+        return schedule;
+    schedule.begin_with(parameters);
+    for (simulation::ScheduleFault& wrong : faults_of(schedule, parameters)) {
+        wrong.violation.field = field(wrong.violation.field, wrong.generation);
+        violations.push_back(std::move(wrong.violation));
+    }
+    return schedule;
 }
 
 } // namespace evod::protocol

@@ -61,7 +61,12 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
     const auto entry = laboratory.find(lookup_name(query.world()));
     if (!entry)
         return entry.error();
-    return to_proto((*entry)->world.parameters());
+    const simulation::World& world = (*entry)->world;
+    v1::ParameterSet set = to_proto(world.parameters());
+    for (const simulation::PlannedChange& change : world.planned())
+        *set.add_planned() = to_proto(change);
+    *set.mutable_schedule() = to_proto(world.schedule(), world.moment().generation);
+    return set;
 }
 
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query) {

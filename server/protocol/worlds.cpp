@@ -113,12 +113,21 @@ v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statis
     to.set_fitness_median(statistics.fitness_median);
     to.set_fitness_worst(statistics.fitness_worst);
     to.set_fitness_deviation(statistics.fitness_deviation);
-    for (const auto& gene : statistics.genes) {
+    for (std::size_t i = 0; i < statistics.genes.size(); ++i) {
+        const simulation::GeneStatistics& gene = statistics.genes[i];
         auto& to_gene = *to.add_genes();
         to_gene.set_mean(gene.mean);
         to_gene.set_deviation(gene.deviation);
         to_gene.set_min(gene.min);
         to_gene.set_max(gene.max);
+        if (!statistics.account)
+            continue;
+        const evolution::GeneAccount& account = (*statistics.account)[i];
+        auto& to_account = *to_gene.mutable_account();
+        to_account.set_selection(account.selection);
+        to_account.set_transmission(account.transmission);
+        to_account.set_migration(account.migration);
+        to_account.set_change(account.change);
     }
     to.set_diversity(statistics.diversity);
     to.set_alive_count(statistics.alive_count);

@@ -25,12 +25,12 @@ class Viewer {
 
     /// The frame that it is sent.
     v1::SnapshotFrame send(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
-        std::vector<SharedBytes> parts;
+        std::vector<const SharedBytes*> parts;
         sent_.add_parts(picture, seen, detail, compression_, parts);
         sent_.sent(picture, seen, detail);
         std::string bytes;
-        for (const SharedBytes& part : parts)
-            bytes += *part;
+        for (const SharedBytes* part : parts)
+            bytes += **part;
         v1::SnapshotFrame frame;
         EXPECT_TRUE(frame.ParseFromString(bytes));
         return frame;

@@ -18,6 +18,7 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <tuple>
 
 namespace evod::protocol {
 namespace {
@@ -107,8 +108,11 @@ TEST(Conversions, GenerationStatisticsAreToldCompletelyAndEachInItsPlace) {
     s.generation = count(), s.island = count(), s.end_tick = count(), s.organism_count = count();
     s.fitness_best = number(), s.fitness_mean = number(), s.fitness_median = number(), s.fitness_worst = number();
     s.fitness_deviation = number();
-    for (auto& gene : s.genes)
-        gene = {number(), number(), number(), number()};
+    s.account.emplace();
+    for (std::size_t gene = 0; gene < s.genes.size(); ++gene) {
+        s.genes[gene] = {number(), number(), number(), number()};
+        (*s.account)[gene] = {number(), number(), number(), number()};
+    }
     s.diversity = number(), s.alive_count = count(), s.starved_count = count(), s.poisoned_count = count();
     s.food_eaten = count(), s.poison_eaten = count(), s.clamp_count = count(), s.too_fast_count = count();
     s.speed_limit_count = count(), s.best_organism = count(), s.simulated_s = number();
@@ -120,6 +124,8 @@ TEST(Conversions, GenerationStatisticsAreToldCompletelyAndEachInItsPlace) {
     for (double n = 1; n < next; ++n)
         expected.push_back(n);
     EXPECT_EQ(numbers, expected);
+    s.account.reset();
+    EXPECT_THAT(unset_in(to_proto(s)), testing::ElementsAre("genes.account"));
 }
 
 TEST(Conversions, LiveStatisticsAreToldCompletely) {
@@ -141,7 +147,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     record.places = {.elite = 1, .survivors = 3, .children = 5};
     record.contender_count = 7;
     record.pick_count = 9;
-    record.contenders.push_back({1, 2, 3, 4, 5, 6, 7, evolution::Migrant{8, 99, 9, 99}});
+    record.contenders.push_back({1, 2, 3, 4, 5, 6, 7, evolution::Migrant{8, 99, 9, 99}, 10});
     record.picks.push_back({1, 2.5, 3, {4, 5, 6}});
     for (const std::uint32_t id : {0, 2, 3})
         record.descendants.push_back({.id = id,
@@ -166,7 +172,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     EXPECT_THAT(unset, testing::IsEmpty());
     std::vector<double> contender;
     collect_numbers(told.contenders(0), contender);
-    EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
+    EXPECT_THAT(contender, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10));
     EXPECT_EQ(told.descendant_count(), 8u);
     EXPECT_EQ(told.descendants(0).kind(), v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(told.descendants(1).kind(), v1::DESCENDANT_KIND_SURVIVOR);
@@ -202,8 +208,11 @@ TEST_F(Lived, AnOrganismIsToldCompletely) {
 
 TEST_F(Lived, EveryKindOfEventIsTold) {
     const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
-                                           simulation::MigrationHappened{1, {{0, 1, 2}}}, simulation::Extinction{1, 2},
+                                           simulation::MigrationHappened{1, {{0, 1, 2}}},
+                                           simulation::Extinction{1, 2},
                                            simulation::RunTerminated{evolution::Outcome::Stagnation},
+                                           simulation::ParametersChanged{3, "karl", {"mutation_chance"}, 7},
+                                           simulation::ChangeDropped{3, "karl", {"mutation_chance"}, {{"a", "b", "c"}}},
                                            simulation::GoalReached{}};
     std::set<int> cases;
     for (const auto& kind : kinds) {
@@ -212,6 +221,35 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
         EXPECT_EQ(event.world(), "w");
         EXPECT_EQ(event.tick(), 3);
         EXPECT_EQ(event.run_id().size(), 32);
+        if (event.has_parameters_changed()) {
+            EXPECT_THAT(unset_in(event.parameters_changed()),
+                        testing::ElementsAre("changed.pending", "changed.value.choice", "changed.value.count",
+                                             "changed.value.flag"));
+            EXPECT_EQ(event.parameters_changed().by(), "karl");
+        }
+        if (event.has_change_dropped()) {
+            EXPECT_THAT(unset_in(event.change_dropped()), testing::IsEmpty());
+        }
+    }
+    const simulation::EventKind scheduled = simulation::ParametersChanged{0, "", {"mutation_chance"}, 7};
+    EXPECT_EQ(to_proto(simulation::Event{"w", {1, 2}, 3, scheduled}, laboratory).parameters_changed().by(),
+              "the schedule");
+    const simulation::PlannedChange change{
+        .id = 4, .at = {.generation = 9, .tick = {}}, .assignments = {{"food_health", 1.0}}, .by = "karl"};
+    const simulation::Applied planned{.world = "w", .tick = 3, .parameters = {}, .planned = change};
+    for (const simulation::Command& command :
+         {simulation::Command{simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}, change.at, "karl"}},
+          simulation::Command{simulation::CancelChange{"w", 4}}}) {
+        const auto event = event_of(command, planned, "karl", laboratory);
+        ASSERT_TRUE(event);
+        cases.insert(event->event_case());
+        auto unset = unset_in(*event);
+        for (const char* part : {"change_planned.change.", "change_cancelled.change."})
+            for (const char* other :
+                 {"tick", "parameters.value.choice", "parameters.value.count", "parameters.value.flag"})
+                unset.erase(std::string{part} + other);
+        for (const std::string& field : unset)
+            EXPECT_EQ(field.find('.'), std::string::npos) << field;
     }
     const simulation::Applied applied{.world = "w", .tick = 3, .parameters = simulation::ParameterSet{}};
     const simulation::Command commands[] = {simulation::CreateWorld{}, simulation::DeleteWorld{},
@@ -274,6 +312,60 @@ TEST(Conversions, ASetTellsWhatHoldsAndWhatWaits) {
         EXPECT_EQ(state.has_pending(), state.name() == "population_size") << state.name();
 }
 
+TEST(Conversions, AScheduleComesBackAsItWent) {
+    simulation::Schedule schedule;
+    schedule.add(3, {"mutation_chance", 0.05});
+    schedule.add(3, {"population_size", 70u});
+    schedule.add(9, {"selection", std::string{"tournament"}});
+    schedule.begin_with({});
+    std::vector<base::Violation> violations;
+    EXPECT_EQ(to_schedule(to_proto(schedule, 1), {}, "", violations), schedule);
+    EXPECT_THAT(violations, testing::IsEmpty());
+    const auto later = to_proto(schedule, 3);
+    ASSERT_EQ(later.size(), 1);
+    EXPECT_EQ(later[0].generation(), 9);
+    EXPECT_EQ(later[0].name(), "selection");
+    EXPECT_EQ(later[0].value().choice(), "tournament");
+    EXPECT_EQ(to_proto(schedule, 9).size(), 0);
+}
+
+TEST(Conversions, WhatIsWrongWithAScheduleIsNamed) {
+    const auto fields = [](std::vector<std::tuple<std::string, std::uint64_t, double>> values) {
+        google::protobuf::RepeatedPtrField<v1::ScheduledValue> message;
+        for (const auto& [name, generation, value] : values) {
+            auto& to = *message.Add();
+            to.set_name(name);
+            to.set_generation(generation);
+            if (value >= 0)
+                to.mutable_value()->set_real(value);
+        }
+        std::vector<base::Violation> violations;
+        (void)to_schedule(message, {}, "create_world.", violations);
+        std::vector<std::string> named;
+        for (const auto& violation : violations)
+            named.push_back(violation.field + ": got " + violation.got);
+        return named;
+    };
+    using testing::ElementsAre;
+    using testing::HasSubstr;
+    EXPECT_THAT(fields({{"mutation_chance", 2, 1.5}}),
+                ElementsAre("create_world.mutation_chance at generation 2: got 1.5"));
+    EXPECT_THAT(fields({{"mutation_chance", 2, -1}}), ElementsAre(HasSubstr("generation 2: got no value")));
+    EXPECT_THAT(fields({{"mutation_chance", 0, 0.1}, {"mutation_step", 1, 3}}),
+                ElementsAre(HasSubstr("generation 0: got 0"), HasSubstr("generation 1: got 1")));
+    EXPECT_THAT(fields({{"mutation_chance", 2, 0.1}, {"mutation_chance", 2, 0.1}}),
+                ElementsAre(HasSubstr("given twice")));
+    EXPECT_THAT(fields({{"initial_gene_min", 2, 90}}), ElementsAre(HasSubstr("create_world.initial_gene_min at")));
+    EXPECT_THAT(fields({{"no_such", 2, 1}}), ElementsAre(HasSubstr("create_world.no_such at")));
+    EXPECT_THAT(fields({{"impulse_min", 5, 300}}), ElementsAre("create_world.impulse_max at generation 5: got 250"));
+    std::vector<std::tuple<std::string, std::uint64_t, double>> many;
+    for (std::uint64_t i = 0; i < 4097; ++i)
+        many.emplace_back("mutation_chance", i + 2, 0.5);
+    EXPECT_THAT(fields(many), ElementsAre("create_world.schedule: got 4097"));
+    many.pop_back();
+    EXPECT_THAT(fields(many), testing::IsEmpty());
+}
+
 // ---- requests --------------------------------------------------------------------------------------------------
 
 const Draws draws{.seed = base::Seed{1}, .run_id = {2, 3}};
@@ -304,6 +396,10 @@ void poison_doubles(v1::Request& request, Message& part, double poison, int& poi
                 field.is_repeated() ? *reflection.AddMessage(&part, &field) : *reflection.MutableMessage(&part, &field);
             if (inner.GetDescriptor()->name() == "ParameterAssignment")
                 static_cast<v1::ParameterAssignment&>(inner).set_name("mutation_chance");
+            if (auto* scheduled = dynamic_cast<v1::ScheduledValue*>(&inner)) {
+                scheduled->set_name("mutation_chance");
+                scheduled->set_generation(2);
+            }
             poison_doubles(request, inner, poison, poisoned);
             reflection.ClearField(&part, &field);
         } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
@@ -342,7 +438,7 @@ TEST(Requests, NoNumberInThemMayBeNoneOrInfinite) {
             poison_doubles(request, part, poison, poisoned);
         }
     }
-    EXPECT_EQ(poisoned, 3 * 12); // two lists of parameters, a speed, a rate, two regions
+    EXPECT_EQ(poisoned, 3 * 13); // two lists of parameters, a schedule, a speed, a rate, two regions
 }
 
 TEST(Requests, EveryFaultIsNamedAtOnce) {

@@ -1,0 +1,167 @@
+// A session's line to a client on the loopback interface, with nobody else in the server.
+#include "server/network/session.h"
+
+#include "tests/support/manual_clock.h"
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace evod::network {
+namespace {
+
+class SessionTest : public testing::Test {
+  protected:
+    SessionTest() : client{context} {
+        tcp::acceptor acceptor{context, tcp::endpoint{asio::ip::address_v4::loopback(), 0}};
+        client.open(tcp::v4());
+        client.set_option(asio::socket_base::receive_buffer_size{4096}); // so that large pictures have to wait
+        client.connect(acceptor.local_endpoint());
+        host.clock = &clock;
+        host.ended = [this](Session&) { over = true; };
+        session = std::make_shared<Session>(acceptor.accept(), host, 1);
+        session->start();
+        for (const std::uint32_t id : {1U, 2U})
+            session->snapshots[id].codec = v1::CODEC_COLUMNS;
+        context.poll(); // now the line can be written to, and the writer has nothing to do
+    }
+    ~SessionTest() override {
+        session->close();
+        context.run();
+        EXPECT_TRUE(over);
+    }
+
+    static SharedBytes picture_bytes(std::uint64_t sequence, std::size_t body_bytes) {
+        v1::SnapshotFrame frame;
+        frame.set_sequence(sequence);
+        frame.set_body(std::string(body_bytes, static_cast<char>('a' + sequence % 26)));
+        return std::make_shared<const std::string>(frame.SerializeAsString());
+    }
+    void picture(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t sequence, std::size_t body_bytes) {
+        session->picture(subscription_id, island,
+                         {.sequence = sequence,
+                          .columns = picture_bytes(sequence, body_bytes),
+                          .chained = nullptr,
+                          .tiled = nullptr});
+    }
+
+    /// Reads what has come, once the session has done what it can; whole frames go to `frames`.
+    void read() {
+        std::array<std::byte, 65536> bytes;
+        client.non_blocking(true);
+        boost::system::error_code error;
+        while (const std::size_t count = client.read_some(asio::buffer(bytes), error)) {
+            reader.feed({bytes.data(), count});
+            for (auto frame = reader.next(); frame && *frame; frame = reader.next()) {
+                channels.push_back((*frame)->channel);
+                if (channels.back() == wire::Channel::Stream) {
+                    EXPECT_TRUE(frames.emplace_back().ParseFromArray((*frame)->body.data(),
+                                                                     static_cast<int>((*frame)->body.size())));
+                }
+            }
+        }
+    }
+    void read_until(std::size_t count) {
+        for (int turn = 0; frames.size() < count && turn < 1'000'000; ++turn) {
+            context.poll();
+            read();
+        }
+        ASSERT_EQ(frames.size(), count);
+    }
+
+    support::ManualClock clock;
+    LimitCounters counters;
+    Buffers buffers{std::size_t{1} << 30, [] {}};
+    SessionHost host{counters, buffers};
+    asio::io_context context;
+    tcp::socket client;
+    bool over = false;
+    SessionPtr session;
+    wire::FrameReader reader{wire::client_limits};
+    std::vector<wire::Channel> channels;
+    std::vector<v1::SnapshotFrame> frames;
+};
+
+TEST_F(SessionTest, APictureThatTheLineTakesIsSentAtOnce) {
+    picture(2, 5, 7, 100);
+    session->send_waiting();
+    read(); // no turn of the loop was needed
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].subscription_id(), 2U);
+    EXPECT_EQ(frames[0].dropped_count(), 0U);
+    EXPECT_EQ(frames[0].sequence(), 7U);
+    EXPECT_EQ(frames[0].body(), std::string(100, 'h'));
+    EXPECT_EQ(host.traffic.pictures_sent.value(), 1U);
+    EXPECT_EQ(buffers.bytes(), 0U);
+}
+
+TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
+    constexpr std::size_t large = 20'000'000;
+    picture(1, 0, 1, large);
+    session->send_waiting();
+    EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
+    EXPECT_GT(buffers.bytes(), large) << "what waits is counted";
+    // Meanwhile others come for it: of each island the newest goes on waiting.
+    for (std::uint64_t sequence = 2; sequence < 6; ++sequence) {
+        picture(1, 0, sequence, 50);
+        picture(2, 3, sequence, 60'000);
+        session->send_waiting();
+    }
+    context.poll();
+    EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
+    read_until(3);
+    EXPECT_EQ(frames[0].sequence(), 1U);
+    EXPECT_EQ(frames[0].body(), std::string(large, 'b'));
+    EXPECT_EQ(frames[1].sequence(), 5U);
+    EXPECT_EQ(frames[1].dropped_count(), 3U);
+    EXPECT_EQ(frames[2].sequence(), 5U);
+    EXPECT_EQ(frames[2].subscription_id(), 2U);
+    EXPECT_EQ(frames[2].body(), std::string(60'000, 'f'));
+    context.poll();
+    EXPECT_EQ(host.traffic.pictures_sent.value(), 3U);
+    EXPECT_EQ(buffers.bytes(), 0U);
+    EXPECT_EQ(host.traffic.sent_stream_bytes.value(),
+              3 * wire::header_bytes + frames[0].ByteSizeLong() + frames[1].ByteSizeLong() + frames[2].ByteSizeLong());
+}
+
+TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
+    std::uint64_t sequence = 0;
+    for (int round = 0; round < 1000; ++round) {
+        picture(1, static_cast<std::uint32_t>(round), ++sequence, 20'000);
+        session->send_waiting();
+        if (round % 7 == 0)
+            context.poll();
+    }
+    EXPECT_LT(host.traffic.pictures_sent.value(), 1000U) << "otherwise none had to wait";
+    read_until(1000);
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        EXPECT_EQ(frames[i].sequence(), i + 1);
+}
+
+TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {
+    picture(1, 0, 1, 10);
+    v1::Response response;
+    response.set_request_id(4);
+    session->send_unasked(response);
+    session->send_waiting();
+    read_until(1);
+    EXPECT_EQ(channels, (std::vector{wire::Channel::Control, wire::Channel::Stream}));
+}
+
+TEST_F(SessionTest, AClientThatHasGoneEndsTheSession) {
+    client.set_option(asio::socket_base::linger{true, 0});
+    client.close();
+    for (int i = 0; i < 3; ++i) {
+        picture(1, 0, 1, 100'000);
+        session->send_waiting();
+    }
+    context.run();
+    EXPECT_TRUE(over);
+}
+
+} // namespace
+} // namespace evod::network
