@@ -1,12 +1,15 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
+#include "proto/wire/whole_number.h"
 #include "server/access/certificate.h"
 #include "server/console/check.h"
+#include "server/console/compare.h"
 #include "server/console/experiment_file.h"
 #include "server/console/export.h"
 #include "server/console/fork.h"
 #include "server/console/parameter_list.h"
 #include "server/console/population_file.h"
 #include "server/console/run.h"
+#include "server/console/sweep.h"
 #include "server/console/token.h"
 #include "server/console/verify.h"
 #include "server/log/log.h"
@@ -20,8 +23,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <limits>
 #include <thread>
 
 namespace {
@@ -99,17 +104,48 @@ int serve(network::ServerOptions options) {
     return 0;
 }
 
+// Of options.
+using wire::WholeNumber;
+constexpr WholeNumber whole_number{}, thread_count{1, 1024}, port_number{0, 65535}, generation_number{.min = 1};
+
+/// What is given before a subcommand counts as if it came after, if the subcommand knows it. What it has no use for
+/// would do nothing, and is refused.
+void hand_down(const CLI::App& app) {
+    if (app.get_subcommands().empty())
+        return;
+    CLI::App* command = app.get_subcommands().front();
+    std::string words = "evod " + command->get_name();
+    while (!command->get_subcommands().empty()) {
+        command = command->get_subcommands().front();
+        words += " " + command->get_name();
+    }
+    for (const CLI::Option* given : app.get_options()) {
+        if (given->count() == 0)
+            continue;
+        const std::string name = given->get_name();
+        CLI::Option* own = command->get_option_no_throw(name);
+        if (own == nullptr)
+            throw CLI::ValidationError{name,
+                                       "an option of the server, which " + words + " has no use for: leave it out"};
+        if (own->count() > 0)
+            throw CLI::ValidationError{name, "given twice, before " + command->get_name() + " and after it"};
+        own->add_result(given->results());
+        own->run_callback();
+    }
+}
+
 /// Of who may come in, and how, and what the server says of itself: for every way to serve.
 void add_common_options(CLI::App& app, ServeOptions& options) {
     app.add_option("--bind", options.bind_address, "Address to listen on; 0.0.0.0 is every interface")
         ->capture_default_str();
-    app.add_option("--port", options.port, "Port to listen on; 0 is any that is free")->capture_default_str();
-    app.add_option("--threads", options.threads, "Threads that simulate")
-        ->check(CLI::Range(1, 1024))
+    app.add_option("--port", options.port, "Port to listen on; 0 is any that is free")
+        ->check(port_number)
         ->capture_default_str();
+    app.add_option("--threads", options.threads, "Threads that simulate")->check(thread_count)->capture_default_str();
     CLI::Option* http = app.add_option("--http-port", options.http_port,
                                        "Port for /metrics and /healthz over HTTP, such as 7745; 0 is any that is free. "
-                                       "Otherwise there are none");
+                                       "Otherwise there are none")
+                            ->check(port_number);
     app.add_option("--http-bind", options.http_bind_address, "Address to serve those on")
         ->needs(http)
         ->capture_default_str();
@@ -129,7 +165,7 @@ void add_common_options(CLI::App& app, ServeOptions& options) {
     app.add_option("--tls-client-ca", options.tls.client_ca,
                    "PEM file: clients must show a certificate that one of these vouches for");
     const auto add_sessions = [&](const char* name, std::uint32_t& count, const char* help) {
-        app.add_option(name, count, help)->check(CLI::Range(1, 1'000'000))->capture_default_str();
+        app.add_option(name, count, help)->check(WholeNumber{1, 1'000'000})->capture_default_str();
     };
     add_sessions("--sessions-max", options.session_bounds.sessions_max,
                  "Sessions at a time; one more is told, and closed. Each takes a file descriptor");
@@ -149,12 +185,6 @@ std::optional<simulation::Speed> parse_speed(const std::string& text) {
     return simulation::Speed{factor};
 }
 
-/// CLI11 takes "-1" for the greatest number of 64 bits.
-std::string whole_number(const std::string& text) {
-    const bool good = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-    return good ? std::string{} : "must be a whole number, 0 to 18446744073709551615, not " + text;
-}
-
 std::optional<network::ServerOptions::HttpOptions> http_options(const ServeOptions& options) {
     if (!options.http_port)
         return std::nullopt;
@@ -170,6 +200,7 @@ int serve(const ServeOptions& options) {
             return fail(to_text(experiment.error()));
         create.name = console::world_name(options.experiment_file);
         create.parameters = experiment->parameters;
+        create.schedule = experiment->schedule;
         create.seed = experiment->seed.value_or(create.seed);
     }
     if (options.seed)
@@ -227,9 +258,10 @@ int replay(const ServeOptions& options, network::ServerOptions::Replay run) {
                   .first_speed = {}});
 }
 
-} // namespace
-
-int main(int argument_count, char** arguments) {
+/// Returns the exit status.
+///
+/// serves  becomes true before it is a server: what that says is a log, which nobody need read.
+int perform(int argument_count, char** arguments, bool& serves) {
     // What is wrong with a message is told to whoever sent it. Protocol Buffers would write a line of its own for each,
     // and anybody could fill the log.
     google::protobuf::SetLogHandler(nullptr);
@@ -244,31 +276,37 @@ int main(int argument_count, char** arguments) {
         "--population", options.population_file,
         "CSV file of `evod export --what population`: the first world begins with these organisms instead of "
         "drawn ones");
-    app.add_option("--speed", options.speed, "Simulated seconds per second, 0.001 to 10000, or max")
+    app.add_option("--speed", options.speed,
+                   "Of the first world, or the one that is found: simulated seconds per second, "
+                   "0.001 to 10000, or max")
         ->check([](const std::string& text) {
             return parse_speed(text) ? std::string{} : "must be max, or a number from 0.001 to 10000, not " + text;
         });
-    app.add_flag("--start", options.start, "Run at once, without end");
+    app.add_flag("--start", options.start, "Run that world at once, without end");
     CLI::Option* data = app.add_option("--data", options.data_folder,
                                        "Folder where runs are kept, a file each; worlds found there go on. Otherwise "
                                        "$XDG_STATE_HOME/evod, or ~/.local/state/evod");
-    app.add_flag("--keep-nothing", options.keep_nothing, "Keep no files: runs end with the server")->excludes(data);
+    CLI::Option* keep_nothing =
+        app.add_flag("--keep-nothing", options.keep_nothing, "Keep no files: runs end with the server")->excludes(data);
     app.add_option(
            "--durability", options.durability,
            "When a command is answered. full: once it is on the disk; relaxed: before, so that it survives evod, "
            "but perhaps not the machine")
         ->check(CLI::IsMember({"full", "relaxed"}))
+        ->excludes(keep_nothing)
         ->capture_default_str();
     app.add_option(
            "--file-bytes-max", options.file_bytes_max,
            "From this size on a run file holds fewer and fewer of its older generations whole; they can still be "
            "simulated again, and statistics are kept")
-        ->check(CLI::Range(std::int64_t{1} << 20, std::int64_t{1} << 50))
+        ->check(WholeNumber{std::uint64_t{1} << 20, std::uint64_t{1} << 50})
+        ->excludes(keep_nothing)
         ->capture_default_str();
     app.add_option("--keep-every", options.keep_every,
                    "New run files hold each of so many generations whole, and the first and the last; the others can "
                    "still be simulated again, and statistics are kept")
-        ->check(CLI::Range(1, 1'000'000'000))
+        ->check(WholeNumber{1, 1'000'000'000})
+        ->excludes(keep_nothing)
         ->capture_default_str();
     app.footer("Without a subcommand evod is a server.");
 
@@ -281,14 +319,76 @@ int main(int argument_count, char** arguments) {
     run.add_option("--population", run_options.population,
                    "CSV file of `evod export --what population`: begin with these organisms instead of drawn ones");
     run.add_option("--generations", run_options.generations,
-                   "How many; takes the place of generation_limit, 0 is no limit");
+                   "How many; takes the place of generation_limit, 0 is no limit")
+        ->check(WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
     run.add_option("--threads", run_options.threads, "Threads that simulate")
-        ->check(CLI::Range(1, 1024))
+        ->check(thread_count)
         ->capture_default_str();
     run.add_option("--set", run_options.changes, "name=value of a parameter; see evod parameters")->take_all();
     run.add_option("--csv", run_options.csv, "File for the statistics of every generation");
     run.add_flag("--ask", run_options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
     run.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error.");
+
+    console::CompareOptions compare_options;
+    compare_options.jobs = options.threads;
+    compare_options.drawn_seed = run_options.drawn_seed;
+    CLI::App& compare = *app.add_subcommand(
+        "compare", "Did evolution do it? A world beside its controls, or beside other worlds, with the same seeds");
+    compare
+        .add_option("experiments", compare_options.experiments,
+                    "JSON files: one with --controls, without it the default world; or the first against each other")
+        ->expected(0, console::compared_max);
+    compare.add_flag("--controls", compare_options.controls,
+                     "Beside random selection, mutation off, harmless poison and shuffled fitness");
+    compare.add_option("--replicates", compare_options.replicates, "Runs of each world, a seed each")
+        ->check(CLI::Range(2, 10'000))
+        ->capture_default_str();
+    compare
+        .add_option("--generations", compare_options.generations,
+                    "Of each run; otherwise the first file's generation_limit, or " +
+                        std::to_string(console::default_generations) + ". No other criterion ends a run")
+        ->check(CLI::Range(2, 1'000'000));
+    compare
+        .add_option("--seed", compare_options.seed, "That the seeds follow from; otherwise the file's, or by chance")
+        ->check(whole_number);
+    compare.add_option("--jobs", compare_options.jobs, "Runs at a time; nothing that is told depends on it")
+        ->check(CLI::Range(1, 1024))
+        ->capture_default_str();
+    compare.add_option("--set", compare_options.changes, "name=value of a parameter, for all of them")->take_all();
+    compare.add_option("--csv", compare_options.csv, "File for the fitness of every run and generation");
+    compare.add_option("--picture", compare_options.picture, "File for the curves, as SVG");
+    compare.footer("Exit status: 0 compared, 130 interrupted, 1 error.");
+    console::SweepOptions sweep_options;
+    sweep_options.jobs = options.threads;
+    sweep_options.draw_run_id = network::draw_run_id;
+    CLI::App& sweep = *app.add_subcommand("sweep", "Run an experiment many times, with other parameters and seeds");
+    sweep
+        .add_option("sweep", sweep_options.file,
+                    "JSON file: an experiment, and a grid, a list or a Latin hypercube of parameters")
+        ->required();
+    sweep.add_option("--out", sweep_options.out,
+                     "Folder for the results, which the same command goes on with; otherwise called like the file, "
+                     "without its ending");
+    CLI::Option* jobs = sweep.add_option("--jobs", sweep_options.jobs, "Runs at a time, each on one thread")
+                            ->check(CLI::Range(1, 1024))
+                            ->capture_default_str();
+    CLI::Option* run_files =
+        sweep.add_flag("--run-files", sweep_options.run_files, "Make a run file of each run, too: FOLDER/run-files");
+    CLI::Option* array_index = sweep
+                                   .add_option("--array-index", sweep_options.array_index,
+                                               "Make the runs of this cell alone, counted from 0: one task of a job "
+                                               "array; then, once: --gather")
+                                   ->check(whole_number);
+    CLI::Option* gather =
+        sweep.add_flag("--gather", sweep_options.gather, "Run nothing: write FOLDER/runs.csv, or say what is missing");
+    gather->excludes(jobs)->excludes(run_files)->excludes(array_index);
+    sweep.add_flag("--dry-run", sweep_options.dry_run, "Write nothing: print cells and seeds")
+        ->excludes(gather)
+        ->excludes(jobs)
+        ->excludes(run_files)
+        ->excludes(array_index);
+    sweep.footer("Sweep files and job arrays: docs/CLUSTER.md. Exit status: 0 all is there, 1 error, or --gather found "
+                 "runs missing, 130 interrupted: the same command goes on.");
 
     std::string checked_file;
     CLI::App& check = *app.add_subcommand("check", "Say what an experiment file changes, or what is wrong with it");
@@ -300,7 +400,7 @@ int main(int argument_count, char** arguments) {
     fork.add_option("run", fork_options.run_file, "Run file, of a server that runs or not")->required();
     fork.add_option("--at-generation", fork_options.at_generation,
                     "Begins with its first tick; otherwise with the last moment of the file")
-        ->check(whole_number);
+        ->check(generation_number);
     fork.add_option("--name", fork_options.name, "Of the new world")->required();
     fork.add_option("--data", fork_options.data_folder,
                     "Folder to make it in, which no server may be using; otherwise where a server keeps its runs");
@@ -312,7 +412,7 @@ int main(int argument_count, char** arguments) {
         *app.add_subcommand("replay", "Serve a run file: its past can be watched, and nothing changed");
     replay_run.add_option("run", replay_options.path, "Run file, NAME.evod; the run need not be over")->required();
     replay_run.add_option("--generation", replay_options.generation, "Begins there; otherwise with the first")
-        ->check(whole_number);
+        ->check(generation_number);
     replay_run.add_option("--data", options.data_folder, "Folder whose tokens let others in");
     add_common_options(replay_run, options);
     replay_run.footer("Watch it with evoview, go elsewhere in it with evoctl seek, run and pause it as any world.");
@@ -322,7 +422,7 @@ int main(int argument_count, char** arguments) {
     CLI::App& verify = *app.add_subcommand("verify", "Simulate the run of a run file again and compare everything");
     verify.add_option("run", verify_options.run, "Run file, NAME.evod; the run need not be over")->required();
     verify.add_option("--threads", verify_options.threads, "Threads that simulate")
-        ->check(CLI::Range(1, 1024))
+        ->check(thread_count)
         ->capture_default_str();
     verify.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
 
@@ -341,13 +441,13 @@ int main(int argument_count, char** arguments) {
                        "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
     export_
         .add_option("--generation", export_options.generation, "Of the population; otherwise the last that has begun")
-        ->check(whole_number);
+        ->check(generation_number);
     export_.add_option("--format", export_options.format, "csv, or jsonl: an object of JSON a line")
         ->check(CLI::IsMember({"csv", "jsonl"}))
         ->capture_default_str();
     CLI::Option* output = export_.add_option("--output", export_options.output, "File; without it, standard output");
     export_.add_option("--threads", export_options.threads, "Threads that simulate again what is not held any more")
-        ->check(CLI::Range(1, 1024))
+        ->check(thread_count)
         ->capture_default_str();
 
     export_
@@ -397,11 +497,23 @@ int main(int argument_count, char** arguments) {
     app.require_subcommand(0, 1);
     try {
         app.parse(argument_count, arguments);
+        hand_down(app);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : 2;
+        const int status = app.exit(error) == 0 ? 0 : 2;
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && app.get_subcommands().empty()) {
+            std::cerr << "Commands are";
+            for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+                std::cerr << ' ' << command->get_name();
+            std::cerr << '\n';
+        }
+        return status;
     }
     if (run.parsed())
         return console::run(run_options);
+    if (compare.parsed())
+        return console::compare(compare_options);
+    if (sweep.parsed())
+        return console::sweep(sweep_options);
     if (check.parsed())
         return console::check(checked_file);
     if (fork.parsed()) {
@@ -412,7 +524,7 @@ int main(int argument_count, char** arguments) {
         return console::fork(fork_options);
     }
     if (token.parsed()) {
-        token_folder = folder_of_runs(token_folder.empty() ? options.data_folder : token_folder);
+        token_folder = folder_of_runs(token_folder);
         if (token_folder.empty())
             return fail(no_folder);
         if (token_list.parsed())
@@ -439,7 +551,19 @@ int main(int argument_count, char** arguments) {
         return 0;
     }
 
+    serves = true;
     log::begin(log::level_named(options.log_level),
                options.log_format == "json" ? log::Format::Json : log::Format::Text);
     return replay_run.parsed() ? replay(options, replay_options) : serve(options);
+}
+
+} // namespace
+
+int main(int argument_count, char** arguments) {
+    bool serves = false;
+    const int status = perform(argument_count, arguments, serves);
+    if (serves || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush()))
+        return status;
+    const int failed = fail("standard output cannot be written: the disk may be full");
+    return status == 0 ? failed : status;
 }

@@ -33,7 +33,10 @@ Result<void> write_file(const fs::path& path, Write&& write) {
 
 /// With the seed, as experiment files have it.
 std::string experiment_text(const storage::RunIdentity& identity) {
-    const std::string parameters = to_experiment_text(identity.parameters, simulation::Written::Everything);
+    // A fork's own parameters are those of the generation that it begins with, not of its schedule's first.
+    const std::string parameters =
+        to_experiment_text(identity.parameters, simulation::Written::Everything,
+                           identity.forked_from ? simulation::Schedule{} : identity.schedule);
     return "{\n  \"seed\": " + std::to_string(identity.seed.value) + "," + parameters.substr(1);
 }
 

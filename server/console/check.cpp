@@ -15,7 +15,8 @@ int check(const std::string& path) {
     std::cout << path << ": good";
     if (!experiment->description.empty())
         std::cout << "\n" << experiment->description;
-    const std::string changes = simulation::to_experiment_text(experiment->parameters);
+    const std::string changes =
+        simulation::to_experiment_text(experiment->parameters, simulation::Written::Differences, experiment->schedule);
     if (changes == "{}\n")
         std::cout << "\nEvery parameter has its default.\n";
     else

@@ -16,19 +16,26 @@ constexpr std::uintmax_t file_bytes_max = 1 << 20;
 
 } // namespace
 
-base::Result<simulation::Experiment> load_experiment(const std::string& path) {
+base::Result<std::string> load_text(const std::string& path, const std::string& kind) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error))
-        return refusal(base::RefusalCode::NotFound, path + ": this is a folder, not an experiment file");
+        return refusal(base::RefusalCode::NotFound, path + ": this is a folder, not " + kind);
     if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > file_bytes_max)
-        return refusal(base::RefusalCode::InvalidArgument, path + ": too large for an experiment file (1 MiB at most)");
+        return refusal(base::RefusalCode::InvalidArgument, path + ": too large for " + kind + " (1 MiB at most)");
     std::ifstream file{path, std::ios::binary};
     std::ostringstream text;
     if (file)
         text << file.rdbuf();
     if (!file)
         return refusal(base::RefusalCode::NotFound, path + ": cannot be read: " + std::strerror(errno));
-    base::Result<simulation::Experiment> experiment = simulation::parse_experiment(text.str());
+    return text.str();
+}
+
+base::Result<simulation::Experiment> load_experiment(const std::string& path) {
+    const base::Result<std::string> text = load_text(path, "an experiment file");
+    if (!text)
+        return text.error();
+    base::Result<simulation::Experiment> experiment = simulation::parse_experiment(*text);
     if (!experiment) {
         base::Refusal named = experiment.error();
         named.message = path + ": " + named.message;
@@ -37,7 +44,7 @@ base::Result<simulation::Experiment> load_experiment(const std::string& path) {
     return experiment;
 }
 
-base::Result<simulation::Parameters> with_changes(const simulation::Parameters& parameters,
+base::Result<simulation::Experiment> with_changes(simulation::Experiment experiment,
                                                   const std::vector<std::string>& changes) {
     std::vector<simulation::Assignment> assignments;
     std::vector<base::Violation> violations;
@@ -59,7 +66,7 @@ base::Result<simulation::Parameters> with_changes(const simulation::Parameters& 
         else
             violations.push_back({"--set " + name, description->allowed(), text});
     }
-    base::Result<simulation::Parameters> changed = simulation::assign(parameters, assignments, "--set ");
+    base::Result<simulation::Parameters> changed = simulation::assign(experiment.parameters, assignments, "--set ");
     if (!changed) {
         const base::Refusal refused = changed.error();
         violations.insert(violations.end(), refused.violations.begin(), refused.violations.end());
@@ -68,7 +75,24 @@ base::Result<simulation::Parameters> with_changes(const simulation::Parameters& 
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "some parameters cannot have these values",
                              .violations = std::move(violations)};
-    return changed;
+    experiment.parameters = *changed;
+    for (const simulation::Assignment& assignment : assignments)
+        experiment.schedule.remove(assignment.name);
+    return experiment;
+}
+
+base::Result<void> fit_schedule(simulation::Experiment& experiment) {
+    experiment.schedule.begin_with(experiment.parameters);
+    const auto faults = faults_of(experiment.schedule, experiment.parameters);
+    if (faults.empty())
+        return {};
+    base::Refusal refused{.code = base::RefusalCode::InvalidArgument,
+                          .message = "what is scheduled cannot hold with the parameters that were set",
+                          .violations = {}};
+    for (const simulation::ScheduleFault& fault : faults)
+        refused.violations.push_back({fault.violation.field + " at generation " + std::to_string(fault.generation),
+                                      fault.violation.allowed, fault.violation.got});
+    return refused;
 }
 
 std::string world_name(const std::string& path) {

@@ -8,12 +8,21 @@
 
 namespace evod::console {
 
+/// A file that people write, at most 1 MiB. kind  what it is to be: "an experiment file".
+base::Result<std::string> load_text(const std::string& path, const std::string& kind);
+
 /// Reads and validates a file; the refusal's message begins with the path.
 base::Result<simulation::Experiment> load_experiment(const std::string& path);
 
-/// `parameters` with each "name=value" of `changes` made; violations are named by "--set name".
-base::Result<simulation::Parameters> with_changes(const simulation::Parameters& parameters,
+/// The experiment with each "name=value" of `changes` made, which then is so in all generations; violations are named
+/// by
+/// "--set name".
+base::Result<simulation::Experiment> with_changes(simulation::Experiment experiment,
                                                   const std::vector<std::string>& changes);
+
+/// Whether what is scheduled goes together with parameters that were changed, with which it then begins; violations
+/// name the generation.
+base::Result<void> fit_schedule(simulation::Experiment& experiment);
 
 /// A world's name for an experiment: the file's name without folder and ending, other characters than a-z A-Z 0-9 _ -
 /// replaced by "_", at most 64.

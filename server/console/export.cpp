@@ -63,6 +63,8 @@ Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& opt
         return wrong_option("--of", "GENERATION:ISLAND:ORGANISM", options.of);
     if (options.generation && options.what != "population")
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
+    if (!options.bundle.empty() && options.format != "csv") // its tables are compared with those of evod run --csv
+        return wrong_option("--format", "only csv with --bundle", options.format);
     if (table == tables.end())
         return std::nullopt;
     return tables::WantedTable{.table = table->second,

@@ -28,8 +28,13 @@ int fork(const ForkOptions& options) {
     const std::string path = folder->file_of(options.name);
     base::InlineExecutor executor;
     const auto moment = storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
-    if (!moment)
-        return fail(to_text(moment.error()));
+    if (!moment) {
+        base::Refusal refused = moment.error();
+        for (base::Violation& violation : refused.violations)
+            if (violation.field == "generation")
+                violation.field = "--at-generation";
+        return fail(to_text(refused));
+    }
     std::cout << "world \"" << options.name << "\" begins with "
               << (options.at_generation ? "" : "tick " + std::to_string(moment->generation_tick) + " of ")
               << "generation " << moment->generation << " of " << options.run_file << "; a server with --data "

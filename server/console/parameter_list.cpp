@@ -26,6 +26,10 @@ std::string parameter_list() {
         "`evod run --set`, in `evoctl` and in the protocol. A change to one that holds from the *next tick* acts at\n"
         "once, for breeding the next time it happens; from the *next generation*, when that begins; from a *reset*,\n"
         "when the world is reset.\n\n"
+        "An experiment file may give a parameter values by generation, unless it holds from a reset:\n"
+        "`\"mutation_chance\": {\"1\": 0.2, \"30\": 0.05}`. Each holds from the first tick of its generation, so what "
+        "breeding\n"
+        "goes by acts first in the breeding after it; until the first of them, the default holds.\n\n"
         "| name | default | allowed | unit | holds from | meaning |\n|---|---|---|---|---|---|\n";
     for (const simulation::ParameterDescription& description : simulation::parameter_registry())
         text += "| `" + std::string{description.name} + "` | " + simulation::to_text(description.default_value()) +

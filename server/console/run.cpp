@@ -1,6 +1,7 @@
 #include "server/console/run.h"
 
 #include "server/console/experiment_file.h"
+#include "server/console/interrupt.h"
 #include "server/console/interview.h"
 #include "server/console/population_file.h"
 #include "server/console/progress_line.h"
@@ -9,9 +10,10 @@
 #include "server/simulation/world.h"
 #include "server/tables/columns.h"
 
+#include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 
@@ -22,11 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-volatile std::sig_atomic_t interrupted = 0;
-extern "C" void note_interrupt(int) {
-    interrupted = 1;
 }
 
 /// What the ticks of a run have cost.
@@ -43,14 +40,24 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
             return loaded.error();
         experiment = *loaded;
     }
-    const auto changed = with_changes(experiment.parameters, options.changes);
+    auto changed = with_changes(std::move(experiment), options.changes);
     if (!changed)
         return changed.error();
-    experiment.parameters = *changed;
-    if (options.ask)
-        experiment.parameters = interview(experiment.parameters, std::cin, std::cout);
-    if (options.generations)
+    experiment = *std::move(changed);
+    if (options.ask) {
+        // What is answered takes the place of what is scheduled; Enter leaves it.
+        const simulation::Parameters proposed = experiment.parameters;
+        experiment.parameters = interview(proposed, std::cin, std::cout);
+        for (const simulation::ParameterDescription& description : simulation::parameter_registry())
+            if (description.get(experiment.parameters) != description.get(proposed))
+                experiment.schedule.remove(description.name);
+    }
+    if (options.generations) {
         experiment.parameters.generation_limit = *options.generations;
+        experiment.schedule.remove("generation_limit");
+    }
+    if (auto fits = fit_schedule(experiment); !fits)
+        return fits.error();
     if (options.seed)
         experiment.seed = base::Seed{*options.seed};
     if (!experiment.seed)
@@ -116,27 +123,28 @@ int run(const RunOptions& options) {
     std::ofstream csv;
     std::optional<tables::Table> table;
     if (!options.csv.empty()) {
+        errno = 0;
         csv.open(options.csv);
         table.emplace(csv, tables::Table::Format::Csv, tables::statistics_columns());
         if (!csv.flush()) {
-            std::cerr << "evod run: --csv: cannot write " << options.csv << '\n';
+            std::cerr << "evod run: --csv: cannot write " << options.csv << ": " << std::strerror(errno) << '\n';
             return RunError;
         }
     }
-    std::signal(SIGINT, note_interrupt);
-    std::signal(SIGTERM, note_interrupt);
+    mind_interrupts();
 
     Cost cost;
     const auto start = Clock::now();
     const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
-    simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population)};
+    simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population),
+                            experiment->schedule};
     cost.start_s = seconds_since(start);
 
     const bool several_islands = world.islands().size() > 1;
     std::printf("seed %llu\n%s\n", static_cast<unsigned long long>(world.seed().value),
                 table_heading(several_islands).c_str());
     ProgressLine progress;
-    while (!interrupted && world.outcome() == evolution::Outcome::Running) {
+    while (!interrupted() && world.outcome() == evolution::Outcome::Running) {
         auto began = Clock::now();
         world.turn_over(*executor);
         cost.turnover_s += seconds_since(began);
@@ -145,7 +153,7 @@ int run(const RunOptions& options) {
             cost.organism_ticks += world.has_bodies() ? world.alive_count() : 0;
             world.advance_tick(*executor);
             progress.show([&] { return progress_of(world); });
-        } while (!interrupted && !world.generation_over());
+        } while (!interrupted() && !world.generation_over());
         cost.tick_s += seconds_since(began);
         world.take_events();
         if (!world.generation_over())

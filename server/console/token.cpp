@@ -29,6 +29,8 @@ int list_tokens(const std::string& folder) {
     const auto tokens = access::read_tokens(folder);
     if (!tokens)
         return fail(tokens.error());
+    if (tokens->empty())
+        std::cerr << "evod token: there are no tokens in " << folder << ": make one with evod token add\n";
     std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "MADE ON");
     for (const access::Token& token : *tokens)
         std::printf("%-24s %-10s %s\n", token.name.c_str(), access::name_of(token.role), token.made_on.c_str());
