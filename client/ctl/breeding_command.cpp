@@ -40,6 +40,9 @@ std::string heading(const v1::Breeding& bred) {
             parameter.name() != "immigrants_replace") {
             choices += (choices.empty() ? "" : ", ") + parameter.name() + "=" + parameter.value().choice();
         }
+        if (parameter.name() == "shuffle_fitness" && parameter.value().flag()) {
+            choices += (choices.empty() ? "" : ", ") + parameter.name() + "=true";
+        }
     }
     return text + choices + "\n";
 }
@@ -51,24 +54,37 @@ std::string more_text(std::uint64_t first, int shown, std::uint32_t count) {
 }
 
 std::string contender_text(const v1::Breeding& bred, const BreedingOptions& options) {
-    Table table{{{"ORGANISM", Align::Right},
-                 {"FITNESS", Align::Right},
-                 {"RANK", Align::Right},
-                 {"WEIGHT", Align::Right},
-                 {"SLOT, TURNS"},
-                 {"EXPECTED", Align::Right},
-                 {"PICKED", Align::Right},
-                 {"CAME FROM"}}};
+    // Of a fitness that was shuffled it is also told what they came to themselves.
+    const bool shuffled = bred.contenders_size() > 0 && bred.contenders(0).has_own_fitness();
+    std::vector<Table::Column> columns{{"ORGANISM", Align::Right},
+                                       {shuffled ? "SHUFFLED" : "FITNESS", Align::Right},
+                                       {"RANK", Align::Right},
+                                       {"WEIGHT", Align::Right},
+                                       {"SLOT, TURNS"},
+                                       {"EXPECTED", Align::Right},
+                                       {"PICKED", Align::Right},
+                                       {"CAME FROM"}};
+    if (shuffled) {
+        columns.insert(columns.begin() + 1, {"OWN FITNESS", Align::Right});
+    }
+    Table table{std::move(columns)};
     const int shown = std::min(options.rows, bred.contenders_size());
     for (int i = 0; i < shown; ++i) {
         const auto& c = bred.contenders(i);
-        table.add({std::to_string(options.from + static_cast<std::uint32_t>(i)), fixed(c.fitness(), 2),
-                   std::to_string(c.rank() + 1), fixed(c.weight(), 3),
-                   c.slot_end() > 0 ? fixed(c.slot_begin(), 4) + "–" + fixed(c.slot_end(), 4) : "",
-                   fixed(c.expected_copies(), 2), std::to_string(c.copies()),
-                   c.has_migrant() ? "island " + std::to_string(c.migrant().island()) + ", organism " +
-                                         std::to_string(c.migrant().organism())
-                                   : ""});
+        std::vector<std::string> cells{std::to_string(options.from + static_cast<std::uint32_t>(i)),
+                                       fixed(c.fitness(), 2),
+                                       std::to_string(c.rank() + 1),
+                                       fixed(c.weight(), 3),
+                                       c.slot_end() > 0 ? fixed(c.slot_begin(), 4) + "–" + fixed(c.slot_end(), 4) : "",
+                                       fixed(c.expected_copies(), 2),
+                                       std::to_string(c.copies()),
+                                       c.has_migrant() ? "island " + std::to_string(c.migrant().island()) +
+                                                             ", organism " + std::to_string(c.migrant().organism())
+                                                       : ""};
+        if (shuffled) {
+            cells.insert(cells.begin() + 1, fixed(c.own_fitness(), 2));
+        }
+        table.add(std::move(cells));
     }
     return "\ncontenders\n" + table.to_text() + more_text(options.from, shown, bred.contender_count());
 }
@@ -175,11 +191,11 @@ void add_breeding_command(CLI::App& app, const Common& common, Selected& selecte
     auto options = std::make_shared<BreedingOptions>();
     command->add_option("--generation", options->generation, "Of the parents; without it the last that was bred from")
         ->check(at_least_one);
-    command->add_option("--island", options->island, "Island, from 0")->check(whole_number);
-    command->add_option("--from", options->from, "Where each list begins")->check(whole_number)->capture_default_str();
+    command->add_option("--island", options->island, "Island, from 0")->check(index_number);
+    command->add_option("--from", options->from, "Where each list begins")->check(index_number)->capture_default_str();
     command
         ->add_option("--rows", options->rows, "How many of each list are printed, at most 1000; of JSON, all that come")
-        ->check(CLI::Range(1, 1000))
+        ->check(link::WholeNumber{1, 1000})
         ->capture_default_str();
     command->footer("Examples:\n  evoctl breeding\n  evoctl breeding --generation 3 --rows 50\n"
                     "  evoctl breeding --json | jq '.descendants[] | select(.mutations)'");

@@ -4,6 +4,7 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <iostream>
@@ -106,6 +107,14 @@ v1::Storage Caller::storage() {
     return welcome_.storage(); // there is nothing that could wait
 }
 
+void Caller::need_planned_changes() const {
+    const auto& features = welcome_.features();
+    if (std::none_of(features.begin(), features.end(), [](const auto& name) { return name == "planned_changes"; })) {
+        throw Stop{ExitCode::Refused, "this server cannot plan changes of parameters: it is evod " +
+                                          welcome_.server_version() + ", which is older than this evoctl"};
+    }
+}
+
 std::string to_json(const google::protobuf::Message& message, bool many_lines) {
     google::protobuf::util::JsonPrintOptions options;
     options.preserve_proto_field_names = true;
@@ -179,12 +188,17 @@ std::string sentence(const v1::WorldInfo& world) {
     std::string text = world.name() + ": " + state_of(world) + " at " + to_text(world.speed()) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
-    const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED;
+    // A world that shows the past waits at its end, whatever it was told.
+    const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED ||
+                           (world.state() == v1::RUN_STATE_WAITING && world.has_recording());
     if (under_way && world.has_run_until_generation()) {
         text += ", until the end of generation " + std::to_string(world.run_until_generation() - 1);
     }
     if (under_way && world.has_run_until_tick()) {
         text += ", until tick " + std::to_string(world.run_until_tick());
+    }
+    if (world.has_recording() && world.tick() >= world.recording().last_tick()) {
+        text += ", the last moment that its run file tells of: evoctl seek takes it to another";
     }
     return text;
 }

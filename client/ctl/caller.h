@@ -5,11 +5,13 @@
 #include "client/ctl/stop.h"
 #include "client/link/connection.h"
 #include "client/link/credentials.h"
+#include "client/link/option_numbers.h"
 
 #include <google/protobuf/message.h>
 
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +54,9 @@ class Caller {
     /// How it stands with the server's disk, as it is now.
     v1::Storage storage();
 
+    /// Throws Stop if the server does not know of them: it would make them at once, or not at all.
+    void need_planned_changes() const;
+
     link::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
     std::chrono::milliseconds timeout() const { return timeout_; }
@@ -92,15 +97,9 @@ bool interrupted();
 /// Whether people are looking at stdout.
 bool on_terminal();
 
-/// Checks for CLI11, which takes "-1" for the greatest number of 64 bits: an empty text, or what is wrong.
-inline std::string whole_number(const std::string& word) {
-    const bool good = !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
-    return good ? std::string{} : "must be a whole number, not " + word;
-}
-inline std::string at_least_one(const std::string& word) {
-    const std::string wrong = whole_number(word);
-    return wrong.empty() && word.find_first_not_of('0') == std::string::npos ? "must be at least 1" : wrong;
-}
+/// Checks for CLI11.
+inline constexpr link::WholeNumber whole_number{}, at_least_one{.min = 1},
+    index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // of islands and organisms
 
 /// Each adds its subcommands to `app`; `selected` becomes the one that was given.
 void add_look_commands(CLI::App& app, const Common& common, Selected& selected);

@@ -132,7 +132,7 @@ void complete(CLI::App& app, const std::vector<std::string>& words) {
                    name == "set" || name == "get" || name == "params" ||
                    (name == "create" && std::ranges::find(before, "--set") != before.end())) {
             complete_parameter(Caller{common_of(before)}.registry(), word, name == "set" || name == "create");
-        } else if (name == "delete") {
+        } else if (name == "delete" || name == "fork") {
             complete_world(common_of(before), word);
         } else if (name == "speed") {
             Candidates{word}.add("max");

@@ -5,6 +5,7 @@
 #include <boost/json.hpp>
 
 #include <algorithm>
+#include <charconv>
 
 namespace evod::ctl {
 
@@ -42,6 +43,55 @@ bool fits(const json::value& value, v1::ParameterKind kind) {
     }
 }
 
+/// Which generation a key of such an object is; nullopt for another text.
+std::optional<std::uint64_t> generation_of(std::string_view key) {
+    std::uint64_t generation = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), generation);
+    const bool good = error == std::errc{} && end == key.data() + key.size() && generation > 0 && key.front() != '0';
+    return good ? std::optional{generation} : std::nullopt;
+}
+
+/// A value of JSON's type that fits, and can be read.
+Checked<v1::ParameterValue> read_value(const v1::ParameterDescription& parameter, const json::value& value,
+                                       const std::string& where) {
+    if (!fits(value, parameter.kind())) {
+        return Mistakes{
+            {parameter.name() + where + ": got " + json::serialize(value) + ", allowed " + allowed(parameter)}};
+    }
+    return parse_value(parameter, *word_of(value));
+}
+
+void read_by_generation(const v1::ParameterDescription& parameter, const json::object& values, ExperimentFile& file,
+                        Mistakes& mistakes) {
+    if (parameter.effect() == v1::PARAMETER_EFFECT_RESET || values.empty()) {
+        mistakes.lines.push_back(parameter.name() + ": got " + json::serialize(values) + ", allowed " +
+                                 (values.empty() ? R"(a generation and its value, as in {"1": 0.2, "30": 0.05})"
+                                                 : "one value, as it can only change when a world is reset"));
+        return;
+    }
+    for (const auto& [key, value] : values) {
+        const auto generation = generation_of(std::string{key});
+        if (!generation) {
+            mistakes.lines.push_back(parameter.name() + ": got " + json::serialize(json::string{key}) +
+                                     R"(, allowed generations as keys: "1", "30", …)");
+            continue;
+        }
+        auto read = read_value(parameter, value, " at generation " + std::string{key});
+        if (!read) {
+            mistakes.add(read.error());
+        } else if (*generation == 1) {
+            auto& assignment = file.parameters.emplace_back();
+            assignment.set_name(parameter.name());
+            *assignment.mutable_value() = *std::move(read);
+        } else {
+            auto& scheduled = file.schedule.emplace_back();
+            scheduled.set_name(parameter.name());
+            scheduled.set_generation(*generation);
+            *scheduled.mutable_value() = *std::move(read);
+        }
+    }
+}
+
 void read_parameter(const std::string& name, const json::value& value, const Registry& registry, ExperimentFile& file,
                     Mistakes& mistakes) {
     const auto* parameter = registry.find(name);
@@ -49,11 +99,11 @@ void read_parameter(const std::string& name, const json::value& value, const Reg
         mistakes.lines.push_back(registry.unknown(name));
         return;
     }
-    if (!fits(value, parameter->kind())) {
-        mistakes.lines.push_back(name + ": got " + json::serialize(value) + ", allowed " + allowed(*parameter));
+    if (value.is_object()) {
+        read_by_generation(*parameter, value.get_object(), file, mistakes);
         return;
     }
-    auto parsed = parse_value(*parameter, *word_of(value));
+    auto parsed = read_value(*parameter, value, "");
     if (!parsed) {
         mistakes.add(parsed.error());
         return;

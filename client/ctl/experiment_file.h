@@ -1,4 +1,5 @@
-// Experiment files: a flat JSON object of parameters by name, with optional "seed" and "description".
+// Experiment files: a JSON object of parameters by name, with optional "seed" and "description". Instead of a value a
+// parameter may have an object of values by generation: "mutation_chance": {"1": 0.2, "30": 0.05}.
 #pragma once
 
 #include "client/ctl/registry.h"
@@ -12,7 +13,8 @@
 namespace evod::ctl {
 
 struct ExperimentFile {
-    std::vector<v1::ParameterAssignment> parameters;
+    std::vector<v1::ParameterAssignment> parameters; // of generation 1
+    std::vector<v1::ScheduledValue> schedule;        // of later ones
     std::optional<std::uint64_t> seed;
     std::string description;
 };

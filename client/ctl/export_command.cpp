@@ -127,8 +127,11 @@ void add_export_command(CLI::App& app, const Common& common, Selected& selected)
         ->check(CLI::IsMember(&formats))
         ->capture_default_str();
     command->add_option("--output", options->output, "File; without it, standard output");
-    command->footer("Examples:\n  evoctl export --what organisms --output organisms.csv\n"
-                    "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv");
+    command->footer(
+        "Examples:\n  evoctl export --what organisms --output organisms.csv\n"
+        "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
+        "A folder with all of it, to be given away, is made beside the run file: evod export RUN.evod --bundle "
+        "FOLDER");
     command->callback([&, options] { selected = [&, options] { export_run(common, *options); }; });
 }
 

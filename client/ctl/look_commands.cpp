@@ -66,12 +66,22 @@ void list_worlds(const Common& common) {
 }
 
 std::string gene_text(const google::protobuf::RepeatedPtrField<v1::GeneStatistics>& genes, const v1::WorldInfo& world) {
-    Table table{
-        {{"GENE"}, {"MEAN", Align::Right}, {"DEVIATION", Align::Right}, {"MIN", Align::Right}, {"MAX", Align::Right}}};
+    Table table{{{"GENE"},
+                 {"MEAN", Align::Right},
+                 {"DEVIATION", Align::Right},
+                 {"MIN", Align::Right},
+                 {"MAX", Align::Right},
+                 {"CHANGE", Align::Right},
+                 {"SELECTION", Align::Right},
+                 {"TRANSMISSION", Align::Right},
+                 {"MIGRATION", Align::Right}}};
     for (int i = 0; i < genes.size(); ++i) {
         const auto& gene = genes[i];
+        const auto moved = [&gene](double by) { return gene.has_account() ? fixed(by, 2) : std::string{"-"}; };
         table.add({i < world.gene_names_size() ? world.gene_names(i) : std::to_string(i), fixed(gene.mean(), 1),
-                   fixed(gene.deviation(), 1), fixed(gene.min(), 1), fixed(gene.max(), 1)});
+                   fixed(gene.deviation(), 1), fixed(gene.min(), 1), fixed(gene.max(), 1),
+                   moved(gene.account().change()), moved(gene.account().selection()),
+                   moved(gene.account().transmission()), moved(gene.account().migration())});
     }
     return table.to_text();
 }
@@ -97,13 +107,49 @@ void add_generation(Table& table, const v1::GenerationStatistics& g) {
                std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
 }
 
-void statistics(const Common& common) {
+/// A moment of a world's past; now, if nothing is said.
+struct MomentOptions {
+    std::optional<std::uint64_t> generation, tick;
+    bool is_past() const { return generation || tick; }
+};
+
+void add_options(CLI::App& command, MomentOptions& options) {
+    command.add_option("--at-generation", options.generation, "As it was at its beginning, or at its tick --at-tick")
+        ->check(at_least_one);
+    command.add_option("--at-tick", options.tick, "As it was after this tick of the generation, or else of the run")
+        ->check(whole_number);
+}
+
+/// The name of the world that is meant; or of one that shows that moment of it, as long as this call lasts.
+std::string world_at(Caller& caller, const Common& common, const MomentOptions& options) {
+    if (!options.is_past()) {
+        return common.world;
+    }
+    v1::Request request;
+    auto& past = *request.mutable_open_past();
+    past.set_world(common.world);
+    if (options.generation) {
+        past.mutable_at()->set_generation(*options.generation);
+    }
+    if (options.tick) {
+        past.mutable_at()->set_tick(*options.tick);
+    }
+    return caller.call(std::move(request)).world().name();
+}
+
+/// "default as it was: generation 4, tick 9000 (2:30 min)".
+std::string past_sentence(const v1::WorldInfo& world) {
+    return world.recording().past_of() + " as it was: generation " + std::to_string(world.generation()) + ", tick " +
+           std::to_string(world.tick()) + " (" + duration(world.simulated_s()) + ")";
+}
+
+void statistics(const Common& common, const MomentOptions& moment) {
     Caller caller{common};
     v1::Request request;
-    request.mutable_get_statistics()->set_world(common.world);
+    request.mutable_get_statistics()->set_world(world_at(caller, common, moment));
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
-        std::string text = sentence(statistics.world()) + "\n";
+        std::string text = (moment.is_past() ? past_sentence : sentence)(statistics.world()) + "\n";
         if (const std::string trouble = trouble_of(statistics.world().storage()); !trouble.empty()) {
             text += trouble + "\n";
         }
@@ -122,14 +168,14 @@ void statistics(const Common& common) {
                           std::to_string(island.poisoned_count()), std::to_string(island.food_eaten()),
                           std::to_string(island.poison_eaten())});
             }
-            text += "\nnow\n" + live.to_text();
+            text += (moment.is_past() ? "\nthen\n" : "\nnow\n") + live.to_text();
         }
         if (statistics.last_size() > 0) {
             Table last = generation_table();
             for (const auto& island : statistics.last()) {
                 add_generation(last, island);
             }
-            text += "\nthe last generation\n" + last.to_text();
+            text += (moment.is_past() ? "\nthe last generation before\n" : "\nthe last generation\n") + last.to_text();
             for (const auto& island : statistics.last()) {
                 text += "\ngenes of its island " + std::to_string(island.island()) + "\n" +
                         gene_text(island.genes(), statistics.world());
@@ -206,17 +252,24 @@ void history(const Common& common, const HistoryOptions& options) {
 
 // ---- organism, describe ----------------------------------------------------------------------------------------
 
-void organism(const Common& common, std::uint32_t id, std::uint32_t island) {
+struct OrganismOptions {
+    std::uint32_t id = 0, island = 0;
+    MomentOptions moment;
+};
+
+void organism(const Common& common, const OrganismOptions& options) {
     Caller caller{common};
+    const std::string name = world_at(caller, common, options.moment);
     v1::Request request;
-    request.mutable_get_organism()->set_world(common.world);
-    request.mutable_get_organism()->set_organism(id);
-    request.mutable_get_organism()->set_island(island);
+    request.mutable_get_organism()->set_world(name);
+    request.mutable_get_organism()->set_organism(options.id);
+    request.mutable_get_organism()->set_island(options.island);
     const v1::OrganismInfo info = caller.call(std::move(request)).organism();
     print(common, info, [&] {
-        const v1::WorldInfo world = caller.world(common.world);
-        std::string text = "organism " + std::to_string(info.id()) + " of island " + std::to_string(info.island()) +
-                           ", generation " + std::to_string(info.generation()) + ": ";
+        const v1::WorldInfo world = caller.world(name);
+        std::string text = (options.moment.is_past() ? past_sentence(world) + "\n" : "") + "organism " +
+                           std::to_string(info.id()) + " of island " + std::to_string(info.island()) + ", generation " +
+                           std::to_string(info.generation()) + ": ";
         if (info.alive()) {
             text += "alive, health " + fixed(info.health(), 1);
         } else {
@@ -283,9 +336,12 @@ void add_look_commands(CLI::App& app, const Common& common, Selected& selected) 
     app.add_subcommand("worlds", "The names of all worlds, a line each")->group(group)->callback([&] {
         selected = [&] { list_worlds(common); };
     });
-    app.add_subcommand("stats", "How a world is doing: now, and in the last generation")->group(group)->callback([&] {
-        selected = [&] { statistics(common); };
-    });
+    auto* stats =
+        app.add_subcommand("stats", "How a world is doing: now, and in the last generation; or did once")->group(group);
+    auto moment = std::make_shared<MomentOptions>();
+    add_options(*stats, *moment);
+    stats->footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
+    stats->callback([&, moment] { selected = [&, moment] { statistics(common, *moment); }; });
 
     auto* past = app.add_subcommand("history", "The statistics of ended generations")->group(group);
     auto options = std::make_shared<HistoryOptions>();
@@ -293,15 +349,17 @@ void add_look_commands(CLI::App& app, const Common& common, Selected& selected) 
     past->add_option("--from", options->from, "First generation; without it the oldest that is kept")
         ->check(whole_number);
     past->add_option("--to", options->to, "Last generation; without it the last that has ended")->check(whole_number);
-    past->add_option("--island", options->island, "One island only, from 0")->check(whole_number);
+    past->add_option("--island", options->island, "One island only, from 0")->check(index_number);
     past->footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
     past->callback([&, options] { selected = [&, options] { history(common, *options); }; });
 
     auto* one = app.add_subcommand("organism", "One organism, its genes, life and parents")->group(group);
-    auto id = std::make_shared<std::uint32_t>(0), island = std::make_shared<std::uint32_t>(0);
-    one->add_option("ID", *id, "Birth order within the generation, from 0")->required()->check(whole_number);
-    one->add_option("--island", *island, "Island, from 0")->check(whole_number);
-    one->callback([&, id, island] { selected = [&, id, island] { organism(common, *id, *island); }; });
+    auto wanted = std::make_shared<OrganismOptions>();
+    one->add_option("ID", wanted->id, "Birth order within the generation, from 0")->required()->check(index_number);
+    one->add_option("--island", wanted->island, "Island, from 0")->check(index_number);
+    add_options(*one, wanted->moment);
+    one->footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
+    one->callback([&, wanted] { selected = [&, wanted] { organism(common, *wanted); }; });
 
     app.add_subcommand("describe", "The server: version, features, limits")->group(group)->callback([&] {
         selected = [&] { describe(common); };

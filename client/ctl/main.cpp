@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <string>
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
     app.add_option("--world", common.world, "World; without it the only one, or 'default'")->envname("EVOD_WORLD");
     app.add_option("--timeout", common.timeout_s, "Seconds to wait for an answer")
         ->capture_default_str()
-        ->check(CLI::Range(0.001, 86400.0));
+        ->check(evod::link::RealNumber{0.001, 86400});
     app.add_flag("--json", common.json, "Print the answer as JSON");
     app.require_subcommand(1);
     app.fallthrough();
@@ -76,6 +77,9 @@ int main(int argc, char** argv) {
         require_known_command(app, argc, argv);
         app.parse(argc, argv);
         selected();
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush()) {
+            throw Stop{ExitCode::Refused, "standard output cannot be written: the disk may be full"};
+        }
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? static_cast<int>(ExitCode::Ok) : static_cast<int>(ExitCode::Usage);
     } catch (const Stop& stop) {

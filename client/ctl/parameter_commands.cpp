@@ -14,7 +14,21 @@ struct SetOptions {
     std::vector<std::string> words;
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
+    std::optional<std::uint64_t> at_generation, at_tick;
 };
+
+/// "change 3, from generation 30: mutation_chance=0.05, by evoctl 127.0.0.1:5"
+std::string line_of(const v1::PlannedChange& change) {
+    std::string text =
+        (change.id() == 0 ? "a change" : "change " + std::to_string(change.id())) +
+        (change.at_case() == v1::PlannedChange::kTick ? ", after tick " + std::to_string(change.tick())
+                                                      : ", from generation " + std::to_string(change.generation())) +
+        ":";
+    for (const auto& assignment : change.parameters()) {
+        text += " " + assignment.name() + "=" + to_text(assignment.value());
+    }
+    return text + (change.by().empty() ? "" : ", by " + change.by());
+}
 
 const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::string& name) {
     for (const auto& parameter : parameters.parameters()) {
@@ -26,14 +40,22 @@ const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::st
 }
 
 /// "mutation_chance=0.05", and what it will be where that differs.
-std::string line_of(const v1::ParameterState& state, const Registry& registry) {
-    std::string line = state.name() + "=" + to_text(state.value());
+std::string line_of(const v1::ParameterState& state, const Registry& registry, const v1::ParameterSet& set) {
+    std::string coming;
     if (state.has_pending()) {
         const auto* description = registry.find(state.name());
-        const bool reset = description != nullptr && description->effect() == v1::PARAMETER_EFFECT_RESET;
-        line += "  # " + to_text(state.pending()) + (reset ? " after a reset" : " from the next generation");
+        const auto effect = description == nullptr ? v1::PARAMETER_EFFECT_NEXT_GENERATION : description->effect();
+        coming = to_text(state.pending()) + (effect == v1::PARAMETER_EFFECT_RESET       ? " after a reset"
+                                             : effect == v1::PARAMETER_EFFECT_NEXT_TICK ? " from the next tick"
+                                                                                        : " from the next generation");
     }
-    return line + "\n";
+    for (const auto& scheduled : set.schedule()) {
+        if (scheduled.name() == state.name()) {
+            coming += (coming.empty() ? "" : ", ") + to_text(scheduled.value()) + " from generation " +
+                      std::to_string(scheduled.generation());
+        }
+    }
+    return state.name() + "=" + to_text(state.value()) + (coming.empty() ? "" : "  # " + coming) + "\n";
 }
 
 void set(const Common& common, const SetOptions& options) {
@@ -53,12 +75,25 @@ void set(const Common& common, const SetOptions& options) {
     for (const auto& assignment : *assignments) {
         *command.add_parameters() = assignment;
     }
+    if (options.at_generation || options.at_tick) {
+        caller.need_planned_changes();
+    }
+    if (options.at_generation) {
+        command.set_at_generation(*options.at_generation);
+    }
+    if (options.at_tick) {
+        command.set_at_tick(*options.at_tick);
+    }
     const v1::Response response = caller.call(std::move(request));
     print(common, response, [&] {
+        if (response.has_planned_change()) {
+            return (options.dry_run ? "allowed; it would be planned: " : "planned: ") +
+                   line_of(response.planned_change()) + "\n";
+        }
         std::string text = options.dry_run ? "allowed; it would be:\n" : "";
         for (const auto& assignment : *assignments) {
             if (const auto* state = find(response.parameters(), assignment.name())) {
-                text += line_of(*state, registry);
+                text += line_of(*state, registry, response.parameters());
             }
         }
         if (!options.dry_run) {
@@ -82,6 +117,11 @@ void get(const Common& common, const std::vector<std::string>& names) {
         for (const std::string& name : names) {
             if (const auto* state = find(parameters, name)) {
                 *some.add_parameters() = *state;
+                for (const auto& scheduled : parameters.schedule()) {
+                    if (scheduled.name() == name) {
+                        *some.add_schedule() = scheduled;
+                    }
+                }
             } else {
                 mistakes.lines.push_back(registry.unknown(name));
             }
@@ -94,10 +134,43 @@ void get(const Common& common, const std::vector<std::string>& names) {
     print(common, parameters, [&] {
         std::string text;
         for (const auto& state : parameters.parameters()) {
-            text += line_of(state, registry);
+            text += line_of(state, registry, parameters);
         }
         return text;
     });
+}
+
+void changes(const Common& common) {
+    Caller caller{common};
+    v1::Request request;
+    request.mutable_get_parameters()->set_world(common.world);
+    v1::ParameterSet parameters = caller.call(std::move(request)).parameters();
+    parameters.clear_parameters();
+    print(common, parameters, [&] {
+        std::string text;
+        for (int i = 0; i < parameters.schedule_size();) {
+            const std::uint64_t generation = parameters.schedule(i).generation();
+            text += "the schedule, from generation " + std::to_string(generation) + ":";
+            for (; i < parameters.schedule_size() && parameters.schedule(i).generation() == generation; ++i) {
+                text += " " + parameters.schedule(i).name() + "=" + to_text(parameters.schedule(i).value());
+            }
+            text += "\n";
+        }
+        for (const auto& change : parameters.planned()) {
+            text += line_of(change) + "\n";
+        }
+        return text.empty() ? std::string{"nothing is planned\n"} : text;
+    });
+}
+
+void cancel(const Common& common, std::uint64_t id) {
+    Caller caller{common};
+    caller.need_planned_changes();
+    v1::Request request;
+    request.mutable_cancel_change()->set_world(common.world);
+    request.mutable_cancel_change()->set_id(id);
+    const v1::Response response = caller.call(std::move(request));
+    print(common, response, [&] { return "cancelled: " + line_of(response.planned_change()) + "\n"; });
 }
 
 void describe_one(const Common& common, const Registry& registry, const std::string& name) {
@@ -151,10 +224,25 @@ void add_parameter_commands(CLI::App& app, const Common& common, Selected& selec
         ->add_option("--if-revision", options->expected_revision,
                      "Refuse if anyone has changed a parameter since this revision")
         ->check(whole_number);
+    auto* at_generation = set_command->add_option("--at-generation", options->at_generation,
+                                                  "Not now, but from the first tick of this generation on");
+    at_generation->check(whole_number);
+    set_command->add_option("--at-tick", options->at_tick, "Not now, but right after this tick since the run began")
+        ->check(whole_number)
+        ->excludes(at_generation);
     set_command->footer("Examples:\n  evoctl set selection=tournament mutation_chance=0.05 mutate_survivors=true\n"
                         "  evoctl set --dry-run food_count=1e6\n"
+                        "  evoctl set --at-generation 30 mutation_chance=0.01\n"
                         "Names and ranges: evoctl params");
     set_command->callback([&, options] { selected = [&, options] { set(common, *options); }; });
+
+    auto* changes_command = app.add_subcommand("changes", "What is planned, and when")->group(group);
+    changes_command->callback([&] { selected = [&] { changes(common); }; });
+
+    auto* cancel_command = app.add_subcommand("cancel", "Take back a planned change")->group(group);
+    auto id = std::make_shared<std::uint64_t>();
+    cancel_command->add_option("ID", *id, "As evoctl changes tells it")->required()->check(whole_number);
+    cancel_command->callback([&, id] { selected = [&, id] { cancel(common, *id); }; });
 
     auto* get_command = app.add_subcommand("get", "The values of parameters, as `set` takes them")->group(group);
     auto names = std::make_shared<std::vector<std::string>>();

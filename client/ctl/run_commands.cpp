@@ -14,6 +14,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -35,12 +36,24 @@ struct CreateOptions {
     std::optional<std::uint64_t> seed;
 };
 
-ExperimentFile read_experiment(const std::string& path, const Registry& registry) {
-    std::ifstream file{path, std::ios::binary};
-    const std::string text{std::istreambuf_iterator<char>{file}, {}};
-    if (!file.is_open() || file.bad()) {
-        throw Stop{ExitCode::Usage, "the experiment file " + path + " cannot be read: " + std::strerror(errno)};
+/// what  "experiment".
+std::ifstream open_file(const std::string& what, const std::string& path) {
+    std::error_code error;
+    std::ifstream file;
+    if (std::filesystem::is_directory(path, error)) {
+        errno = EISDIR; // a stream opens it, and throws when it is read
+    } else {
+        file.open(path, std::ios::binary);
     }
+    if (!file.is_open()) {
+        throw Stop{ExitCode::Usage, "the " + what + " file " + path + " cannot be read: " + std::strerror(errno)};
+    }
+    return file;
+}
+
+ExperimentFile read_experiment(const std::string& path, const Registry& registry) {
+    std::ifstream file = open_file("experiment", path);
+    const std::string text{std::istreambuf_iterator<char>{file}, {}};
     auto experiment = parse_experiment(text, registry);
     if (!experiment) {
         stop_for("the experiment file " + path + " is wrong:", experiment.error());
@@ -49,10 +62,7 @@ ExperimentFile read_experiment(const std::string& path, const Registry& registry
 }
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
-    std::ifstream file{path, std::ios::binary};
-    if (!file.is_open()) {
-        throw Stop{ExitCode::Usage, "the population file " + path + " cannot be read: " + std::strerror(errno)};
-    }
+    std::ifstream file = open_file("population", path);
     const auto islands = wire::read_population(file);
     if (!islands) {
         throw Stop{ExitCode::Usage, "the population file " + path + " is wrong: " + islands.error().what};
@@ -83,14 +93,22 @@ void create(const Common& common, const CreateOptions& options) {
         if (!options.experiment.empty()) {
             const ExperimentFile file = read_experiment(options.experiment, registry);
             command.mutable_parameters()->Assign(file.parameters.begin(), file.parameters.end());
+            command.mutable_schedule()->Assign(file.schedule.begin(), file.schedule.end());
             seed = file.seed;
+            if (!file.schedule.empty()) {
+                caller.need_planned_changes();
+            }
         }
         auto assignments = registry.assignments(options.words);
         if (!assignments) {
             stop_for("nothing was created:", assignments.error());
         }
         for (const auto& assignment : *assignments) {
-            // What is typed wins over the file; the server takes each name once.
+            // What is typed wins over the file, in all generations; the server takes each name once.
+            auto& schedule = *command.mutable_schedule();
+            schedule.erase(std::remove_if(schedule.begin(), schedule.end(),
+                                          [&](const auto& s) { return s.name() == assignment.name(); }),
+                           schedule.end());
             auto& given = *command.mutable_parameters();
             const auto same = std::ranges::find_if(given, [&](const auto& g) { return g.name() == assignment.name(); });
             *(same == given.end() ? given.Add() : &*same) = assignment;
@@ -134,7 +152,7 @@ void reset(const Common& common, std::optional<std::uint64_t> seed) {
 }
 
 struct ForkOptions {
-    std::string name;
+    std::string origin, name;
     std::optional<std::uint64_t> at_generation;
 };
 
@@ -142,7 +160,7 @@ void fork(const Common& common, const ForkOptions& options) {
     Caller caller{common};
     v1::Request request;
     auto& command = *request.mutable_fork_world();
-    command.set_world(common.world);
+    command.set_world(options.origin.empty() ? common.world : options.origin);
     command.set_name(options.name);
     if (options.at_generation) {
         command.set_at_generation(*options.at_generation);
@@ -282,11 +300,12 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
     v1::Response response = caller.call(std::move(request));
     if (wait) {
-        // A world that has run its generations waits; one that someone stopped is paused.
         const v1::WorldInfo world = wait_for(caller, response.world(), [](const v1::WorldInfo&) { return false; });
         *response.mutable_world() = world;
         print_world(common, response);
-        require_reached(!generations || world.state() != v1::RUN_STATE_PAUSED, world);
+        // One that has run its generations has no goal any more; one that someone stopped, or whose past is over, has.
+        require_reached(!generations || !world.has_run_until_generation() || world.state() == v1::RUN_STATE_TERMINATED,
+                        world);
     } else {
         print_world(common, response);
     }
@@ -390,12 +409,15 @@ void add_world_commands(CLI::App& app, const Common& common, Selected& selected)
         app.add_subcommand("fork", "Make a second world from a generation of one, or from where it is; it waits")
             ->group(group);
     auto fork_options = std::make_shared<ForkOptions>();
-    fork_command->add_option("NAME", fork_options->name, "Of the new world")->required();
+    fork_command->add_option("WORLD", fork_options->origin,
+                             "The one to begin from; without it that of --world, if any");
+    fork_command->add_option("--name", fork_options->name, "Of the new world: 1 to 64 of a-z A-Z 0-9 _ -")->required();
     fork_command
         ->add_option("--at-generation", fork_options->at_generation, "Begins with its first tick; without it, from now")
-        ->check(whole_number);
-    fork_command->footer("Example, a paired experiment with the same chance:\n  evoctl fork calm --at-generation 20\n"
-                         "  evoctl --world calm set mutation_chance=0.01");
+        ->check(at_least_one);
+    fork_command->footer(
+        "Example, a paired experiment with the same chance:\n  evoctl fork lesson --at-generation 20 --name calm\n"
+        "  evoctl --world calm set mutation_chance=0.01");
     fork_command->callback([&, fork_options] { selected = [&, fork_options] { fork(common, *fork_options); }; });
     auto* seek_command =
         app.add_subcommand("seek", "Take a world that shows the past (evod replay) to another moment; else its last")

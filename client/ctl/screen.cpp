@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <utility>
 
 namespace evod::ctl {
 
@@ -20,19 +21,36 @@ TerminalSize terminal_size() {
 }
 
 void Drawing::draw(const std::string& text) {
-    const std::string clipped = clip_lines(text, terminal_size().columns);
-    // Up over the last drawing, and everything below goes.
-    std::cout << (lines_ > 0 ? "\033[" + std::to_string(lines_) + "A" : "") << "\r\033[J" << clipped << std::flush;
+    const TerminalSize size = terminal_size();
+    const std::string clipped = clip_page(text, size.columns, size.lines);
+    // Up over the last drawing, and everything below goes. A terminal of another size may have broken its lines anew,
+    // and nobody knows where it begins.
+    const bool moved = lines_ > 0 && size != size_;
+    std::cout << (moved        ? "\033[H"
+                  : lines_ > 0 ? "\033[" + std::to_string(lines_) + "A"
+                               : "")
+              << "\r\033[J" << clipped << std::flush;
+    size_ = size;
+    ends_line_ = clipped.empty() || clipped.ends_with('\n');
     lines_ = std::ranges::count(clipped, '\n');
 }
 
-void ConnectionNews::tell(const link::Connection& connection) {
+void Drawing::leave() {
+    if (!std::exchange(ends_line_, true)) {
+        std::cout << '\n' << std::flush;
+    }
+    lines_ = 0;
+}
+
+void ConnectionNews::tell(const link::Connection& connection, Drawing& drawing) {
     const auto status = connection.status();
     if (status.state == link::State::Failed) {
+        drawing.leave();
         throw Stop{ExitCode::NoConnection, status.reason};
     }
     const bool lost = status.state != link::State::Connected;
     if (lost && !lost_) {
+        drawing.leave();
         std::cerr << status.reason << "; trying again\n";
     }
     lost_ = lost;

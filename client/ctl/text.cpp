@@ -105,6 +105,18 @@ std::string clip_lines(std::string_view utf8, std::size_t width) {
     return text;
 }
 
+std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines) {
+    std::size_t end = 0; // of what fits, before the end of its last line
+    for (std::size_t line = 0; line < std::max<std::size_t>(lines, 1); ++line) {
+        const std::size_t line_end = utf8.find('\n', line == 0 ? 0 : end + 1);
+        if (line_end == std::string_view::npos) {
+            return clip_lines(utf8, width); // the cursor takes the line that is left
+        }
+        end = line_end;
+    }
+    return clip_lines(utf8.substr(0, end), width);
+}
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     // Damerau's distance, each piece edited once ("optimal string alignment"): three rows of the usual table.
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);

@@ -50,6 +50,10 @@ std::size_t width_of(std::string_view utf8);
 /// Each line cut after `width` characters, so that none takes two lines of a terminal.
 std::string clip_lines(std::string_view utf8, std::size_t width);
 
+/// As much of the beginning of `utf8` as a screen of so many characters and lines holds without rolling: its lines cut
+/// as above, and the last that fits without its end, behind which the cursor stays.
+std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines);
+
 /// How many insertions, deletions, replacements and swaps of neighbours turn one into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 /// Those of `names` that someone may have meant by `word`, likeliest first, at most three.

@@ -64,7 +64,7 @@ class Top {
             return true;
         }
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        news_.tell(caller_.connection());
+        news_.tell(caller_.connection(), drawing_);
         if (!response) {
             return false;
         }
@@ -84,7 +84,7 @@ class Top {
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
-            news_.tell(caller_.connection());
+            news_.tell(caller_.connection(), drawing_);
         }
     }
 
@@ -127,7 +127,7 @@ void add_top_command(CLI::App& app, const Common& common, Selected& selected) {
                     ->group("Follow");
     auto options = std::make_shared<Options>();
     top->add_option("--interval", options->interval_s, "Seconds between two looks")
-        ->check(CLI::Range(0.1, 3600.0))
+        ->check(link::RealNumber{0.1, 3600})
         ->capture_default_str();
     top->add_flag("--once", options->once, "Look twice, print that as one page, and end");
     top->footer("Rates are those since the look before. With --json every look is a line; with --once as well, the\n"

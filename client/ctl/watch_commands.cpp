@@ -78,7 +78,7 @@ class Watch {
             if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
                 take(*event);
             }
-            news_.tell(caller_.connection());
+            news_.tell(caller_.connection(), drawing_);
         }
         if (redraw_ && !ended_) {
             draw();
@@ -159,6 +159,7 @@ class Watch {
             draw();
         }
         if (!why.empty()) {
+            drawing_.leave();
             std::cerr << why << '\n';
         }
         ended_ = true;
@@ -198,8 +199,12 @@ class Watch {
                 best.push_back(line.fitness_best);
                 mean.push_back(line.fitness_mean);
             }
-            text += "last  " + text_of(lines_.back()) + "\n\nbest  " + sparkline(best, width) + "  " +
-                    fixed(best.back(), 1) + "\nmean  " + sparkline(mean, width) + "  " + fixed(mean.back(), 1) + "\n";
+            // The figure behind a line of fitness is worth more than the oldest of its generations.
+            constexpr std::size_t figures = 18;
+            const std::size_t columns = terminal_size().columns;
+            const std::size_t shown = std::min(width, columns > figures ? columns - figures : 1);
+            text += "last  " + text_of(lines_.back()) + "\n\nbest  " + sparkline(best, shown) + "  " +
+                    fixed(best.back(), 1) + "\nmean  " + sparkline(mean, shown) + "  " + fixed(mean.back(), 1) + "\n";
         } else {
             text += "no generation has ended yet\n";
         }
@@ -262,6 +267,31 @@ std::string text_of(const v1::Event& event) {
         }
         return text + ", revision " + std::to_string(changed.revision());
     }
+    case v1::Event::kChangePlanned:
+    case v1::Event::kChangeCancelled: {
+        const bool planned = event.has_change_planned();
+        const auto& change = planned ? event.change_planned().change() : event.change_cancelled().change();
+        std::string text = where + (planned ? change.by() : event.change_cancelled().by()) +
+                           (planned ? " planned change " : " cancelled change ") + std::to_string(change.id()) +
+                           (change.has_tick() ? " after tick " + std::to_string(change.tick())
+                                              : " from generation " + std::to_string(change.generation())) +
+                           ":";
+        for (const auto& assignment : change.parameters()) {
+            text += " " + assignment.name() + "=" + to_text(assignment.value());
+        }
+        return text;
+    }
+    case v1::Event::kChangeDropped: {
+        const auto& dropped = event.change_dropped();
+        std::string text = where + "left out what " + dropped.by() + " planned:";
+        for (const auto& name : dropped.name()) {
+            text += " " + name;
+        }
+        for (const auto& violation : dropped.violations()) {
+            text += "; " + violation.field() + ": got " + violation.got() + ", allowed " + violation.allowed();
+        }
+        return text;
+    }
     case v1::Event::kRunControlChanged:
         return where + (event.run_control_changed().by().empty() ? "goal reached" : event.run_control_changed().by()) +
                "; " + sentence(event.run_control_changed().world());
@@ -318,12 +348,13 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         std::cerr << trouble << '\n'; // began before
     }
     ConnectionNews news;
+    Drawing none;
     for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
             std::cout << (common.json ? to_json(*event, false) : text_of(*event) + "\n") << std::flush;
             ++seen;
         }
-        news.tell(caller.connection());
+        news.tell(caller.connection(), none);
     }
 }
 

@@ -10,6 +10,11 @@
 namespace evod::link {
 
 Result<void> apply(const Credentials& credentials, Options& options) {
+    if (!credentials.files.key.empty() && credentials.files.certificate.empty()) {
+        return Error{.kind = Error::Kind::Usage,
+                     .what =
+                         "--key: " + credentials.files.key + " is of no use without its certificate: give --cert, too"};
+    }
     if (credentials.tls || !credentials.files.ca.empty() || !credentials.files.certificate.empty()) {
         options.tls = credentials.files;
     }

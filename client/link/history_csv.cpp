@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <optional>
+#include <iterator>
+#include <limits>
 
 namespace evod::link {
 
@@ -37,6 +38,9 @@ void for_each_number(const evod::v1::GenerationStatistics& s, Visit visit) {
 }
 
 constexpr std::string_view gene_parts[] = {"_mean", "_deviation", "_min", "_max"};
+constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_migration", "_change"};
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Cells of a line, without the quotation marks that some programs put round them.
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -80,6 +84,11 @@ std::vector<std::string> history_columns(std::span<const std::string> gene_names
             columns.push_back(gene + std::string{part});
         }
     }
+    for (const std::string& gene : gene_names) {
+        for (const std::string_view part : account_parts) {
+            columns.push_back(gene + std::string{part});
+        }
+    }
     return columns;
 }
 
@@ -88,6 +97,15 @@ std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statis
     for_each_number(statistics, [&](const char*, auto number) { numbers.push_back(static_cast<double>(number)); });
     for (const evod::v1::GeneStatistics& gene : statistics.genes()) {
         numbers.insert(numbers.end(), {gene.mean(), gene.deviation(), gene.min(), gene.max()});
+    }
+    for (const evod::v1::GeneStatistics& gene : statistics.genes()) {
+        if (!gene.has_account()) {
+            numbers.insert(numbers.end(), std::size(account_parts), unknown);
+            continue;
+        }
+        const evod::v1::GeneAccount& account = gene.account();
+        numbers.insert(numbers.end(),
+                       {account.selection(), account.transmission(), account.migration(), account.change()});
     }
     return numbers;
 }
@@ -103,7 +121,7 @@ std::string history_heading(const std::vector<std::string>& gene_names) {
 std::string history_line(std::span<const double> numbers) {
     std::string line;
     for (const double number : numbers) {
-        line += (line.empty() ? "" : ",") + exact(number);
+        line += (line.empty() ? "" : ",") + (std::isnan(number) ? std::string{} : exact(number));
     }
     return line + "\n";
 }
@@ -121,10 +139,11 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
         }
     }
     const std::vector<std::string> columns = history_columns(read.gene_names);
-    std::vector<std::size_t> places;
+    const std::size_t account_begin = columns.size() - read.gene_names.size() * std::size(account_parts);
+    std::vector<std::size_t> places; // past the end: an older file, without
     for (const std::string& column : columns) {
         const auto found = std::find(heading.begin(), heading.end(), column);
-        if (found == heading.end()) {
+        if (found == heading.end() && places.size() < account_begin) {
             return misread("line 1: there is no column " + column +
                            "; the columns must be those of evoctl export --what generations");
         }
@@ -142,7 +161,11 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
         }
         std::vector<double>& row = read.rows.emplace_back();
         for (std::size_t i = 0; i < columns.size(); ++i) {
-            const std::string_view cell = cells[places[i]];
+            const std::string_view cell = places[i] < cells.size() ? cells[places[i]] : std::string_view{};
+            if (i >= account_begin && cell.empty()) {
+                row.push_back(unknown);
+                continue;
+            }
             double value = 0;
             const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
             if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) {

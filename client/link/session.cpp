@@ -6,8 +6,13 @@
 #include <boost/asio/write.hpp>
 
 #include <netinet/tcp.h>
+#include <openssl/ssl.h>
+#include <openssl/x509v3.h>
 #include <sys/socket.h>
 
+#include <algorithm>
+#include <iterator>
+#include <memory>
 #include <utility>
 
 namespace evod::link {
@@ -30,6 +35,106 @@ void notice_silence(asio::ip::tcp::socket& socket) {
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
 }
 
+/// What an error of TLS comes from and what to do; empty where that is not known.
+std::string tls_reason_of(const error_code& error) {
+    if (error == asio::ssl::error::stream_truncated || error == asio::error::eof ||
+        error == asio::error::connection_reset) {
+        return "it closed the connection: it may not speak TLS, which --ca, --tls, --cert and EVOD_CA ask for";
+    }
+    if (error.category() != asio::error::get_ssl_category()) {
+        return {};
+    }
+    switch (ERR_GET_REASON(static_cast<unsigned long>(error.value()))) {
+    case SSL_R_WRONG_VERSION_NUMBER:
+        return "it does not speak TLS: leave out --ca, --tls and --cert, and EVOD_CA";
+    case SSL_R_UNSUPPORTED_PROTOCOL:
+    case SSL_R_TLSV1_ALERT_PROTOCOL_VERSION:
+        return "there is no version of TLS that both speak: it takes 1.2 or newer";
+    case SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED:
+    case SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE:
+        return "it wants a certificate of ours: give one with --cert and --key";
+    case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
+    case SSL_R_SSLV3_ALERT_BAD_CERTIFICATE:
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN:
+        return "it does not believe the certificate of --cert: whoever runs it says with --tls-client-ca which it does";
+    case SSL_R_SSLV3_ALERT_CERTIFICATE_EXPIRED:
+        return "the certificate of --cert has expired: make another";
+    default:
+        return {};
+    }
+}
+
+std::string text_of(const ASN1_TIME* time) {
+    const std::unique_ptr<BIO, decltype(&BIO_free)> out{BIO_new(BIO_s_mem()), BIO_free};
+    if (!out || time == nullptr || ASN1_TIME_print(out.get(), time) != 1) {
+        return "an unknown time";
+    }
+    char* text = nullptr;
+    const long length = BIO_get_mem_data(out.get(), &text);
+    return {text, static_cast<std::size_t>(length)};
+}
+
+/// "localhost, 127.0.0.1". What would steer a terminal becomes '?'.
+std::string names_of(const X509* certificate) {
+    const std::unique_ptr<GENERAL_NAMES, decltype(&GENERAL_NAMES_free)> names{
+        static_cast<GENERAL_NAMES*>(X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr)),
+        GENERAL_NAMES_free};
+    std::string text;
+    for (int i = 0; names && i < sk_GENERAL_NAME_num(names.get()); ++i) {
+        const GENERAL_NAME* name = sk_GENERAL_NAME_value(names.get(), i);
+        if (name->type != GEN_DNS && name->type != GEN_IPADD) {
+            continue;
+        }
+        const ASN1_STRING* bytes = name->type == GEN_DNS ? name->d.dNSName : name->d.iPAddress;
+        const unsigned char* data = ASN1_STRING_get0_data(bytes);
+        const auto size = static_cast<std::size_t>(ASN1_STRING_length(bytes));
+        text += text.empty() ? "" : ", ";
+        if (name->type == GEN_DNS) {
+            std::transform(data, data + size, std::back_inserter(text),
+                           [](unsigned char c) { return c > 0x20 && c < 0x7f ? static_cast<char>(c) : '?'; });
+        } else if (size == 4) {
+            text +=
+                asio::ip::address_v4{asio::ip::address_v4::bytes_type{data[0], data[1], data[2], data[3]}}.to_string();
+        } else if (size == 16) {
+            asio::ip::address_v6::bytes_type address;
+            std::copy_n(data, size, address.begin());
+            text += asio::ip::address_v6{address}.to_string();
+        }
+    }
+    return text.empty() ? "no name" : text;
+}
+
+/// Why a certificate of a server is not believed, and what to do.
+///
+/// certificate  the one that it is about; nullptr: none.
+std::string disbelief_of(int verdict, const X509* certificate, const Options::Tls& files) {
+    const std::string why = X509_verify_cert_error_string(verdict);
+    if (certificate == nullptr) {
+        return why;
+    }
+    switch (verdict) {
+    case X509_V_ERR_HOSTNAME_MISMATCH:
+        return "it is for other names (" + names_of(certificate) + "): reach the server by one of them";
+    case X509_V_ERR_CERT_HAS_EXPIRED:
+        return "it was good until " + text_of(X509_get0_notAfter(certificate)) +
+               ": whoever runs the server makes another, with evod certificate perhaps; and is this machine's clock "
+               "right?";
+    case X509_V_ERR_CERT_NOT_YET_VALID:
+        return "it is good from " + text_of(X509_get0_notBefore(certificate)) + " on: is this machine's clock right?";
+    case X509_V_ERR_DEPTH_ZERO_SELF_SIGNED_CERT:
+    case X509_V_ERR_SELF_SIGNED_CERT_IN_CHAIN:
+    case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT:
+    case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT_LOCALLY:
+    case X509_V_ERR_UNABLE_TO_VERIFY_LEAF_SIGNATURE:
+    case X509_V_ERR_CERT_SIGNATURE_FAILURE:
+        return why + (files.ca.empty()
+                          ? ": this system knows nobody who vouches for it; give the server's evod.crt with --ca"
+                          : ": " + files.ca + " does not vouch for it; is it the evod.crt that the server has now?");
+    default:
+        return why;
+    }
+}
+
 std::string reason_of(const error_code& error, const Endpoint& server) {
     if (error == asio::error::connection_refused) {
         return "no server at " + to_text(server) + ": start one with `evod`";
@@ -42,7 +147,8 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
         error == asio::ssl::error::stream_truncated) {
         return "the server at " + to_text(server) + " closed the connection";
     }
-    return "the connection with " + to_text(server) + " failed: " + error.message();
+    const std::string tls = tls_reason_of(error);
+    return "the connection with " + to_text(server) + " failed: " + (tls.empty() ? error.message() : tls);
 }
 
 } // namespace
@@ -101,9 +207,10 @@ void Session::shake_hands() {
     SSL_CTX_set_min_proto_version(tls_context_->native_handle(), TLS1_2_VERSION);
     tls_context_->set_verify_mode(ssl::verify_peer);
     error_code error;
-    const auto fails = [&](const std::string& file) {
+    const auto fails = [&](const char* option, const std::string& file) {
         if (error) {
-            end({.reason = file + " cannot be used for TLS: " + error.message(), .final = true});
+            end({.reason = std::string{option} + ": " + file + " cannot be used for TLS: " + error.message(),
+                 .final = true});
         }
         return error.failed();
     };
@@ -112,33 +219,47 @@ void Session::shake_hands() {
     } else {
         tls_context_->load_verify_file(files.ca, error);
     }
-    if (fails(files.ca)) {
+    if (files.ca.empty() ? fails("--tls", "what this system trusts") : fails("--ca", files.ca)) {
         return;
     }
     if (!files.certificate.empty()) {
         tls_context_->use_certificate_chain_file(files.certificate, error);
-        if (fails(files.certificate)) {
+        if (fails("--cert", files.certificate)) {
             return;
         }
         tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, ssl::context::pem, error);
-        if (fails(files.key.empty() ? files.certificate : files.key)) {
+        if (fails(files.key.empty() ? "--cert" : "--key", files.key.empty() ? files.certificate : files.key)) {
             return;
         }
     }
     tls_.emplace(socket_, *tls_context_);
-    tls_->set_verify_callback(ssl::host_name_verification{options_.server.host});
+    // The session outlives its stream.
+    tls_->set_verify_callback(
+        [this, named = ssl::host_name_verification{options_.server.host}](bool good, ssl::verify_context& context) {
+            X509_STORE_CTX* const store = context.native_handle();
+            const bool believed = named(good, context);
+            if (good && !believed) {
+                X509_STORE_CTX_set_error(store, X509_V_ERR_HOSTNAME_MISMATCH);
+            }
+            if (!believed) {
+                disbelief_ = disbelief_of(X509_STORE_CTX_get_error(store), X509_STORE_CTX_get_current_cert(store),
+                                          *options_.tls);
+            }
+            return believed;
+        });
     SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
     tls_->async_handshake(ssl::stream_base::client, [self = shared_from_this()](const error_code& failed) {
         if (self->ended_) {
             return;
         }
         if (failed) {
-            const long verdict = SSL_get_verify_result(self->tls_->native_handle());
-            const std::string why = verdict != X509_V_OK ? std::string{"its certificate is not believed: "} +
-                                                               X509_verify_cert_error_string(verdict)
-                                                         : failed.message();
+            const std::string known = tls_reason_of(failed);
+            const bool by_tls = failed.category() == asio::error::get_ssl_category();
+            const std::string why = !self->disbelief_.empty() ? "its certificate is not believed: " + self->disbelief_
+                                    : known.empty()           ? failed.message()
+                                                              : known;
             self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
-                       .final = verdict != X509_V_OK});
+                       .final = !self->disbelief_.empty() || (by_tls && !known.empty())});
             return;
         }
         self->begin();
@@ -250,8 +371,16 @@ Session::Ending Session::lost(const error_code& error) const {
     if (last_word_) { // a token that was revoked is not known any more to whoever tries it again
         return refused(*last_word_, "ended the session", last_word_->code() == evod::v1::CODE_UNAUTHENTICATED);
     }
-    return {.reason = going_away_ ? "the server at " + to_text(options_.server) + " was shut down"
-                                  : reason_of(error, options_.server)};
+    // Of TLS 1.3 a client is told only now that its certificate is not taken, and will not be the next time.
+    const bool not_taken =
+        !welcomed_ && error.category() == asio::error::get_ssl_category() && !tls_reason_of(error).empty();
+    // What it says of that may be lost with the connection.
+    const bool without_a_word = tls_ && !welcomed_ && error.category() != asio::error::get_ssl_category();
+    return {.reason = going_away_
+                          ? "the server at " + to_text(options_.server) + " was shut down"
+                          : reason_of(error, options_.server) +
+                                (without_a_word ? ": perhaps it wants another certificate of ours, see --cert" : ""),
+            .final = not_taken};
 }
 
 Session::Ending Session::refused(const evod::v1::Status& status, const char* did, bool final) const {

@@ -70,6 +70,7 @@ class Session : public std::enable_shared_from_this<Session> {
     boost::asio::ip::tcp::socket socket_;
     std::optional<boost::asio::ssl::context> tls_context_;
     std::optional<boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>> tls_; // nullopt: in the clear
+    std::string disbelief_;                                                      // in the server's certificate, and why
     boost::asio::steady_timer deadline_;
     wire::FrameReader reader_{wire::client_limits};
     std::vector<std::byte> received_;

@@ -10,6 +10,14 @@ import numpy.typing
 from evod.v1 import commands_pb2, world_pb2
 
 
+ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
+
+
+def account_part(gene: world_pb2.GeneStatistics, part: str) -> float:
+    """One of ACCOUNT_PARTS; nan where there is no account."""
+    return float(getattr(gene.account, part)) if gene.HasField("account") else numpy.nan
+
+
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Generation:
     """What one generation came to on all islands together.
@@ -63,6 +71,41 @@ class Generation:
         """The mean of each gene, in the order of WorldInfo.gene_names."""
         means = numpy.array([[gene.mean for gene in island.genes] for island in self.islands])
         return numpy.asarray(numpy.average(means, axis=0, weights=self._weights()))
+
+    @property
+    def selection(self) -> numpy.typing.NDArray[Any]:
+        """How far selection moved the mean of each gene since the generation before: those with other genes than the mean
+        had more descendants, or fewer. Gene units, in the order of WorldInfo.gene_names; nan in the first generation, and
+        where nobody knows. With transmission and migration it is the change.
+
+        >>> import evod
+        >>> with evod.local(seed=42) as lab:
+        ...     first, second = lab.world().run(generations=2)
+        >>> bool(numpy.isnan(first.selection).all())
+        True
+        >>> numpy.allclose(second.selection + second.transmission + second.migration, second.genes - first.genes)
+        True
+        """
+        return self._moved("selection")
+
+    @property
+    def transmission(self) -> numpy.typing.NDArray[Any]:
+        """How far it moved because descendants are not as their parents: crossover, mutation, bounds."""
+        return self._moved("transmission")
+
+    @property
+    def migration(self) -> numpy.typing.NDArray[Any]:
+        """How far migrants moved it."""
+        return self._moved("migration")
+
+    @property
+    def change(self) -> numpy.typing.NDArray[Any]:
+        """How far the mean of each gene is from that of the generation before."""
+        return self._moved("change")
+
+    def _moved(self, by: str) -> numpy.typing.NDArray[Any]:
+        parts = [[account_part(gene, by) for gene in island.genes] for island in self.islands]
+        return numpy.asarray(numpy.average(numpy.array(parts), axis=0, weights=self._weights()))
 
     def _weights(self) -> list[int]:
         return [island.organism_count for island in self.islands]

@@ -10,7 +10,7 @@ from evod.core import Core
 from evod.endpoint import Endpoint, tls_context, token_of
 from evod.generations import Generation, Population
 from evod.link import Link
-from evod.parameters import Parameters, Registry, Value
+from evod.parameters import Parameters, PlannedChange, Registry, Value
 from evod.pictures import Frame
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
@@ -137,7 +137,8 @@ class Lab(_Closing):
     ) -> World:
         """A new world; it waits to be told to run.
 
-        parameters   the rest have their defaults.
+        parameters   the rest have their defaults. A mapping instead of a value schedules it: {1: 0.2, 30: 0.05} holds from
+                     the first tick of these generations; until the first of them, the default.
         seed         otherwise one that the server draws.
         population   what its first generation consists of, one array of shape (population_size, 6) for each island; otherwise
                      that is drawn by the seed.
@@ -221,17 +222,31 @@ class World:
         *,
         dry_run: bool = False,
         expected_revision: int | None = None,
+        at_generation: int | None = None,
+        at_tick: int | None = None,
         **more: object,
     ) -> Parameters:
         """Sets parameters, all of them or none: ``world.set(mutation_chance=0.1, selection="tournament")``.
 
         dry_run             checks and answers as if it were done, and changes nothing.
         expected_revision   refused if somebody has changed parameters since that Parameters.revision was read.
+        at_generation       not now, but from the first tick of that generation on.
+        at_tick             not now, but right after that tick since the run began. What is planned is in Parameters.change.
 
         Error: every value that is not allowed; those that are out of range are not even sent.
         """
-        plan = self._desk.set_parameters(self.name, {**(values or {}), **more}, dry_run, expected_revision)
+        given = {**(values or {}), **more}
+        plan = self._desk.set_parameters(self.name, given, dry_run, expected_revision, at_generation, at_tick)
         return self._link.perform(plan)
+
+    @property
+    def planned_changes(self) -> tuple[PlannedChange, ...]:
+        """What waits for its generation or tick, in the order in which it was planned."""
+        return self.get_parameters().planned
+
+    def cancel(self, change: int | PlannedChange) -> PlannedChange:
+        """Takes back a planned change, by its id. Error: it was made, dropped or cancelled."""
+        return self._link.perform(self._desk.cancel_change(self.name, change))
 
     # ---- running --------------------------------------------------------------------------------------------------
 
@@ -445,6 +460,13 @@ class World:
 
         names = self.info().gene_names
         return plotting.plot_genes(plotting.columns_of(self.history(), names), names, ax)
+
+    def plot_selection(self, gene: str, ax: Any = None) -> Any:
+        """Draws what moved the mean of a gene: selection, transmission, migration, and its change, which they make together."""
+        from evod import plotting
+
+        names = self.info().gene_names
+        return plotting.plot_selection(plotting.columns_of(self.history(), names), names, gene, ax)
 
     def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
         """Watches an island for so many pictures, or until it does not run, and gives a matplotlib animation of them, which

@@ -41,7 +41,7 @@ def local(
     seed         of its world; otherwise drawn by chance.
     experiment   its parameters: an experiment file, or a mapping of names to values; otherwise the default world.
     data         folder where runs are kept; otherwise nothing is kept, and the past cannot be looked at.
-    speed        of its world: simulated seconds per second, or "max", as fast as the machine can.
+    speed        of its worlds: simulated seconds per second, or "max", as fast as the machine can.
     threads      that simulate; otherwise as many as the machine has processors.
     program      the program evod; otherwise the one that the environment's EVOD names, or that is on the path.
 
@@ -53,6 +53,9 @@ def local(
     server = start(seed, experiment, data, speed, threads, program)
     try:
         lab = connect(server.address, token="", ca="", timeout_s=timeout_s, client_name="evod.local")
+        if data is not None:
+            for found in lab.worlds():
+                lab.world(found.name).set_speed(speed)
     except BaseException:
         server.stop()
         raise
@@ -88,7 +91,7 @@ def start(
     """Starts a server, as local() does, and waits until it listens."""
     command = [program_of(program), "--port", "0"]
     command += ["--keep-nothing"] if data is None else ["--data", os.fspath(data)]
-    command += ["--speed", str(speed)]
+    command += ["--speed", str(speed)] if data is None else []  # else there may be several worlds
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
     with tempfile.TemporaryDirectory(prefix="evod-") as folder:

@@ -83,6 +83,27 @@ class Parameter(Description):
     pending: Value | None  #: what will hold from the next generation or reset; None if that is `value`
 
 
+@dataclasses.dataclass(frozen=True)
+class PlannedChange:
+    """A change of parameters that waits for its moment. There it is looked at anew: it is made, all of it, or dropped."""
+
+    id: int  #: 0: it was only asked whether it would be accepted
+    generation: int | None  #: from its first tick on
+    tick: int | None  #: right after this tick since the run began
+    values: Mapping[str, Value]
+    by: str  #: who: client name and address
+
+    @classmethod
+    def of(cls, message: world_pb2.PlannedChange) -> PlannedChange:
+        return cls(
+            id=message.id,
+            generation=message.generation if message.HasField("generation") else None,
+            tick=message.tick if message.HasField("tick") else None,
+            values={assignment.name: value_of(assignment.value) for assignment in message.parameters},
+            by=message.by,
+        )
+
+
 class Registry(Mapping[str, Description]):
     """Every parameter there is, by name.
 
@@ -126,6 +147,43 @@ class Registry(Mapping[str, Description]):
             )
         return made
 
+    def planned(
+        self, values: Mapping[str, object], field_prefix: str
+    ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
+        """Values, or values by generation, as they are sent: those of generation 1, and those of later ones."""
+        first: dict[str, object] = {}
+        later, violations = [], []
+        for name, value in values.items():
+            if not isinstance(value, Mapping) or name not in self._descriptions:
+                first[name] = value
+                continue
+            description = self._descriptions[name]
+            if description.effect == "reset":
+                allowed = "one value, as it can only change when a world is reset"
+                violations.append(Violation(field_prefix + name, allowed, repr(value)))
+                continue
+            for generation, of_generation in value.items():
+                try:
+                    number = int(generation) if isinstance(generation, str) else operator.index(generation)
+                except (TypeError, ValueError):
+                    number = 0
+                if not 1 <= number < 2**64:
+                    violations.append(Violation(field_prefix + name, "generations from 1 on", repr(generation)))
+                elif number == 1:
+                    first[name] = of_generation
+                elif (message := description.message(of_generation)) is None:
+                    field = f"{field_prefix}{name} at generation {number}"
+                    violations.append(Violation(field, description.allowed, description.got(of_generation)))
+                else:
+                    later.append(world_pb2.ScheduledValue(name=name, generation=number, value=message))
+        try:
+            assignments = self.assignments(first, field_prefix)
+        except Error as error:
+            raise Error(error.message, error.code, [*error.violations, *violations]) from None
+        if violations:
+            raise Error("some parameters cannot have these values", commands_pb2.CODE_INVALID_ARGUMENT, violations)
+        return assignments, later
+
     def _instead_of(self, name: str) -> str:
         similar = difflib.get_close_matches(name, self._descriptions, n=3)
         return "a parameter of the registry" + (f"; did you mean {', '.join(similar)}" if similar else "")
@@ -151,10 +209,34 @@ class Parameters(Mapping[str, Parameter]):
     'Organisms on each island.'
     """
 
-    def __init__(self, registry: Registry, message: world_pb2.ParameterSet) -> None:
+    def __init__(
+        self, registry: Registry, message: world_pb2.ParameterSet, change: PlannedChange | None = None
+    ) -> None:
         self._registry = registry
         self._states = {state.name: state for state in message.parameters if state.name in registry}
         self._revision = message.revision
+        self._planned = tuple(PlannedChange.of(change) for change in message.planned)
+        self._change = change
+        self._schedule: dict[int, dict[str, Value]] = {}
+        for scheduled in message.schedule:
+            self._schedule.setdefault(scheduled.generation, {})[scheduled.name] = value_of(scheduled.value)
+
+    @property
+    def schedule(self) -> Mapping[int, Mapping[str, Value]]:
+        """What the experiment plans for generations to come: from the first tick of each, what will hold.
+
+        Only get_parameters() tells it."""
+        return self._schedule
+
+    @property
+    def planned(self) -> tuple[PlannedChange, ...]:
+        """What waits, in order of ids; only get_parameters() tells it, and what has planned something."""
+        return self._planned
+
+    @property
+    def change(self) -> PlannedChange | None:
+        """What World.set() with at_generation or at_tick has planned."""
+        return self._change
 
     @property
     def revision(self) -> int:

@@ -17,7 +17,7 @@ from evod import picture_decoder
 from evod.core import PICTURES_AHEAD, Core, Subscription
 from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
-from evod.parameters import Parameters, Registry
+from evod.parameters import Parameters, PlannedChange, Registry
 from evod.pictures import Frame
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
@@ -107,17 +107,43 @@ class Desk:
         return Parameters(registry, (yield from ask("get_parameters", world=world)).parameters)
 
     def set_parameters(
-        self, world: str, values: Mapping[str, object], dry_run: bool, expected_revision: int | None
+        self,
+        world: str,
+        values: Mapping[str, object],
+        dry_run: bool,
+        expected_revision: int | None,
+        at_generation: int | None = None,
+        at_tick: int | None = None,
     ) -> Plan[Parameters]:
         registry = yield from self.registry()
+        if at_generation is not None or at_tick is not None:
+            self._need_planned_changes()
         response = yield from ask(
             "set_parameters",
             world=world,
             parameters=registry.assignments(values, "set_parameters."),
             dry_run=dry_run,
             expected_revision=expected_revision,
+            at_generation=at_generation,
+            at_tick=at_tick,
         )
-        return Parameters(registry, response.parameters)
+        if not response.HasField("planned_change"):
+            return Parameters(registry, response.parameters)
+        change = PlannedChange.of(response.planned_change)
+        return Parameters(registry, (yield from ask("get_parameters", world=world)).parameters, change)
+
+    def cancel_change(self, world: str, change: int | PlannedChange) -> Plan[PlannedChange]:
+        yield from self.registry()
+        self._need_planned_changes()
+        identity = change.id if isinstance(change, PlannedChange) else change
+        response = yield from ask("cancel_change", world=world, id=identity)
+        return PlannedChange.of(response.planned_change)
+
+    def _need_planned_changes(self) -> None:
+        """An older server would make them at once, or not at all."""
+        welcome = self.core.welcome
+        if welcome is not None and "planned_changes" not in welcome.features:
+            raise Error(f"the server, evod {welcome.server_version}, cannot plan changes", c.CODE_UNIMPLEMENTED)
 
     def create_world(
         self,
@@ -129,10 +155,14 @@ class Desk:
     ) -> Plan[str]:
         pace = None if speed is None else speed_of(speed)
         registry = yield from self.registry()
+        first, later = registry.planned(parameters, "create_world.")
+        if later:
+            self._need_planned_changes()
         info = yield from ask_for_world(
             "create_world",
             name=name,
-            parameters=registry.assignments(parameters, "create_world."),
+            parameters=first,
+            schedule=later,
             seed=seed,
             population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
         )

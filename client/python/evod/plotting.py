@@ -8,6 +8,7 @@ import numpy
 import numpy.typing
 
 from evod.errors import Error
+from evod.generations import ACCOUNT_PARTS, account_part
 
 if TYPE_CHECKING:
     from evod.generations import Generation
@@ -126,6 +127,8 @@ def columns_of(generations: Sequence[Generation], gene_names: Sequence[str]) -> 
     for index, gene in enumerate(gene_names):
         for what in ("mean", "deviation", "min", "max"):
             columns[f"{gene}_{what}"] = numpy.array([getattr(row.genes[index], what) for row in rows], float)
+        for what in ACCOUNT_PARTS:
+            columns[f"{gene}_{what}"] = numpy.array([account_part(row.genes[index], what) for row in rows], float)
     return columns
 
 
@@ -151,6 +154,26 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
         (line,) = ax.plot(generation, mean, label=gene)
         ax.fill_between(generation, mean - deviation, mean + deviation, alpha=0.12, linewidth=0, color=line.get_color())
     ax.set(xlabel="generation", ylabel="gene")
+    ax.xaxis.get_major_locator().set_params(integer=True)
+    ax.legend(frameon=False, fontsize="small", ncols=2)
+    return ax
+
+
+def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: str, ax: Any = None) -> Any:
+    """What moved the mean of one gene in each generation, over all islands: selection, transmission and migration, which are
+    together its change."""
+    if gene not in gene_names:
+        raise Error(f"there is no gene {gene!r}; allowed: {', '.join(gene_names)}")
+    ax = axes_of(ax)
+    ax.axhline(0, color="0.7", linewidth=0.8)
+    for part in ACCOUNT_PARTS:
+        moved, count = (numpy.asarray(columns[name], float) for name in (f"{gene}_{part}", "organism_count"))
+        weighted = {"generation": columns["generation"], "moved": moved * count, "count": count}
+        generation, total = _by_generation(weighted, "moved", numpy.add)
+        _, organisms = _by_generation(weighted, "count", numpy.add)
+        how = {"color": "black", "linestyle": "--"} if part == "change" else {}
+        ax.plot(generation, total / organisms, label=part, **how)
+    ax.set(xlabel="generation", ylabel=f"{gene}: gene units a generation")
     ax.xaxis.get_major_locator().set_params(integer=True)
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

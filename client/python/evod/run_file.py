@@ -16,6 +16,7 @@ import numpy.typing
 
 from evod import plotting
 from evod.errors import DamagedData, Error
+from evod.generations import ACCOUNT_PARTS
 from evod.program import program_of
 from evod.tables import GENE_NAMES, frame_of, pandas
 from evod.v1 import commands_pb2
@@ -112,10 +113,17 @@ class RunFile:
 
     def generations(self) -> Any:
         """The statistics: a row for each generation that has ended, and island."""
-        cursor = self._execute("SELECT * FROM statistics ORDER BY generation, island")
+        accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
+        if list(self._rows("SELECT 1 FROM sqlite_schema WHERE name = 'selection_account'")):
+            columns, join = accounts, "LEFT JOIN selection_account USING (generation, island)"
+        else:  # an older file
+            columns, join = [f"NULL AS {name}" for name in accounts], ""
+        cursor = self._execute(
+            f"SELECT statistics.*, {', '.join(columns)} FROM statistics {join} ORDER BY generation, island"
+        )
         names = [column[0] for column in cursor.description]
-        table = pandas().DataFrame(self._fetch(cursor), columns=names)
-        return table.drop(columns="checksum")
+        table = pandas().DataFrame(self._fetch(cursor), columns=names).drop(columns="checksum")
+        return table.astype({name: float for name in accounts})
 
     def organisms(self) -> Any:
         """Parents, genes and fate of each organism of the generations that are held."""
@@ -217,6 +225,10 @@ class RunFile:
     def plot_genes(self, ax: Any = None) -> Any:
         """Draws the mean and the spread of each gene."""
         return plotting.plot_genes(self.generations(), GENE_NAMES, ax)
+
+    def plot_selection(self, gene: str, ax: Any = None) -> Any:
+        """Draws what moved the mean of a gene: selection, transmission, migration, and its change, which they make together."""
+        return plotting.plot_selection(self.generations(), GENE_NAMES, gene, ax)
 
     def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
         """Draws who came of whom; of: one organism (generation, island, id) and its ancestors."""

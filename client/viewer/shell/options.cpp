@@ -1,6 +1,7 @@
 #include "client/viewer/shell/options.h"
 
 #include "client/link/credentials.h"
+#include "client/link/option_numbers.h"
 #include "client/viewer/drawing/gui.h"
 
 #include <CLI/CLI.hpp>
@@ -8,8 +9,10 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 namespace evod::viewer {
 
@@ -53,8 +56,14 @@ std::string parse_size(const std::string& text, Options::Size& size) {
 }
 
 Script read_script(const std::string& path) {
-    std::ifstream file{path};
-    if (!file) {
+    std::error_code ignored;
+    std::ifstream file;
+    if (std::filesystem::is_directory(path, ignored)) {
+        errno = EISDIR; // a stream opens it, and throws when it is read
+    } else {
+        file.open(path);
+    }
+    if (!file.is_open()) {
         throw CLI::ValidationError{"--script", path + ": " + std::strerror(errno)};
     }
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
@@ -96,21 +105,24 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     add_options(app, credentials);
     app.add_option("--world", options.world, "the world to look at; else the only one, or \"default\"")
         ->envname("EVOD_WORLD");
-    app.add_option("--island", options.island, "its island, from 0")->capture_default_str();
+    app.add_option("--island", options.island, "its island, from 0")
+        ->capture_default_str()
+        ->check(link::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
     app.add_flag("--all-islands", options.all_islands, "all islands at once, as tiles");
     app.add_option("--beside", options.beside, "a second world, in the right half");
     app.add_option("--past", options.past_generation, "look at the past of the world, from this generation on")
-        ->check(CLI::PositiveNumber);
+        ->check(link::WholeNumber{.min = 1});
     app.add_option("--size", size, "of the window or the pictures, in pixels; else 1280x720 times the scale");
     app.add_option("--scale", options.scale, "of text and widgets; else as the screen needs it, 1 for pictures")
-        ->check(CLI::Range(Gui::scale_min, Gui::scale_max));
+        ->check(link::RealNumber{Gui::scale_min, Gui::scale_max});
     auto* start = app.add_flag("--start", options.start, "begin with the start screen");
     auto* script = app.add_option("--script", options.script_path, "file with actions to be carried out in the window");
     auto* shot = app.add_option("--screenshot", screenshot.path, "save one picture as this PNG file, open no window")
                      ->excludes(start)
                      ->excludes(script);
     app.add_option("--at-tick", screenshot.tick, "of the first tick from this one on that the server shows")
-        ->needs(shot);
+        ->needs(shot)
+        ->check(link::WholeNumber{});
     auto* film = app.add_option("--record", record.path,
                                 "save picture after picture, open no window: PNG files in this folder, or a film by\n"
                                 "ffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
@@ -118,21 +130,22 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
                      ->excludes(start)
                      ->excludes(script);
     app.add_option("--record-ticks", record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
-        ->needs(film);
+        ->needs(film)
+        ->check(link::WholeNumber{});
     app.add_option("--record-generations", record.generations, "end when so many more generations have ended")
         ->needs(film)
-        ->check(CLI::PositiveNumber);
+        ->check(link::WholeNumber{.min = 1});
     app.add_option("--every", record.every_ticks, "ticks from one picture to the next")
         ->needs(film)
         ->capture_default_str()
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}));
+        ->check(link::WholeNumber{1, 1'000'000});
     app.add_option("--fps", record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
         ->needs(film)
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(link::RealNumber{0.1, 1000});
     app.add_option("--timeout", screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 1e6));
+        ->check(link::RealNumber{0, 1e6});
     app.final_callback([&] {
         if (const auto endpoint = link::parse_endpoint(server)) {
             options.connection.server = *endpoint;

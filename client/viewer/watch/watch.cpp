@@ -489,6 +489,29 @@ void Watch::take_event(const evod::v1::Event& event) {
         notices_.push_back(event.parameters_changed().by() + " changed " + names);
         break;
     }
+    case Kind::kChangePlanned:
+    case Kind::kChangeCancelled: {
+        const bool planned = event.has_change_planned();
+        const auto& change = planned ? event.change_planned().change() : event.change_cancelled().change();
+        std::string names;
+        for (const auto& assignment : change.parameters()) {
+            names += (names.empty() ? "" : ", ") + assignment.name();
+        }
+        notices_.push_back((planned ? change.by() : event.change_cancelled().by()) +
+                           (planned ? " plans to change " : " cancelled the change of ") + names +
+                           (change.has_tick() ? " after tick " + std::to_string(change.tick())
+                                              : " from generation " + std::to_string(change.generation())));
+        break;
+    }
+    case Kind::kChangeDropped: {
+        std::string names;
+        for (const auto& name : event.change_dropped().name()) {
+            names += (names.empty() ? "" : ", ") + name;
+        }
+        notices_.push_back("What " + event.change_dropped().by() + " planned for " + names +
+                           " does not go with the other parameters: left out");
+        break;
+    }
     case Kind::kRunTerminated:
         ask_state(); // for the outcome
         break;

@@ -95,6 +95,36 @@ TEST(ExperimentFile, ReferencePopulationFollowsThePopulation) {
     EXPECT_EQ(both->parameters[0].value().count(), 5U);
 }
 
+TEST(ExperimentFile, MayHaveValuesByGeneration) {
+    const auto file = parse_experiment(
+        R"({"mutation_chance": {"1": 0.2, "30": 0.05}, "selection": {"5": "tournament"}, "population_size": {"1": 20, "9": 40}})",
+        small_registry());
+    ASSERT_TRUE(file) << file.error().lines.front();
+    ASSERT_EQ(file->parameters.size(), 3U);
+    EXPECT_EQ(file->parameters[0].value().real(), 0.2);
+    EXPECT_EQ(file->parameters[2].name(), "reference_population");
+    EXPECT_EQ(file->parameters[2].value().count(), 20U);
+    ASSERT_EQ(file->schedule.size(), 3U);
+    EXPECT_EQ(file->schedule[0].generation(), 30U);
+    EXPECT_EQ(file->schedule[0].value().real(), 0.05);
+    EXPECT_EQ(file->schedule[1].value().choice(), "tournament");
+    const auto wrong = parse_experiment(
+        R"({"mutation_chance": {"0": 0.2, "x": 1, "007": 1, "30": "much"}, "respawn": {}, "selection": {"2": [1]}})",
+        small_registry());
+    ASSERT_FALSE(wrong);
+    EXPECT_THAT(wrong.error().lines,
+                ElementsAre(HasSubstr("mutation_chance: got \"0\", allowed generations as keys"),
+                            HasSubstr("got \"x\""), HasSubstr("got \"007\""),
+                            HasSubstr("mutation_chance at generation 30: got \"much\", allowed 0 to 1"),
+                            HasSubstr("respawn: got {}, allowed a generation and its value"),
+                            HasSubstr("selection at generation 2: got [1]")));
+    v1::Description at_reset;
+    *at_reset.add_parameters() = parameter("island_count", v1::PARAMETER_KIND_COUNT, 1, 9);
+    at_reset.mutable_parameters(0)->set_effect(v1::PARAMETER_EFFECT_RESET);
+    EXPECT_THAT(parse_experiment(R"({"island_count": {"2": 3}})", Registry{at_reset}).error().lines,
+                ElementsAre(HasSubstr("can only change when a world is reset")));
+}
+
 TEST(ExperimentFile, MistakesAreNamed) {
     const auto mistakes = [](std::string_view text) {
         const auto file = parse_experiment(text, small_registry());

@@ -80,6 +80,16 @@ TEST(ClipLines, CutsEachLineAtACharacter) {
     EXPECT_EQ(clip_lines("ab\n", 0), "\n");
 }
 
+TEST(ClipPage, LeavesTheCursorOnTheScreen) {
+    EXPECT_EQ(clip_page("one\ntwo\nthree\n", 3, 4), "one\ntwo\nthr\n") << "the cursor stands on the fourth line";
+    EXPECT_EQ(clip_page("one\ntwo\nthree\n", 80, 3), "one\ntwo\nthree");
+    EXPECT_EQ(clip_page("one\ntwo\nthree\n", 2, 2), "on\ntw");
+    EXPECT_EQ(clip_page("one\ntwo\nthree", 80, 1), "one");
+    EXPECT_EQ(clip_page("one\n", 80, 0), "one") << "a screen has a line";
+    EXPECT_EQ(clip_page("one", 80, 5), "one");
+    EXPECT_EQ(clip_page("", 80, 5), "");
+}
+
 TEST(EditDistance, CountsSingleEdits) {
     EXPECT_EQ(edit_distance("", ""), 0U);
     EXPECT_EQ(edit_distance("", "abc"), 3U);

@@ -106,7 +106,7 @@ TEST(Top, FitsTheTerminalAndShowsTheFastestWorlds) {
     for (const char* role : {"admin", "controller", "viewer", "none"}) {
         after.add("evod_sessions", 64, role);
     }
-    for (const char* thread : {"network", "simulation", "storage"}) {
+    for (const char* thread : {"network", "simulation", "storage", "packing"}) {
         after.add("evod_thread_cpu_seconds_total", 2, thread);
     }
     after.add("evod_storage_state", 1, "failing").add("evod_journal_waiting_bytes", 5e6);

@@ -15,7 +15,7 @@ from evod.aio.opening import Opening, OpeningStream
 from evod.core import Core
 from evod.endpoint import Endpoint, tls_context, token_of
 from evod.generations import Generation, Population
-from evod.parameters import Parameters, Registry
+from evod.parameters import Parameters, PlannedChange, Registry
 from evod.pictures import Frame
 from evod.plans import Plan
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
@@ -211,10 +211,19 @@ class World:
         *,
         dry_run: bool = False,
         expected_revision: int | None = None,
+        at_generation: int | None = None,
+        at_tick: int | None = None,
         **more: object,
     ) -> Parameters:
-        plan = self._desk.set_parameters(self.name, {**(values or {}), **more}, dry_run, expected_revision)
+        given = {**(values or {}), **more}
+        plan = self._desk.set_parameters(self.name, given, dry_run, expected_revision, at_generation, at_tick)
         return await self._link.perform(plan)
+
+    async def planned_changes(self) -> tuple[PlannedChange, ...]:
+        return (await self.get_parameters()).planned
+
+    async def cancel(self, change: int | PlannedChange) -> PlannedChange:
+        return await self._link.perform(self._desk.cancel_change(self.name, change))
 
     def run(self, generations: int | None = None) -> OpeningStream[Run, Generation]:
         async def open_run() -> Run:
@@ -354,6 +363,12 @@ class World:
 
         names = (await self.info()).gene_names
         return plotting.plot_genes(plotting.columns_of(await self.history(), names), names, ax)
+
+    async def plot_selection(self, gene: str, ax: Any = None) -> Any:
+        from evod import plotting
+
+        names = (await self.info()).gene_names
+        return plotting.plot_selection(plotting.columns_of(await self.history(), names), names, gene, ax)
 
     async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
         from evod import plotting

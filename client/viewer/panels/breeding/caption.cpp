@@ -28,6 +28,9 @@ std::string who(const BreedingRecord& record, std::uint32_t organism) {
     }
     std::string text =
         print("organism %u (rank %u, fitness %.4g", organism, contender->rank() + 1, contender->fitness());
+    if (contender->has_own_fitness()) {
+        text += print(" by shuffling, its own %.4g", contender->own_fitness());
+    }
     if (contender->has_migrant()) {
         text += print(", came from island %u", contender->migrant().island());
     }
@@ -139,7 +142,11 @@ std::string breeding_summary(const BreedingRecord& record) {
     if (breeding.elite_count() > 0) {
         text += " (" + with_separators(breeding.elite_count()) + " of the elite)";
     }
-    return text + " and " + counted(breeding.descendant_count() - breeding.survivor_count(), "child", "children");
+    text += " and " + counted(breeding.descendant_count() - breeding.survivor_count(), "child", "children");
+    if (record.number("shuffle_fitness") == 1.0) {
+        text += " · fitness shuffled among the organisms";
+    }
+    return text;
 }
 
 std::string caption(const BreedingRecord& record, Moment moment) {

@@ -116,6 +116,22 @@ Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other
             make.line(gene + "_mean", "mean", palette::series_green, true);
         }
         break;
+    case Quantity::Selection:
+        make.plot().y_label = "gene units a generation";
+        if (gene.empty()) {
+            make.plot().title = "Selection of the genes";
+            const auto& names = subject.table.gene_names();
+            for (std::size_t i = 0; i < names.size(); ++i) {
+                make.line(names[i] + "_selection", names[i], gene_colours[i % std::size(gene_colours)], true);
+            }
+        } else { // the change last, as it is the sum of the others
+            make.plot().title = "What moved the mean of " + gene;
+            make.line(gene + "_migration", "migration", palette::series_purple, true);
+            make.line(gene + "_transmission", "transmission", palette::series_orange, true);
+            make.line(gene + "_selection", "selection", palette::series_blue, true);
+            make.line(gene + "_change", "change", palette::series_grey, true);
+        }
+        break;
     case Quantity::Diversity:
         make.plot().title = "Diversity";
         make.plot().y_label = "mean deviation of the genes, as a share of their bounds";

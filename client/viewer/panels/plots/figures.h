@@ -12,7 +12,7 @@
 
 namespace evod::viewer {
 
-enum class Quantity { Fitness, Genes, Diversity, Survivors, Deaths };
+enum class Quantity { Fitness, Genes, Selection, Diversity, Survivors, Deaths };
 
 /// A plot and the numbers in it that no table has. It shows tables as they are: they must stay as they were.
 struct Figure {
@@ -30,7 +30,7 @@ struct Subject {
     std::string name; // in the legend, where two are compared
 };
 
-/// gene   of Quantity::Genes: its name; empty: the means of all.
+/// gene   of Quantity::Genes and Selection: its name; empty: the means of all, or what selection did to them.
 /// other  null: nothing is compared. An island that it does not have is all of its islands.
 Figure figure_of(Quantity quantity, const Subject& subject, const Subject* other, const std::string& gene);
 

@@ -14,13 +14,20 @@ namespace {
 
 // Where link::history_columns() has them.
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
+// Of each gene; those of the accounts, of which there are as many, come after those of all genes.
+constexpr std::size_t columns_of_gene = 4;
+
+std::size_t genes_in(std::size_t columns) {
+    return (columns - gene_begin) / (2 * columns_of_gene);
+}
 
 constexpr std::size_t islands_max = 65'536; // more than any world has
 
 /// How numbers of islands become one of all. A deviation's mean is that of the column before it, or of fitness_mean.
 enum class Together { First, Greatest, Least, Sum, Mean, Deviation, Unknown };
 
-Together together(std::size_t column) {
+/// columns  how many there are.
+Together together(std::size_t column, std::size_t columns) {
     using enum Together;
     constexpr Together of_all[gene_begin] = {
         First,     // generation
@@ -44,8 +51,12 @@ Together together(std::size_t column) {
         Sum,       // speed_limit_count
         Unknown,   // best_organism
     };
-    constexpr Together of_gene[4] = {Mean, Deviation, Least, Greatest};
-    return column < gene_begin ? of_all[column] : of_gene[(column - gene_begin) % 4];
+    constexpr Together of_gene[columns_of_gene] = {Mean, Deviation, Least, Greatest};
+    if (column < gene_begin) {
+        return of_all[column];
+    }
+    const bool is_account = column >= gene_begin + genes_in(columns) * columns_of_gene;
+    return is_account ? Mean : of_gene[(column - gene_begin) % columns_of_gene]; // an island is as large as another
 }
 
 std::size_t mean_of_deviation(std::size_t column) {
@@ -72,7 +83,7 @@ std::vector<double> joined(std::span<const std::vector<double>> rows) {
             return sum;
         };
         double& number = all[column];
-        switch (together(column)) {
+        switch (together(column, all.size())) {
         case Together::First:
             break;
         case Together::Greatest:
@@ -154,7 +165,7 @@ void HistoryTable::add(std::span<const std::vector<double>> rows) {
 void HistoryTable::put_generation(std::span<const std::vector<double>> rows) {
     if (names_.empty()) { // genes are called by their numbers until somebody says better
         std::vector<std::string> numbers;
-        for (std::size_t gene = 0; gene < (rows[0].size() - gene_begin) / 4; ++gene) {
+        for (std::size_t gene = 0; gene < genes_in(rows[0].size()); ++gene) {
             numbers.push_back("gene_" + std::to_string(gene));
         }
         set_gene_names(std::move(numbers));

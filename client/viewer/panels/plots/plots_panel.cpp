@@ -21,11 +21,9 @@ struct Tab {
     const char* name;
     Quantity quantity;
 };
-constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},
-                        {"Genes", Quantity::Genes},
-                        {"Diversity", Quantity::Diversity},
-                        {"Survivors", Quantity::Survivors},
-                        {"Deaths", Quantity::Deaths}};
+constexpr Tab tabs[] = {{"Fitness", Quantity::Fitness},     {"Genes", Quantity::Genes},
+                        {"Selection", Quantity::Selection}, {"Diversity", Quantity::Diversity},
+                        {"Survivors", Quantity::Survivors}, {"Deaths", Quantity::Deaths}};
 
 /// A field for a side of a picture.
 void build_pixels(const char* label, const char* name, int& pixels) {
@@ -261,7 +259,10 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     // Below it the row of the export and what became of it.
     const float below = 3.2f * ImGui::GetFrameHeightWithSpacing();
     if (quantity == Quantity::Genes) {
-        build_genes(context);
+        build_gene_choice("all: their means");
+        update_histogram(context);
+    } else if (quantity == Quantity::Selection) {
+        build_gene_choice("all: their selection");
     }
     const auto* other_table = other_world_ ? &other_world_->history.table() : file_ ? &*file_ : nullptr;
     std::optional<Subject> other;
@@ -291,14 +292,14 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     plot_widget("histogram", histogram_.plot, histogram_view_, std::max(height * 0.45f - line, plot_height_min));
 }
 
-void PlotsPanel::build_genes(Context& context) {
+void PlotsPanel::build_gene_choice(const char* all) {
     const auto& names = own_.history.table().gene_names();
     if (std::ranges::find(names, gene_) == names.end()) {
         gene_.clear();
     }
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
-    if (ImGui::BeginCombo("gene", gene_.empty() ? "all: their means" : gene_.c_str())) {
-        if (ImGui::Selectable("all: their means", gene_.empty())) {
+    if (ImGui::BeginCombo("gene", gene_.empty() ? all : gene_.c_str())) {
+        if (ImGui::Selectable(all, gene_.empty())) {
             gene_.clear();
         }
         for (const std::string& name : names) {
@@ -309,10 +310,14 @@ void PlotsPanel::build_genes(Context& context) {
         }
         ImGui::EndCombo();
     }
+}
+
+void PlotsPanel::update_histogram(Context& context) {
     if (gene_.empty()) {
         return;
     }
     const History& history = own_.history;
+    const auto& names = history.table().gene_names();
     const PopulationInquiry::Of whose{history.world(), history.run_id(), island_.value_or(context.watch.island()),
                                       names.size()};
     population_.update(context.watch, whose, !history.run_id().empty(), context.now);
@@ -383,7 +388,11 @@ void PlotsPanel::save_png() {
                 what[0] = static_cast<char>(what[0] + ('a' - 'A'));
             }
         }
-        what = quantity_ == Quantity::Genes && !gene_.empty() ? gene_ : what;
+        if (!gene_.empty() && quantity_ == Quantity::Genes) {
+            what = gene_;
+        } else if (!gene_.empty() && quantity_ == Quantity::Selection) {
+            what = gene_ + "-selection";
+        }
         told_ = "Saved " + save(figure_, view_, what);
         if (quantity_ == Quantity::Genes && !gene_.empty() && !histogram_.plot.series.empty()) {
             told_ += " and " + save(histogram_, histogram_view_, gene_ + "-histogram");

@@ -38,7 +38,10 @@ class PlotsPanel : public Panel {
     void build_choices();
     void build_comparison();
     void build_quantity(Context& context, Quantity quantity);
-    void build_genes(Context& context);
+    /// all  what is said where no gene is chosen.
+    void build_gene_choice(const char* all);
+    /// Of the gene that is chosen.
+    void update_histogram(Context& context);
     void build_export();
     void compare_with_file(const std::string& path);
 

@@ -20,6 +20,19 @@ TEST(Caption, SaysWhereThePointerFell) {
               "from island 3), 30.00 % of the wheel.");
 }
 
+TEST(Caption, SaysThatTheFitnessWasShuffledAndWhatWasItsOwn) {
+    evod::v1::Breeding breeding = made_up::wheel();
+    EXPECT_EQ(breeding_summary(record_of(breeding)).find("shuffled"), std::string::npos);
+    auto& shuffled = *breeding.add_parameters();
+    shuffled.set_name("shuffle_fitness");
+    shuffled.mutable_value()->set_flag(true);
+    breeding.mutable_contenders(2)->set_own_fitness(12.5);
+    EXPECT_TRUE(breeding_summary(record_of(breeding)).ends_with(" · fitness shuffled among the organisms"));
+    EXPECT_NE(caption(record_of(breeding), {BreedingStage::Picking, 1})
+                  .find("organism 2 (rank 2, fitness 30 by shuffling, its own 12.5)"),
+              std::string::npos);
+}
+
 TEST(Caption, SaysWhoWonATournament) {
     evod::v1::Breeding breeding = made_up::wheel();
     auto& pick = *breeding.mutable_picks(0);

@@ -7,6 +7,7 @@ namespace {
 
 using testing::Each;
 using testing::ElementsAre;
+using testing::IsNan;
 
 HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
     HistoryTable table;
@@ -25,6 +26,13 @@ HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
             statistics.add_genes()->set_mean(100);
             statistics.mutable_genes(0)->set_deviation(4);
             statistics.add_genes()->set_mean(50);
+            if (generation > 1) { // the first came from none
+                v1::GeneAccount& account = *statistics.mutable_genes(0)->mutable_account();
+                account.set_selection(3 + 2 * island);
+                account.set_transmission(-1);
+                account.set_migration(0.5);
+                account.set_change(2.5 + 2 * island);
+            }
             rows.push_back(link::history_numbers(statistics));
         }
         table.add(rows);
@@ -75,6 +83,18 @@ TEST(Figures, GenesAreShownOneByOneOrTogether) {
     EXPECT_THAT(figure.plot.series[0].low, Each(96));
 }
 
+TEST(Figures, SelectionIsAskedOfAllGenesAndAllThatMovedTheMeanOfOne) {
+    const HistoryTable table = table_of(2, 3);
+    EXPECT_THAT(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "")), ElementsAre("impulse"))
+        << "nobody knows of the other gene";
+    const Figure figure = figure_of(Quantity::Selection, {table, std::nullopt, "lab"}, nullptr, "impulse");
+    ASSERT_THAT(names_of(figure), ElementsAre("migration", "transmission", "selection", "change"));
+    EXPECT_THAT(figure.plot.series[0].y, ElementsAre(IsNan(), 0.5, 0.5));
+    EXPECT_THAT(figure.plot.series[2].y, ElementsAre(IsNan(), 4, 4)) << "the mean of both islands";
+    EXPECT_THAT(figure.plot.series[3].y, ElementsAre(IsNan(), 3.5, 3.5));
+    EXPECT_TRUE(names_of(figure_of(Quantity::Selection, {table, 0u, "lab"}, nullptr, "body_size")).empty());
+}
+
 TEST(Figures, DeathsAreStacked) {
     const HistoryTable table = table_of(2, 3);
     const Figure figure = figure_of(Quantity::Deaths, {table, std::nullopt, "lab"}, nullptr, "");
@@ -86,8 +106,8 @@ TEST(Figures, DeathsAreStacked) {
 
 TEST(Figures, NothingIsKnownOfAnEmptyTable) {
     const HistoryTable table;
-    for (const auto quantity :
-         {Quantity::Fitness, Quantity::Genes, Quantity::Diversity, Quantity::Survivors, Quantity::Deaths}) {
+    for (const auto quantity : {Quantity::Fitness, Quantity::Genes, Quantity::Selection, Quantity::Diversity,
+                                Quantity::Survivors, Quantity::Deaths}) {
         EXPECT_TRUE(figure_of(quantity, {table, std::nullopt, "lab"}, nullptr, "").plot.series.empty());
     }
     EXPECT_TRUE(histogram_of("impulse", {}).plot.series.empty());
