@@ -3,8 +3,8 @@
     storage_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
 The same ticks of the same run are simulated again and again at full speed on one thread, by turns by a server that keeps
-its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the storage
-thread's processor time, both over the simulation thread's time where nothing is kept. A server is killed late in a
+its runs and one that keeps nothing. The cost is the rise of the simulation thread's processor time and the processor
+time of the threads that write and pack, both over the simulation thread's time where nothing is kept. A server is killed late in a
 generation, so that most of one is to be simulated again.
 """
 import argparse
@@ -28,17 +28,21 @@ from evod.v1 import commands_pb2 as c, world_pb2 as w  # noqa: E402
 first_tick, ticks = 60, max(4_900, 60_000_000 // options.organisms)  # two ends of a generation at least
 
 
+def writes(thread):
+    return thread in ("storage", "packing")
+
+
 def measure_run(*arguments):
-    """Seconds of the simulation thread and of the storage thread for the ticks; seconds of some commands."""
+    """Seconds of the simulation thread and of those that write for the ticks; seconds of some commands."""
     with Server(options.evod, "--threads", "1", *arguments) as server:
         control = server.control
         control.call(create_world=c.CreateWorld(name="w", seed=1,
                                                 parameters=assignments(benchmark_world(options.organisms))))
         control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
         control.run_to(first_tick)
-        before = server.thread_s("simulation"), server.thread_s("storage")
+        before = server.thread_s("simulation"), server.thread_s(writes)
         control.run_to(first_tick + ticks)
-        after = server.thread_s("simulation"), server.thread_s("storage")
+        after = server.thread_s("simulation"), server.thread_s(writes)
         commands = []
         for _ in range(100):
             began = time.perf_counter()

@@ -26,6 +26,7 @@ const std::map<std::string, std::string> golden_hashes = {
     {"twenty_thousand", "733c6c34850357d87a6ce2d9ae38953e"},
     {"far_corner", "f5bba82a8a064dbfff81992f98267e52"},
     {"rastrigin", "6f8c8ba85d02b6725b8107a0c1b60946"},
+    {"shuffled_fitness", "1ea6208418009bccf45b728ecac2e803"},
 };
 
 class GoldenHash : public testing::TestWithParam<Scenario> {};

@@ -101,6 +101,13 @@ const std::vector<Scenario>& all() {
          base::Seed{51},
          40,
          {}},
+
+        {"shuffled_fitness", // decides who stays, breeds, migrates and makes room
+         R"({"island_count": 3, "population_size": 30, "generation_s": 2, "shuffle_fitness": true, "elite_count": 2,
+             "migration": "ring", "migration_epoch": 1, "migrant_count": 2, "selection": "tournament"})",
+         base::Seed{53},
+         480,
+         {}},
     };
     return scenarios;
 }

@@ -33,7 +33,7 @@ import sys
 import tempfile
 import time
 
-SKIPPED, PATIENCE_S = 77, 60
+SKIPPED, PATIENCE_S = 77, 180
 LANGUAGES = {"sh", "python", "sql", "text"}
 VERSION = r"(?<=evod )\d+\.\d+\.\d+"
 ROOT = pathlib.Path(__file__).resolve().parents[2]

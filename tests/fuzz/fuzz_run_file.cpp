@@ -6,6 +6,7 @@
 #include "server/console/export.h"
 #include "server/storage/row.h"
 #include "server/storage/run_file.h"
+#include "tests/support/older_run_file.h"
 
 #include <sqlite3.h>
 #include <unistd.h>
@@ -112,10 +113,8 @@ struct Place {
     void write_older() const {
         sqlite3* database = nullptr;
         require(sqlite3_open(path.c_str(), &database) == SQLITE_OK);
-        require(sqlite3_exec(database,
-                             "DROP TABLE founders; DROP TABLE inherited_statistics;"
-                             "DELETE FROM run WHERE key IN ('inherited_generations', 'build'); PRAGMA user_version = 2",
-                             nullptr, nullptr, nullptr) == SQLITE_OK);
+        const std::string older = support::as_of_format(2) + "; DELETE FROM run WHERE key = 'build'";
+        require(sqlite3_exec(database, older.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
         sqlite3_close(database);
         const auto file = storage::RunFile::open_read_only(path);
         require(file.has_value() && (*file)->check().has_value());
@@ -142,8 +141,8 @@ struct Place {
 /// One column of one row gets another value, of its kind, and the row its checksum.
 void change_row(sqlite3* database, Bytes& bytes) {
     constexpr const char* tables[] = {
-        "run",        "journal",  "parameters", "generation", "population",           "outcome",   "statistics",
-        "state_hash", "end_mark", "thinned",    "founders",   "inherited_statistics", "checkpoint"};
+        "run",        "journal",  "parameters", "generation", "population",           "outcome",    "statistics",
+        "state_hash", "end_mark", "thinned",    "founders",   "inherited_statistics", "checkpoint", "checkpoint_part"};
     const std::string table = tables[take<std::uint8_t>(bytes) % std::size(tables)];
     const int row = take<std::uint8_t>(bytes), wanted = take<std::uint8_t>(bytes);
     if (table == "thinned")

@@ -84,6 +84,31 @@ class Pictures(unittest.TestCase):
             genes = world.plot_genes().lines
             numpy.testing.assert_allclose([line.get_ydata() for line in genes], numpy.array([g.genes for g in told]).T)
 
+    def test_selection_is_drawn_as_it_is_told_over_all_islands(self):
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+        with tempfile.TemporaryDirectory() as folder:
+            with evod.local(seed=3, experiment=experiment, data=folder) as lab:
+                world = lab.world()
+                told = list(world.run(4))
+                axes = world.plot_selection("body_size")
+                with self.assertRaisesRegex(evod.Error, "there is no gene 'size'; allowed: normal_speed, impulse, body_size"):
+                    world.plot_selection("size")
+            with evod.open_run(folder + "/default.evod") as run:
+                from_file = run.plot_selection("body_size")
+                table = run.generations()
+        lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+        for part in ("selection", "transmission", "migration", "change"):
+            numpy.testing.assert_allclose(lines[part], [getattr(g, part)[2] for g in told])
+            (again,) = (line.get_ydata() for line in from_file.lines if line.get_label() == part)
+            numpy.testing.assert_array_equal(again, lines[part])
+            self.assertTrue(numpy.isnan(lines[part][0]))
+            self.assertFalse(numpy.isnan(lines[part][1:]).any())
+            self.assertTrue((lines[part][1:] != 0).all(), part)
+        sums = lines["selection"] + lines["transmission"] + lines["migration"]
+        numpy.testing.assert_allclose(sums[1:], lines["change"][1:], rtol=1e-9)
+        numpy.testing.assert_allclose(lines["change"][1:], numpy.diff([g.genes[2] for g in told]), atol=1e-10)
+        self.assertEqual(list(table["body_size_change"].isna()), [True, True] + [False] * 6)
+
     def test_a_notebook_plays_a_world(self):
         with evod.local(seed=3, speed=10) as lab:
             world = lab.world()

@@ -58,6 +58,13 @@ async def walk_all(lab):
     assert (await there(world.get_parameters())).mutation_chance == 0.5
     assert (await first(events)).parameters_changed.changed[0].name == "mutation_chance"
     await there(events.close())
+    planned = await there(world.set(mutation_step=9.0, at_generation=50))
+    assert planned.change.id == 1 and planned.change.generation == 50 and planned.change.values == {"mutation_step": 9.0}
+    assert planned.planned == (planned.change,)
+    later = (await there(world.set(food_health=9.0, at_tick=10**6))).change
+    assert later.tick == 10**6 and later.generation is None
+    assert await there(world.cancel(planned.change)) == planned.change
+    assert await there(world.cancel(later.id)) == later
 
     # Pictures, whole and in tiles.
     assert len((await there(world.frame())).organisms) == 10

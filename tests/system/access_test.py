@@ -24,7 +24,7 @@ PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 
 LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
     "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
-    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "seek": CONTROLLER,
+    "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER, "seek": CONTROLLER,
     "close_past": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
     "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "get_breeding": VIEWER,
@@ -375,13 +375,20 @@ class Tls(Access):
         certificates, strangers = (f"{self.folder}/{name}/evod.crt" for name in ("certificates", "strangers"))
         self.assertIn("default", self.evoctl("--ca", certificates, "worlds", server=server))
         self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_CA": certificates}))
-        self.assertIn("not believed", self.evoctl("--ca", strangers, "worlds", server=server, status=3))
-        self.assertIn("not believed", self.evoctl("--tls", "worlds", server=server, status=3))
-        self.assertIn("/nowhere", self.evoctl("--ca", "/nowhere", "worlds", server=server, status=3))
+        for words, options in ((f"not believed: .*{strangers} does not vouch for it", ["--ca", strangers]),
+                               ("not believed: .*give the server's evod.crt with --ca", ["--tls"]),
+                               ("^evoctl: --ca: /nowhere cannot be used for TLS: No such file", ["--ca", "/nowhere"]),
+                               (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__])):
+            self.assertRegex(self.evoctl(*options, "worlds", server=server, status=3), words)
         server.end()
         elsewhere = self.pair("elsewhere", "elsewhere.example")
-        self.assertIn("not believed", self.evoctl("--ca", str(elsewhere / "evod.crt"), "worlds", status=3,
-                                                  server=self.serve(*self.files("elsewhere"))))
+        self.assertIn("not believed: it is for other names (elsewhere.example): reach the server by one of them",
+                      self.evoctl("--ca", str(elsewhere / "evod.crt"), "worlds", status=3,
+                                  server=self.serve(*self.files("elsewhere"))))
+
+    def test_evoctl_says_that_a_server_does_not_speak_tls(self):
+        told = self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "worlds", server=self.serve(), status=3)
+        self.assertRegex(told, "no TLS with localhost:[0-9]+: it does not speak TLS: leave out --ca")
 
     def test_clients_may_have_to_show_a_certificate(self):
         clients = self.pair("clients", "client")
@@ -389,6 +396,15 @@ class Tls(Access):
         context = self.context()
         with self.assertRaises((ssl.SSLError, ConnectionError, AssertionError)):
             self.come(server, tls=context)
+        trusting = ["--ca", f"{self.folder}/certificates/evod.crt"]
+        # The server's word may be lost with the connection.
+        lost = "closed the connection: perhaps it wants another certificate of ours, see --cert"
+        self.assertRegex(self.evoctl(*trusting, "worlds", server=server, status=3),
+                         f"it wants a certificate of ours: give one with --cert and --key|{lost}")
+        other = self.pair("others", "client")
+        self.assertRegex(self.evoctl(*trusting, "--cert", str(other / "evod.crt"), "--key", str(other / "evod.key"),
+                                     "worlds", server=server, status=3),
+                         f"it does not believe the certificate of --cert|{lost}")
         context.load_cert_chain(clients / "evod.crt", clients / "evod.key")
         self.assertIsNotNone(self.come(server, tls=context).welcome)
         self.assertIn("default", self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "--cert",

@@ -8,7 +8,7 @@ import sys
 import unittest
 
 import export_test
-from past_test import CREATE, EVOCTL, c, plain, w
+from past_test import CREATE, EVOCTL, EVOD, c, plain, w
 
 NOT_FOUND, FAILED_PRECONDITION = 5, 9
 
@@ -52,7 +52,10 @@ class Breeding(export_test.Runs):
             home = (contender.migrant.island, contender.migrant.organism) if contender.HasField("migrant") else \
                 (island, organism)
             homes.append(home)
-            self.assertEqual(contender.fitness, float(table[generation, *home]["fitness"]))
+            shuffled = self.parameters(bred)["shuffle_fitness"]
+            self.assertEqual(contender.HasField("own_fitness"), shuffled)
+            self.assertEqual(contender.own_fitness if shuffled else contender.fitness,
+                             float(table[generation, *home]["fitness"]))
             self.assertEqual(contender.copies, sum(pick.organism == organism for pick in bred.picks))
         order = sorted(range(len(homes)), key=lambda i: (-bred.contenders[i].fitness, i))
         self.assertEqual([bred.contenders[organism].rank for organism in order], list(range(len(order))))
@@ -100,6 +103,37 @@ class Breeding(export_test.Runs):
         server.end()
         replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
         self.assertEqual(self.breeding(replayed, generation=1, island=1), told[1, 1])
+
+    def test_of_a_shuffled_fitness_is_told_what_the_selection_saw_and_the_run_can_be_made_again(self):
+        server, client = self.serve()
+        self.run_world(client, 5, shuffle_fitness=True, elite_count=2)
+        told = {(generation, island): self.breeding(client, generation=generation, island=island)
+                for generation in range(1, 5) for island in range(2)}
+        table = self.organisms()
+        for (generation, island), bred in told.items():
+            self.check(bred, table)
+            if generation % 2:  # nobody migrates: it is the island's own fitness, dealt out anew
+                self.assertEqual(sorted(contender.fitness for contender in bred.contenders),
+                                 sorted(contender.own_fitness for contender in bred.contenders))
+            self.assertNotEqual([contender.fitness for contender in bred.contenders],
+                                [contender.own_fitness for contender in bred.contenders])
+        text = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", "breeding"],
+                              capture_output=True, text=True).stdout
+        self.assertRegex(text, r"ORGANISM +OWN FITNESS +SHUFFLED +RANK")
+        self.assertIn("shuffle_fitness=true", text)
+        # Killed, it goes on as if nothing had been; a fork of its third generation goes the same way.
+        server.kill()
+        server, client = self.serve()
+        client.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
+        for name, generations in ("w", 2), ("f", 5):
+            client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
+            client.call(run=c.Run(world=name, generations=generations))
+        plain.until(lambda: all(client.world(name).state == w.RUN_STATE_WAITING for name in "wf"), "generations")
+        self.assertEqual(client.world("w").state_hash, client.world("f").state_hash)
+        server.end()
+        for name in "wf":
+            done = subprocess.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
+            self.assertIn("all agrees", done.stdout, done.stderr)
 
     def test_every_method_of_selection_tells_its_picks(self):
         _, client = self.serve()
@@ -213,6 +247,7 @@ class Breeding(export_test.Runs):
         for child in bred.descendants[6:]:
             self.assertRegex(text, rf"\n *{child.id}  child +{child.first_parent}, {child.second_parent} ")
         self.assertEqual(evoctl("breeding", "--rows", "4", "--from", "3").count("more: --from 7"), 2)  # not of 6 picks
+        self.assertNotIn("OWN FITNESS", text)
         told = json.loads(evoctl("--json", "breeding", "--generation", "1"))
         self.assertEqual(len(told["descendants"]), 12)
         self.assertEqual(told["descendants"][7]["first_parent"],

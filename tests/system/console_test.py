@@ -114,6 +114,69 @@ class Run(Folder):
                     self.assertIn(word, done.stderr)
 
 
+class Options(Folder):
+    def test_what_stands_before_a_subcommand_counts_as_if_it_came_after(self):
+        short = ["--generations", "1", *Run.short]
+        self.assertEqual(state(evod("--seed", "7", "run", *short).stdout), state(evod("run", "--seed", "7", *short).stdout))
+        evod("--data", self.folder.name, "token", "add", "anna", "--role", "viewer")
+        self.assertIn("anna", evod("token", "list", "--data", self.folder.name).stdout)
+        self.assertIn("given twice, before run and after it", evod("--seed", "7", "run", "--seed", "7", status=2).stderr)
+        said = evod("--data", self.folder.name, "fork", "/nowhere.evod", "--name", "a b", status=1).stderr
+        self.assertIn("--name: got \"a b\"", said)
+
+    def test_what_a_subcommand_has_no_use_for_is_refused(self):
+        path = self.file("{}")
+        for option, words in ((["--port", "7744"], ["verify", path]), (["--data", self.folder.name], ["run", path]),
+                              (["--start"], ["replay", path]), (["--keep-every", "2"], ["export", path, "--what", "events"]),
+                              (["--speed", "2"], ["fork", path, "--name", "x"]), (["--seed", "1"], ["check", path]),
+                              (["--require-token"], ["token", "list"]), (["--threads", "2"], ["certificate", "localhost"]),
+                              (["--log-level", "info"], ["parameters"]), (["--keep-nothing"], ["limits"])):
+            command = " ".join(words[:2]) if words[0] == "token" else words[0]
+            with self.subTest(command):
+                said = evod(*option, *words, status=2).stderr
+                self.assertIn(f"{option[0]}: an option of the server, which evod {command} has no use for: leave it out", said)
+
+    def test_what_writes_files_is_refused_where_nothing_is_kept(self):
+        for option in (["--durability", "full"], ["--file-bytes-max", "2000000"], ["--keep-every", "2"]):
+            self.assertIn(f"--keep-nothing excludes {option[0]}", evod("--keep-nothing", *option, status=2).stderr)
+
+    def test_a_number_that_cannot_be_is_told_with_what_is_allowed(self):
+        for words, least, most in ((["--port"], 0, 65535), (["--http-port"], 0, 65535), (["--threads"], 1, 1024),
+                                   (["--sessions-max"], 1, 1000000), (["--seed"], 0, 2**64 - 1),
+                                   (["--keep-every"], 1, 10**9), (["--file-bytes-max"], 2**20, 2**50),
+                                   (["run", "--generations"], 0, 2**32 - 1), (["run", "--threads"], 1, 1024),
+                                   (["replay", "x", "--generation"], 1, 2**64 - 1),
+                                   (["fork", "x", "--name", "y", "--at-generation"], 1, 2**64 - 1),
+                                   (["export", "x", "--generation"], 1, 2**64 - 1), (["verify", "x", "--threads"], 1, 1024)):
+            for given in ("-1", "1e99", "abc", "1.5", "010", str(2**64), *(["0"] if least > 0 else [])):
+                with self.subTest(words=words, given=given):
+                    self.assertIn(f"{words[-1]}: must be a whole number, {least} to {most}, not {given}",
+                                  evod(*words, given, status=2).stderr)
+        for given in ("0", "-1", "1e99", "abc", "nan"):
+            self.assertIn(f"--speed: must be max, or a number from 0.001 to 10000, not {given}",
+                          evod("--speed", given, status=2).stderr)
+
+
+class Output(Folder):
+    def test_what_cannot_be_written_is_no_success(self):
+        for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",
+                                                                                                   "1", "--generations", "1"):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([EVOD, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=100)
+            self.assertEqual(done.returncode, 1, words)
+            self.assertIn("evod: standard output cannot be written", done.stderr)
+
+    def test_a_word_that_is_no_command_is_told_those_there_are(self):
+        said = evod("exprot", status=2).stderr
+        self.assertIn("exprot", said)
+        self.assertIn("Commands are run compare sweep check fork replay verify export token certificate parameters limits", said)
+
+    def test_a_file_that_cannot_be_made_is_told_with_the_reason(self):
+        self.assertIn(f"--csv: cannot write {self.folder.name}: Is a directory",
+                      evod("run", "--csv", self.folder.name, "--generations", "1", status=1).stderr)
+        self.assertIn(f"there are no tokens in {self.folder.name}", evod("token", "list", "--data", self.folder.name).stderr)
+
+
 class Population(Folder):
     heading = "island,organism,normal_speed,impulse,body_size,base_health,food_radius,poison_radius\n"
     two = ["--set", "population_size=2", "--set", "generation_s=1", "--generations", "1", "--seed", "1"]
@@ -178,6 +241,20 @@ class Check(Folder):
         self.assertIn("this is a folder", evod("check", self.folder.name, status=1).stderr)
 
 
+class Image(Folder):
+    def test_what_it_runs_is_given_options_that_it_knows(self):
+        program = pathlib.Path(self.file("#!/bin/sh\necho \"$@\"\n", "evod"))
+        program.chmod(0o755)
+        path = f"{self.folder.name}:{os.environ['PATH']}"
+        for words, given in ((["--start"], "--bind 0.0.0.0 --data /data --start"), ([], "--bind 0.0.0.0 --data /data"),
+                             (["replay", "x.evod"], "--bind 0.0.0.0 --data /data replay x.evod"),
+                             (["token", "list"], "--data /data token list"), (["verify", "x.evod"], "verify x.evod"),
+                             (["fork", "x.evod", "--name", "y"], "--data /data fork x.evod --name y")):
+            done = subprocess.run([ROOT / "docker/entrypoint", *words], capture_output=True, text=True, check=True,
+                                  env={**os.environ, "PATH": path})
+            self.assertEqual(done.stdout.strip(), given)
+
+
 class Documents(unittest.TestCase):
     """What the program prints stands in them."""
 
@@ -188,4 +265,5 @@ class Documents(unittest.TestCase):
         self.assertIn("\n\n" + evod("limits").stdout + "\n", (ROOT / "docs/OPERATIONS.md").read_text())
 
 
-unittest.main()
+if __name__ == "__main__":
+    unittest.main()

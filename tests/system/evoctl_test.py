@@ -1,12 +1,18 @@
 """evoctl as a user meets it: every command against a real server, right and wrong. EVOD and EVOCTL name the programs."""
+import contextlib
 import csv
+import fcntl
 import io
 import json
 import os
 import pathlib
+import pty
 import re
+import signal
+import struct
 import subprocess
 import tempfile
+import termios
 import unittest
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
@@ -129,6 +135,80 @@ class Commands(WithServer):
         self.assertIn("NOT_FOUND", self.evoctl("--world", "other", "pause", status=1))
         self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
 
+    def test_a_world_is_forked_by_name_at_a_generation_or_from_now(self):
+        self.evoctl("run", "3", "--wait")
+        self.evoctl("fork", "default", "--at-generation", "2", "--name", "then")
+        self.evoctl("fork", "then", "--name", "later")
+        self.evoctl("--world", "default", "fork", "--name", "now")
+        self.assertEqual([self.answer("--world", name, "stats")["world"]["generation"] for name in
+                          ("then", "later", "now")], ["2", "2", "3"])
+        self.assertIn("--name is required", self.evoctl("fork", "other", status=2))
+        self.assertIn("NOT_FOUND", self.evoctl("fork", "nobody", "--name", "x", status=1))
+        self.assertIn("at_generation: got 9, allowed 1 to 3",
+                      self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
+
+    def test_the_past_is_looked_at_without_a_window(self):
+        self.evoctl("create", "small", "--seed", "3", "--set", "generation_s=2")
+        self.evoctl("--world", "small", "speed", "max")
+        self.evoctl("--world", "small", "run", "3", "--wait")
+        small = lambda *words: self.answer("--world", "small", *words)
+        now = small("organism", "3")
+        self.assertEqual(small("organism", "3", "--at-generation", "3", "--at-tick", "120"), now)
+        self.assertEqual(small("organism", "3", "--at-tick", "360"), now)
+        born = small("organism", "3", "--at-generation", "2")
+        self.assertEqual((born["generation"], born["lived_s"], born["alive"]), ("2", 0, True))
+        then = small("stats", "--at-generation", "3", "--at-tick", "60")
+        self.assertEqual((then["world"]["generation"], then["world"]["tick"]), ("3", "300"))
+        self.assertEqual(then["last"][0]["generation"], "2")
+        told = self.evoctl("--world", "small", "stats", "--at-generation", "3", "--at-tick", "60")
+        self.assertIn("small as it was: generation 3, tick 300", told)
+        self.assertIn("\nthen\n", told)
+        self.assertIn("small as it was: generation 2, tick 120",
+                      self.evoctl("--world", "small", "organism", "3", "--at-generation", "2"))
+        self.assertIn("generation: got 9, allowed 1 to 3",
+                      self.evoctl("--world", "small", "stats", "--at-generation", "9", status=1))
+        self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
+
+    def test_a_drawing_fits_on_a_small_screen(self):
+        self.evoctl("run", "2", "--wait")
+        for command in ["watch"], ["top", "--interval", "0.1"]:
+            for lines, columns in ((24, 80), (6, 30), (2, 10), (1, 1)):
+                with self.subTest(command=command[0], lines=lines, columns=columns):
+                    own, other = pty.openpty()
+                    fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", lines, columns, 0, 0))
+                    process = subprocess.Popen([EVOCTL, "--server", self.address, *command], stdin=other, stdout=other,
+                                               stderr=subprocess.DEVNULL)
+                    os.close(other)
+                    said = b""
+                    while said.count(b"\x1b[J") < 4:  # three drawings that are whole
+                        said += os.read(own, 1 << 16)
+                    process.send_signal(signal.SIGINT)
+                    with contextlib.suppress(OSError):
+                        while os.read(own, 1 << 16):
+                            pass
+                    os.close(own)
+                    self.assertEqual(process.wait(timeout=30), 0)
+                    pages = said.decode().split("\x1b[J")[1:4]
+                    for page in pages:
+                        drawn = re.sub(r"\x1b\[\d*[AH]|\r", "", page).split("\n")
+                        self.assertLessEqual(len(drawn), lines)
+                        self.assertLessEqual(max(map(len, drawn)), columns)
+                        self.assertTrue(drawn[0])
+
+    def test_files_that_cannot_be_read_and_output_that_cannot_be_written_are_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for option, what in ("--experiment", "experiment"), ("--population", "population"):
+                for path, why in (folder, "Is a directory"), (folder + "/none", "No such file or directory"):
+                    self.assertIn(f"the {what} file {path} cannot be read: {why}",
+                                  self.evoctl("create", "x", option, path, status=2))
+        self.assertIn("--key: mine.key is of no use without its certificate: give --cert",
+                      self.evoctl("--key", "mine.key", "status", status=2))
+        with open("/dev/full", "w") as full:
+            for words in (["params"], ["--json", "describe"], ["worlds"]):
+                done = subprocess.run([EVOCTL, "--server", self.address, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("evoctl: standard output cannot be written", done.stderr)
+
     def test_watch_and_events_follow(self):
         self.evoctl("run")
         self.assertEqual(len(self.evoctl("watch", "--generations", "3").strip().splitlines()), 3)
@@ -157,6 +237,26 @@ class WithoutServer(unittest.TestCase):
         for words in (["dance"], ["run", "-1"], ["step", "many"], ["create"], []):
             done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
             self.assertEqual(done.returncode, 2, words)
+
+    def test_a_number_that_cannot_be_is_told_with_what_is_allowed(self):
+        most, index = 2**64 - 1, 2**32 - 1
+        for words, name, least, greatest in (
+                (["run"], "N", 1, most), (["step"], "N", 1, most), (["until"], "TICK", 0, most),
+                (["reset", "--seed"], "--seed", 0, most), (["organism"], "ID", 0, index),
+                (["organism", "1", "--island"], "--island", 0, index), (["history", "--from"], "--from", 0, most),
+                (["stats", "--at-generation"], "--at-generation", 1, most), (["breeding", "--rows"], "--rows", 1, 1000),
+                (["watch", "--generations"], "--generations", 1, most), (["events", "--count"], "--count", 1, most),
+                (["fork", "--name", "x", "--at-generation"], "--at-generation", 1, most)):
+            for given in ("1e99", "abc", "1.5", str(2**64), *(["-1"] if words[-1].startswith("--") else []),
+                          *(["0"] if least > 0 else [])):
+                with self.subTest(words=words, given=given):
+                    done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True, text=True)
+                    self.assertEqual(done.returncode, 2)
+                    self.assertIn(f"{name}: must be a whole number, {least} to {greatest}, not {given}", done.stderr)
+        for given in ("0", "-1", "nan", "soon"):
+            done = subprocess.run([EVOCTL, "--timeout", given, "status"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"--timeout: must be a number, 0.001 to 86400, not {given}", done.stderr)
 
 
 unittest.main()

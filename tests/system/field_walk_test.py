@@ -32,6 +32,8 @@ EDGES = {
     "set_speed.speed.real_time_factor": ([0.001, 10000.0], [0.0009, 10001.0, 0.0, -1.0]),
     "subscribe_snapshots.rate_hz": ([1e-3, 1e9], [0.0, -1.0]),
     "subscribe_snapshots.unacknowledged_max": ([1, 1000], [0, 1001]),
+    "set_parameters.at_generation": ([2, 2**64 - 1], [0, 1]),
+    "set_parameters.at_tick": ([1, 2**64 - 1], [0]),
     "request_id": ([1, 2**64 - 1], [0]),
 }
 NAMES = [b"", b"../x", b"/etc/passwd", b"/tmp/x", b"a/b", b"..", b".", b"x\0y", b"x.evod", b"a\n", b"%s%n", b"\xff\xfe",
@@ -181,7 +183,7 @@ class Walk(access.Access):
             self.assertEqual(status.code != OK, refused, said)
         if status.code == INVALID and "is not a" not in status.message:  # of what can be read as a message
             named = [violation.field for violation in status.violations]
-            if ".parameters." in path or ".population." in path:  # is named as what it would have set
+            if ".parameters." in path or ".population." in path or ".schedule." in path:  # is named as what it would have set
                 self.assertTrue([x for x in named if x.startswith(path.split(".")[0] + ".")], said)
             else:
                 self.assertTrue([x for x in named if path == x or path.startswith(x + ".")], said)

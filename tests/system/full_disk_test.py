@@ -171,6 +171,22 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(control.call(12, pause=c.Pause()).applied_tick, paused.applied_tick)
         server.end()
 
+    def test_ended_while_its_disk_is_full_it_says_what_is_lacking(self):
+        self.mount(8)
+        server = self.serve("--seed", "3", "--speed", "1000")
+        control = self.client(server, "control")
+        self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
+        before = control.world()
+        self.fill_and_ask_for_what_cannot_be_written(server, control)
+        server.end()
+        self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the ends of \d+ generations, '
+                                          f"1 commands, and where it stood last. {self.data}/default.evod has all that was answered")
+        self.make_room()
+        server = self.serve()
+        now = self.client(server, "control").world()
+        self.assertEqual((now.tick, now.state_hash, now.state), (before.tick, before.state_hash, before.state))
+        server.end()
+
     def test_killed_while_its_disk_is_full_it_goes_on_without_what_nobody_was_told_of(self):
         self.mount(8)
         server = self.serve("--seed", "3", "--speed", "1000")

@@ -336,6 +336,10 @@ class Worlds(Case):
         small = plain.assignments(population_size=1, food_count=0, poison_count=0)
         while len(client.call(list_worlds=c.ListWorlds()).worlds.worlds) < limits.worlds_max:
             client.call(create_world=c.CreateWorld(name=f"w{client.request_id}", parameters=small))
+        for _ in range(limits.planned_changes_max):
+            client.call(set_parameters=c.SetParameters(world="default", at_tick=10**9))
+        with self.meets(other, "planned_changes_max"):
+            client.call(EXHAUSTED, set_parameters=c.SetParameters(world="default", at_tick=10**9))
         with self.meets(other, "worlds_max"):
             client.call(EXHAUSTED, create_world=c.CreateWorld(name="one_more", parameters=small))
         client.call(delete_world=c.DeleteWorld(world="default"))

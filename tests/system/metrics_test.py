@@ -150,6 +150,16 @@ class Counts(Case):
             at_rest = self.wait(server, lambda m: m("evod_ticks_per_second", world="default") == 0, "rest")
             self.assertEqual(at_rest("evod_ticks_total", world="default"), ticks)
 
+    def test_pictures_that_are_given_away(self):
+        server = self.serve("--speed", "max", "--start")
+        with self.client(server) as client:
+            before = self.wait(server, lambda m: m("evod_ticks_total", world="default") > 0, "a tick")
+            self.assertEqual(before("evod_picture_seconds_count", world="default"), 0)
+            client.call(subscribe_snapshots=c.SubscribeSnapshots(world="default", rate_hz=20))
+            after = self.wait(server, lambda m: m("evod_picture_seconds_count", world="default") > 3, "pictures")
+            self.assertEqual(after.types["evod_picture_seconds"], "histogram")
+            self.assertGreater(after("evod_picture_seconds_sum", world="default"), 0)
+
     def test_worlds_come_and_go(self):
         server = self.serve()
         with self.client(server) as client:
@@ -216,7 +226,7 @@ class Counts(Case):
         # One lists what is open with one more descriptor.
         self.assertLess(abs(metrics("process_open_fds") - len(os.listdir(f"/proc/{server.process.pid}/fd"))), 4)
         threads = [value for (name, _), value in metrics.samples.items() if name == "evod_thread_cpu_seconds_total"]
-        self.assertEqual(len(threads), 3)
+        self.assertEqual(len(threads), 4)
         self.assertLessEqual(max(threads), metrics("process_cpu_seconds_total") + 1)
         version = subprocess.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
         self.assertEqual(metrics("evod_build_info", version=version), 1)

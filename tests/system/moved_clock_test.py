@@ -1,12 +1,13 @@
 """Real servers while somebody puts the clock on the wall ten years forward and back: nothing changes.
 
-    EVOD=… MESSAGES=… MOVED_CLOCK_LIBRARY=… moved_clock_test.py
+    EVOD=… EVOCTL=… MESSAGES=… MOVED_CLOCK_LIBRARY=… moved_clock_test.py
 """
 import datetime
 import mmap
 import os
 import re
 import struct
+import subprocess
 import tempfile
 import unittest
 
@@ -47,6 +48,19 @@ class MovedClock(unittest.TestCase):
             Client(server, "is logged").socket.close()
             return re.findall(r"^\S\S\S\S", server.output(), re.M)[-1] == str(year)
         until(sees_it, f"the year {year} in the log")
+
+    def test_a_certificate_that_is_not_good_now_is_told_with_its_time(self):
+        subprocess.run([os.environ["EVOD"], "certificate", "localhost", "--folder", self.data], check=True)
+        certificate = f"{self.data}/evod.crt"
+        server = Server("--data", f"{self.data}/tls", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
+        self.servers.append(server)
+        for seconds, words in ((ten_years_s, r"it was good until \w+ +\d+ .* GMT: whoever runs the server makes another"),
+                               (-ten_years_s, r"it is good from \w+ +\d+ .* GMT on: is this machine's clock right\?")):
+            self.moved_s[:8] = struct.pack("<q", seconds)
+            done = subprocess.run([os.environ["EVOCTL"], "--server", f"localhost:{server.port}", "--ca", certificate, "worlds"],
+                                  capture_output=True, text=True, env=self.environment, timeout=100)
+            self.assertEqual(done.returncode, 3)
+            self.assertRegex(done.stderr, words)
 
     def run_in_stretches(self, folder, moves):
         """Runs 500 ticks for each of `moves`, in the midst of which the clock is put to so many seconds from the right

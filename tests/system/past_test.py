@@ -352,9 +352,29 @@ class Replay(Case):
         self.assertEqual(self.client(served).world().state_hash, self.hashes[250])
         self.assertNotEqual(run("seek", "--tick", "422").returncode, 0)
 
+    def test_evoctl_waits_no_longer_than_there_is_something_to_see(self):
+        served = self.server("replay", self.run_file, "--generation", "2")
+        run = lambda *words: subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *words],
+                                            capture_output=True, text=True, timeout=100)
+        self.assertEqual(run("speed", "max").returncode, 0)
+        done = run("run", "1", "--wait")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("last moment", done.stdout)
+        end = "tick 421 .*, the last moment that its run file tells of: evoctl seek takes it to another"
+        done = run("run", "--wait")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, end)
+        done = run("run", "50", "--wait")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "stopped before its goal: .*" + end)
+        done = run("until", "9000", "--wait")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, "stopped before its goal: .*" + end)
+
     def test_evoctl_says_that_its_forks_are_not_kept(self):
         served = self.server("replay", self.run_file)
-        done = subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", "fork", "mine", "--at-generation", "2"],
+        done = subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", "fork", "w", "--at-generation", "2",
+                               "--name", "mine"],
                               capture_output=True, text=True, timeout=100)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("forked mine", done.stdout)
@@ -369,7 +389,11 @@ class Replay(Case):
         done = subprocess.run([EVOD, "replay", self.run_file, "--generation", "9"], capture_output=True, text=True,
                               timeout=100)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("1 to 4", done.stderr)
+        self.assertIn("--generation: got 9, allowed 1 to 4", done.stderr)
+        done = subprocess.run([EVOD, "fork", self.run_file, "--at-generation", "9", "--name", "x", "--data",
+                               f"{self.folder}/other"], capture_output=True, text=True, timeout=100)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--at-generation: got 9, allowed 1 to 4", done.stderr)
 
 
 if __name__ == "__main__":

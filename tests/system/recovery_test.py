@@ -3,7 +3,6 @@
     EVOD=… MESSAGES=… recovery_test.py      how often a test kills: KILLS (25)
 """
 import contextlib
-import itertools
 import os
 import pathlib
 import random
@@ -125,40 +124,38 @@ def journal(data, world="default"):
         return run.execute("SELECT number, tick, client_key, request_id FROM journal ORDER BY number").fetchall()
 
 
-def log_frames(path):
-    """The heads of what SQLite's write-ahead log holds since it last began anew, a page each; of one that was never
-    committed, too. A head is told from all others by its checksum."""
-    log = pathlib.Path(path).read_bytes() if os.path.exists(path) else b""
-    head_bytes, page_bytes = 24, 4096
-    heads = [log[at:at + head_bytes] for at in range(32, len(log) - page_bytes - head_bytes + 1, head_bytes + page_bytes)]
-    return list(itertools.takewhile(lambda head: head[8:16] == log[16:24], heads))
+def half_written(run):
+    """The parts of each checkpoint of which not all are there, by its tick."""
+    return dict(run.execute("SELECT tick, count(*) FROM checkpoint_part WHERE tick NOT IN (SELECT tick FROM checkpoint)"
+                            " GROUP BY tick"))
 
 
-def ends_a_commit(head):
-    return head[4:8] != bytes(4)
-
-
-def kill_by_its_checkpoint(server, answered, after_s, written_bytes, whole):
-    """Kills a server by its first checkpoint, once it has written so many bytes since its last answer and, if that is to
-    be whole, has answered again; or later, if that never comes."""
+def kill_by_its_checkpoint(server, data, answered, after_s, parts, whole):
+    """Kills a server by its first checkpoint, once so many parts of it are there, or, if it is to be whole, once it is and
+    the server has answered again; or later, if that never comes."""
     def watch():
         time.sleep(after_s)
         # A checkpoint is due after two seconds of ticks, by the clock. Stopped within a tick for that long, it has one
         # due with little to simulate again; stopped between two, it comes to it by itself.
         server.process.send_signal(signal.SIGSTOP)
         time.sleep(2.05)
-        server.process.send_signal(signal.SIGCONT)
-        answers, before, end = None, None, time.monotonic() + patience_s / 2
-        with open(f"/proc/{server.process.pid}/io", "rb", buffering=0) as io, contextlib.suppress(OSError):
-            while time.monotonic() < end:
-                written = int(re.search(rb"wchar: (\d+)", os.pread(io.fileno(), 1000, 0))[1])
-                new_answer = answers != len(answered)
-                if before is not None and written - before >= written_bytes and (new_answer or not whole):
+        with contextlib.closing(sqlite3.connect(f"file:{data}/crowd.evod?mode=ro", uri=True)) as run:
+            def look():
+                with contextlib.suppress(sqlite3.OperationalError):  # it was stopped while it held a lock
+                    return half_written(run), run.execute("SELECT max(tick) FROM checkpoint").fetchone()
+                return {}, None
+            (left, newest), answers, end = look(), None, time.monotonic() + patience_s / 2
+            server.process.send_signal(signal.SIGCONT)
+            while server.process.poll() is None and time.monotonic() < end:
+                present, whole_one = look()
+                if whole and answers is None and whole_one not in (None, newest):
+                    answers = len(answered)
+                if whole and answers is not None and len(answered) > answers:
                     break
-                if new_answer:
-                    answers, before = len(answered), written
+                if not whole and any(count >= parts for tick, count in present.items() if tick not in left):
+                    break
                 time.sleep(0.0002)
-        server.process.kill()
+            server.process.kill()
     threading.Thread(target=watch, daemon=True).start()
 
 
@@ -266,7 +263,7 @@ class Recovery(unittest.TestCase):
 
     def test_killed_while_it_writes_a_checkpoint_it_loses_nothing_and_does_nothing_twice(self):
         # One generation, slow to simulate, in which nobody dies of hunger: all that is written, but for commands and
-        # hashes, are checkpoints of a megabyte.
+        # hashes, are checkpoints of two megabytes.
         crowd = pathlib.Path(self.data) / "crowd.json"
         crowd.write_text('{"population_size": 40000, "scale_with_population": true, "reference_population": 50,'
                          ' "generation_s": 3600, "health_loss_per_s": 0.1}')
@@ -276,30 +273,29 @@ class Recovery(unittest.TestCase):
         with Client(server, "start") as client:  # once that is answered, all later servers have this world
             self.assertEqual(client.call(1, run=c.Run()).status.code, 0)
         server.kill()
-        wanted, lives, half_written, begun_with_one = max(3, kills // 25), 0, 0, 0
-        while half_written < wanted:
+        wanted, lives, half_written_count, begun_with_one = max(3, kills // 25), 0, 0, 0
+        self.left_half = {}
+        while half_written_count < wanted:
             lives += 1
-            self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written} kills came while a checkpoint was written")
+            self.assertLessEqual(lives, 5 * wanted + 10, f"only {half_written_count} kills came while a checkpoint was written")
             server = self.serve("--threads", str(1 + lives % 3))
-            before = log_frames(f"{self.data}/crowd.evod-wal")
-            kill_by_its_checkpoint(server, answered, after_s=chance.uniform(0, 0.3),
-                                   written_bytes=chance.uniform(100e3, 900e3), whole=lives % 2 == 1)
+            before = self.left_half
+            kill_by_its_checkpoint(server, self.data, answered, after_s=chance.uniform(0, 0.3), parts=chance.randint(1, 3),
+                                   whole=lives % 2 == 1)
             self.ask_until_it_has_gone(server, chance, key, answered, self.look_at_what_is_left)
-            new = [frame for frame in self.left_frames if frame not in before]
-            committed = max((i for i, frame in enumerate(new) if ends_a_commit(frame)), default=-1)
-            half_written += len(new) - 1 - committed > 20  # pages, which a command does not take
+            half_written_count += any(tick not in before for tick in self.left_half)
             begun_with_one += self.left_checkpoint is not None
-        print(f"killed {lives} times: {half_written} while a checkpoint was written; {begun_with_one} times the next server"
+        print(f"killed {lives} times: {half_written_count} while a checkpoint was written; {begun_with_one} times the next server"
               " began with one", flush=True)
         self.assertGreater(begun_with_one, 0)
         self.assert_as_if_never_stopped(answered, key, *options)
 
     def look_at_what_is_left(self):
         """By a server that was killed in the test above; changes nothing of it."""
-        self.left_frames = log_frames(f"{self.data}/crowd.evod-wal")
         with tempfile.TemporaryDirectory() as copy:
             shutil.copytree(self.data, copy, dirs_exist_ok=True)
             with sqlite3.connect(f"{copy}/crowd.evod") as run:
+                self.left_half = half_written(run)
                 (self.left_checkpoint,) = run.execute("SELECT max(tick) FROM checkpoint").fetchone()
                 run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?", (self.left_checkpoint,))
             run.close()
@@ -431,6 +427,35 @@ class Recovery(unittest.TestCase):
             self.assertEqual(refused.returncode, 1)
             self.assertIn(f'a world "plate" that began with other {why}', refused.stderr)
             self.assertIn("--data", refused.stderr)
+        self.assertIn("population_size (20, not 21)", refused.stderr)
+        self.assertNotIn("food_count", refused.stderr)
+
+    def test_start_and_speed_are_for_one_world_or_refused(self):
+        def change(server, *requests):
+            with Client(server, secrets.token_hex(8)) as client:
+                for number, request in enumerate(requests, 1):
+                    self.assertEqual(client.call(number, **request).status.code, 0)
+            server.end()
+        change(self.serve("--seed", "5"), {"create_world": c.CreateWorld(name="a")},
+               {"delete_world": c.DeleteWorld(world="default")})
+        server = self.serve("--start", "--speed", "max")  # there is one, whatever it is called
+        with Client(server, "looks") as client:
+            until(lambda: client.world("a").tick > 0, "ticks")
+            self.assertTrue(client.world("a").speed.max)
+        change(server, {"pause": c.Pause(world="a")}, {"create_world": c.CreateWorld(name="b")})
+        for option in (["--start"], ["--speed", "2"]):
+            refused = subprocess.run([evod, "--port", "0", "--data", self.data, *option], capture_output=True, text=True,
+                                     timeout=patience_s)
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn(f"--speed and --start are for one world, and {self.data} holds a, b: start without them",
+                          refused.stderr)
+        change(self.serve(), {"create_world": c.CreateWorld(name="default")})
+        server = self.serve("--start")
+        with Client(server, "looks") as client:
+            until(lambda: client.world("default").tick > 0, "ticks")
+            self.assertEqual(client.world("b").tick, 0)
+        self.assertIn('--speed and --start are for world "default" alone; 2 others go on as they were', server.output())
+        server.end()
 
     def test_runs_are_kept_in_the_users_state_folder_unless_told_otherwise(self):
         for variable, folder in (("XDG_STATE_HOME", f"{self.data}/evod"), ("HOME", f"{self.data}/.local/state/evod")):

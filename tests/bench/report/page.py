@@ -286,7 +286,7 @@ class Page:
              percent(rise)],
             [f"keeping the run of {count(storage['organisms'])} organisms, free running: the same rise",
              percent(storage["simulation_rise_percent"])],
-            ["processor time of the storage thread, over that of the simulation thread",
+            ["processor time of the threads that write and pack, over that of the simulation thread",
              percent(storage["storage_share_percent"])],
             ["one of its pictures, bytes", count(figures["picture_bytes"])],
             ["a command to a server at rest that keeps nothing, ms", with_spread(figures["command_at_rest_ms"])],

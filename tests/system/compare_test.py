@@ -1,0 +1,199 @@
+"""evod compare, as a user meets it: tables, verdict, CSV, picture, refusals. EVOD names the program."""
+import csv
+import io
+import json
+import pathlib
+import re
+import signal
+import statistics
+import subprocess
+import unittest
+import xml.etree.ElementTree
+
+from console_test import EVOD, Folder, evod
+
+SMALL = ["--set", "generation_s=2", "--set", "population_size=12", "--set", "food_count=60"]
+ARMS = ["random_selection", "mutation_off", "harmless_poison", "shuffled_fitness"]
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+class Compare(Folder):
+    def compare(self, *words, **how):
+        return evod("compare", *words, **how)
+
+    def outputs(self, *words, name="a"):
+        """What is printed, the rows and the picture."""
+        table, picture = f"{self.folder.name}/{name}.csv", f"{self.folder.name}/{name}.svg"
+        done = self.compare(*words, "--csv", table, "--picture", picture)
+        return done.stdout, pathlib.Path(table).read_text(), pathlib.Path(picture).read_text()
+
+    def test_the_same_seed_gives_the_same_bytes_with_any_number_of_jobs(self):
+        words = ["--controls", "--replicates", "4", "--generations", "5", *SMALL]
+        first = self.outputs(*words, "--seed", "7", "--jobs", "1")
+        for jobs in "2", "5":
+            self.assertEqual(self.outputs(*words, "--seed", "7", "--jobs", jobs, name="b"), first)
+        other = self.outputs(*words, "--seed", "8", name="c")
+        self.assertNotEqual(other[1], first[1])
+
+    def test_the_table_is_what_the_csv_comes_to(self):
+        text, table, _ = self.outputs("--controls", "--replicates", "8", "--generations", "6", "--seed", "3", *SMALL)
+        rows = list(csv.DictReader(io.StringIO(table)))
+        self.assertEqual(len(rows), 5 * 8 * 6)
+        fitness = {(r["arm"], r["replicate"], int(r["generation"])): float(r["fitness_mean"]) for r in rows}
+        seeds = {(r["replicate"], r["seed"]) for r in rows}
+        self.assertEqual((len(seeds), len({seed for _, seed in seeds})), (8, 8))
+        replicates = sorted({r["replicate"] for r in rows})
+        rises = {arm: [fitness[arm, k, 6] - fitness[arm, k, 1] for k in replicates] for arm in ["default", *ARMS]}
+        for arm, rise in rises.items():
+            line = re.search(rf"^{arm} +\S+ +\S+ +(\S+)  (\S+) to (\S+) ", text, re.M)
+            self.assertAlmostEqual(float(line[1]), statistics.mean(rise), delta=0.051)
+            half = 2.3646 * statistics.stdev(rise) / 8 ** 0.5  # t(0.975, 7)
+            self.assertAlmostEqual(float(line[2]), statistics.mean(rise) - half, delta=0.06)
+            self.assertAlmostEqual(float(line[3]), statistics.mean(rise) + half, delta=0.06)
+        found = text.split("seed by seed")[1]
+        for arm in ARMS:
+            differences = [a - b for a, b in zip(rises["default"], rises[arm])]
+            line = re.search(rf"^{arm} +(\S+)  (\S+) to (\S+) +(\S+) +(\S+) +(\S+)$", found, re.M)
+            self.assertAlmostEqual(float(line[1]), statistics.mean(differences), delta=0.051)
+            g = statistics.mean(differences) / statistics.stdev(differences) * (1 - 3 / 27)
+            self.assertAlmostEqual(float(line[4]), g, delta=0.0051)
+            total = abs(sum(differences))
+            sums = [abs(sum(d if signs >> i & 1 else -d for i, d in enumerate(differences))) for signs in range(256)]
+            p = sum(s >= total - 1e-9 for s in sums) / 256
+            self.assertAlmostEqual(float(line[5]), p, delta=0.01 * p)
+            self.assertGreaterEqual(float(line[6]), float(line[5]))
+
+    def test_a_control_is_a_world_that_can_be_run_alone(self):
+        _, table, _ = self.outputs("--controls", "--replicates", "2", "--generations", "4", "--seed", "3", *SMALL)
+        rows = [r for r in csv.DictReader(io.StringIO(table)) if r["replicate"] == "1"]
+        for arm, change in ("default", []), ("shuffled_fitness", ["--set", "shuffle_fitness=true"]), \
+                ("random_selection", ["--set", "selection=random"]):
+            mine = [r for r in rows if r["arm"] == arm]
+            path = f"{self.folder.name}/alone.csv"
+            evod("run", "--seed", mine[0]["seed"], "--generations", "4", "--csv", path, *SMALL, *change)
+            alone = list(csv.DictReader(io.StringIO(pathlib.Path(path).read_text())))
+            for row, expected in zip(mine, alone, strict=True):
+                self.assertAlmostEqual(float(row["fitness_mean"]), float(expected["fitness_mean"]), places=9)
+                self.assertEqual((row["fitness_best"], row["alive_count"]),
+                                 (expected["fitness_best"], expected["alive_count"]))
+
+    def test_selection_for_the_sum_of_the_genes_did_it_and_poison_cannot(self):
+        text, _, _ = self.outputs("--controls", "--generations", "15", "--seed", "3", "--set", "fitness=gene_sum",
+                                  "--set", "selection=truncation")
+        self.assertIn("default: 20 replicates of 15 generations, from seed 3\n", text)
+        self.assertIn("Did evolution do it? Yes: the mean fitness rose by ", text)
+        self.assertRegex(text, r"\nharmless_poison +is not run: the fitness is a function of the chromosome: nobody eats\n")
+        self.assertIn("\nPoison: the fitness is a function of the chromosome: nobody eats.\n", text)
+        self.assertIn("new variety adds to what the first generation brought", text)
+        self.assertRegex(text, r"random_selection .* selection=random\n")
+
+    def test_a_world_without_selection_is_told_so(self):
+        text, table, picture = self.outputs("--controls", "--replicates", "20", "--generations", "3", "--seed", "3", *SMALL,
+                                            "--set", "selection=random", "--set", "mutation_chance=0", "--set", "poison_harm=0")
+        self.assertIn("Did evolution do it? No: whoever breeds is drawn by chance already", text)
+        self.assertEqual(text.count("is not run: "), 4)
+        self.assertEqual({r["arm"] for r in csv.DictReader(io.StringIO(table))}, {"default"})
+        self.assertEqual(picture.count("<polyline"), 1)
+
+    def test_the_picture_has_a_curve_and_a_band_for_each_world(self):
+        text, table, picture = self.outputs("--controls", "--replicates", "3", "--generations", "5", "--seed", "3", *SMALL)
+        root = xml.etree.ElementTree.fromstring(picture)
+        self.assertEqual(root.tag, SVG + "svg")
+        curves, bands = root.findall(SVG + "polyline"), root.findall(SVG + "polygon")
+        self.assertEqual((len(curves), len(bands)), (5, 5))
+        words = [text.text for text in root.findall(SVG + "text")]
+        for name in ["default", *ARMS, "generation", "mean fitness (seconds lived + health at the end)"]:
+            self.assertIn(name, words)
+        for curve, band in zip(curves, bands):
+            line = [tuple(map(float, point.split(","))) for point in curve.get("points").split()]
+            edge = [tuple(map(float, point.split(","))) for point in band.get("points").split()]
+            self.assertEqual((len(line), len(edge)), (5, 10))
+            for (x, y), upper, lower in zip(line, edge[:5], reversed(edge[5:])):
+                self.assertEqual((upper[0], lower[0]), (x, x))
+                self.assertLessEqual(upper[1], y)
+                self.assertGreaterEqual(lower[1], y)
+                self.assertTrue(0 < x < 900 and 0 < upper[1] and lower[1] < 540)
+        # The last drawn is the world's: its points go up as its means do.
+        means = [statistics.mean(float(r["fitness_mean"]) for r in csv.DictReader(io.StringIO(table))
+                                 if (r["arm"], r["generation"]) == ("default", str(generation)))
+                 for generation in range(1, 6)]
+        heights = [float(point.split(",")[1]) for point in curves[-1].get("points").split()]
+        scale = (max(heights) - min(heights)) / (max(means) - min(means))
+        for mean, height in zip(means, heights):
+            self.assertAlmostEqual(height, min(heights) + (max(means) - mean) * scale, delta=0.02)
+
+    def test_worlds_are_compared_with_the_first(self):
+        tournament = self.file(json.dumps({"fitness": "gene_sum", "selection": "tournament", "seed": 9}), "tournament.json")
+        drifting = self.file(json.dumps({"fitness": "gene_sum", "selection": "random"}), "drifting.json")
+        text, table, picture = self.outputs(tournament, drifting, tournament, "--generations", "10", "--replicates", "10")
+        self.assertIn("tournament: 10 replicates of 10 generations, from seed 9\n", text)
+        self.assertRegex(text, r"\ntournament rises further than drifting, by \d+\.\d \(adjusted p = 0\.0039\)\.\n")
+        self.assertIn("\nThat tournament and tournament_3 differ is not shown (adjusted p = 1).\n", text)
+        self.assertRegex(text, r"\ntournament_3 +0\.0  0\.0 to 0\.0 +- +1 +1\n")
+        self.assertEqual(len(list(csv.DictReader(io.StringIO(table)))), 3 * 10 * 10)
+        self.assertEqual(picture.count("<polyline"), 3)
+
+    def test_the_length_and_the_seed_are_the_files_unless_they_are_given(self):
+        path = self.file('{"seed": 5, "generation_limit": 4, "stagnation_limit": 1, "stop_at_target_fitness": true,'
+                         ' "target_fitness": 1, "fitness": "gene_sum"}')
+        text = self.compare(path, "--controls", "--replicates", "2").stdout
+        self.assertIn("mine: 2 replicates of 4 generations, from seed 5\n", text)
+        text = self.compare(path, "--controls", "--replicates", "2", "--generations", "3", "--seed", "6").stdout
+        self.assertIn("mine: 2 replicates of 3 generations, from seed 6\n", text)
+        text = self.compare("--controls", "--replicates", "2", "--set", "fitness=gene_sum").stdout
+        self.assertIn("default: 2 replicates of 60 generations, from seed ", text)
+
+    def test_few_replicates_are_warned_of(self):
+        done = self.compare("--controls", "--replicates", "5", "--generations", "3", "--set", "fitness=gene_sum")
+        self.assertIn("--replicates: with fewer than 20 only large differences can be told from chance", done.stderr)
+        self.assertIn("That cannot be told with so few replicates", done.stdout)
+        done = self.compare("--controls", "--replicates", "20", "--generations", "3", "--set", "fitness=gene_sum")
+        self.assertEqual(done.stderr, "")
+
+    def test_refusals_name_what_was_given(self):
+        path = self.file("{}")
+        for words, status, expected in (
+            ([], 1, "give --controls, or two experiments or more"),
+            ([path], 1, "give --controls, or two experiments or more"),
+            ([path, path, "--controls"], 1, "--controls are those of one experiment; got 2"),
+            (["--controls", "--replicates", "1"], 2, "--replicates: Value 1 not in range"),
+            (["--controls", "--generations", "1"], 2, "--generations: Value 1 not in range"),
+            (["--controls", "--jobs", "0"], 2, "--jobs: Value 0 not in range"),
+            (["--controls", "--seed", "-1"], 2, "--seed"),
+            (["--controls", "--set", "mutation_chance=2"], 1, "--set mutation_chance: got 2, allowed 0 to 1"),
+            (["--controls", "--set", "shuffle_fitness=perhaps"], 1, "--set shuffle_fitness: got perhaps, allowed true or false"),
+            ([self.folder.name, "--controls"], 1, "this is a folder"),
+            ([self.file('{"food_count": -3}', "bad.json"), "--controls"], 1, "food_count (line 1): got -3"),
+            ([self.file('{"generation_limit": 1}', "short.json"), "--controls"], 1, "generation_limit: got 1, allowed at least 2"),
+            (["--controls", "--csv", "/nowhere/a.csv"], 1, "--csv: cannot write /nowhere/a.csv"),
+            (["--controls", "--picture", "/nowhere/a.svg"], 1, "--picture: cannot write /nowhere/a.svg"),
+        ):
+            with self.subTest(words):
+                self.assertIn(expected, self.compare(*words, status=status).stderr)
+        # What was there before a refusal is there after it.
+        kept = self.file("kept", "kept.csv")
+        self.compare("--controls", "--csv", kept, "--picture", "/nowhere/a.svg", status=1)
+        self.assertEqual(pathlib.Path(kept).read_text(), "kept")
+        new = f"{self.folder.name}/new.csv"
+        self.compare("--controls", "--csv", new, "--picture", "/nowhere/a.svg", status=1)
+        self.assertFalse(pathlib.Path(new).exists())
+
+    def test_a_full_disk_is_told(self):
+        done = self.compare("--controls", "--replicates", "2", "--generations", "2", "--set", "fitness=gene_sum",
+                            "--csv", "/dev/full", status=1)
+        self.assertIn("--csv: cannot write /dev/full, the disk may be full", done.stderr)
+
+    def test_an_interrupt_ends_it_with_nothing_told(self):
+        table = f"{self.folder.name}/a.csv"
+        process = subprocess.Popen([EVOD, "compare", "--controls", "--replicates", "1000", "--csv", table],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertIn("1000 replicates", process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn("interrupted: nothing is told of what was done", output)
+        self.assertFalse(pathlib.Path(table).exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

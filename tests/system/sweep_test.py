@@ -1,0 +1,313 @@
+"""evod sweep as a user meets it: grids, kills, job arrays. EVOD names the program."""
+import csv
+import io
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import tempfile
+import time
+import unittest
+
+EVOD = os.environ["EVOD"]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE_S = 120
+SMALL = {
+    "experiment": {"population_size": 12, "generation_s": 2, "food_count": 10},
+    "grid": {"selection": ["roulette", "tournament"], "mutation_chance": [0.05, 0.5]},
+    "replicates": 3,
+    "seed": 7,
+    "generations": 4,
+}
+
+
+def evod(*arguments, status=0, cwd=None):
+    done = subprocess.run([EVOD, *map(str, arguments)], capture_output=True, text=True, timeout=PATIENCE_S, cwd=cwd)
+    assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+def rows_of(table):
+    text = table.read_text()
+    comment = [line for line in text.splitlines() if line.startswith("#")]
+    return comment, list(csv.DictReader(io.StringIO("\n".join(text.splitlines()[len(comment):]))))
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, sweep, name="small.json"):
+        path = self.folder / name
+        path.write_text(sweep if isinstance(sweep, str) else json.dumps(sweep, indent=2))
+        return path
+
+    def swept(self, sweep, *options):
+        """runs.csv of a sweep that nobody disturbed."""
+        out = self.folder / f"undisturbed-{len(list(self.folder.iterdir()))}"
+        evod("sweep", sweep, "--out", out, *options)
+        return (out / "runs.csv").read_bytes()
+
+
+class Sweep(Folder):
+    def test_the_table_is_tidy_and_says_where_it_comes_from(self):
+        sweep = self.file(SMALL)
+        done = evod("sweep", sweep, "--jobs", 2, cwd=self.folder)
+        self.assertIn("4 cells of 3 replicates, 12 runs, seed 7; into small\n", done.stdout)
+        self.assertRegex(done.stdout, r"12 runs in [\d.]+ s, [\d.e+]+ a second; 2 at a time, each [\d.]+ % busy")
+        self.assertIn("small/runs.csv: 48 rows; runs by what ended them: generation_limit 12", done.stdout)
+        comment, rows = rows_of(self.folder / "small/runs.csv")
+        self.assertEqual((self.folder / "small/sweep.txt").read_text().splitlines(), comment)
+        for words in ("# seed: 7", "# runs: 12: 4 cells of 3 replicates", "# model: ",
+                      "# evod: " + evod("--version").stdout.split()[1]):
+            self.assertTrue(any(line.startswith(words) for line in comment), words)
+        said = [line[4:] for line in comment[comment.index("# sweep file: ") + 1:]]
+        self.assertEqual(json.loads("\n".join(said)), SMALL)
+
+        self.assertEqual([(r["cell"], r["replicate"], r["generation"], r["island"]) for r in rows],
+                         [(str(c), str(r), str(g), "0") for c in range(4) for r in range(3) for g in range(1, 5)])
+        self.assertEqual({(r["cell"], r["selection"], r["mutation_chance"]) for r in rows},
+                         {("0", "roulette", "0.05"), ("1", "roulette", "0.5"), ("2", "tournament", "0.05"),
+                          ("3", "tournament", "0.5")})
+        seeds = dict((r["replicate"], r["seed"]) for r in rows)
+        self.assertEqual(len(set(seeds.values())), 3)
+        self.assertEqual({(r["replicate"], r["seed"]) for r in rows}, set(seeds.items()))  # in each cell the same
+        self.assertIn("seeds of the replicates: " + " ".join(seeds[str(r)] for r in range(3)), done.stdout)
+
+    def test_a_run_is_the_one_that_evod_run_makes(self):
+        evod("sweep", self.file(SMALL), cwd=self.folder)
+        _, rows = rows_of(self.folder / "small/runs.csv")
+        mine = [row for row in rows if (row["cell"], row["replicate"]) == ("3", "1")]
+        alone = self.folder / "alone.csv"
+        evod("run", self.file(SMALL["experiment"], "experiment.json"), "--seed", mine[0]["seed"], "--generations", 4, "--set",
+             "selection=tournament", "--set", "mutation_chance=0.5", "--csv", alone)
+        _, expected = rows_of(alone)
+        self.assertEqual(len(expected), 4)
+        for row, other in zip(mine, expected, strict=True):
+            self.assertEqual({name: row[name] for name in other}, other)
+
+    def test_any_number_of_jobs_and_an_array_give_the_same_bytes(self):
+        # Runs of very different lengths, islands, and runs that end by themselves.
+        sweep = self.file({"experiment": {"generation_s": 2, "population_size": 10}, "replicates": 2, "list": [
+            {"generation_limit": 6}, {"population_size": 60, "generation_limit": 3},
+            {"island_count": 3, "generation_limit": 2, "migration": "ring"},
+            {"food_count": 0, "stop_at_extinction": True, "health_loss_per_s": 200},
+            {"fitness": "gene_sum", "mutation_chance": 0, "stagnation_limit": 2}]})
+        one = self.swept(sweep, "--jobs", 1)
+        self.assertEqual(one, self.swept(sweep, "--jobs", 2))
+        self.assertEqual(one, self.swept(sweep, "--jobs", 30))
+        out = self.folder / "array"
+        for cell in (4, 0, 3, 1):  # in any order
+            done = evod("sweep", sweep, "--out", out, "--array-index", cell, "--jobs", 2)
+            self.assertIn(f"cell {cell} alone", done.stdout)
+            self.assertFalse((out / "runs.csv").exists())
+        done = evod("sweep", sweep, "--out", out, "--gather", status=1)
+        self.assertIn("2 of 10 runs are not there yet: cell-2-replicate-0, cell-2-replicate-1", done.stderr)
+        self.assertFalse((out / "runs.csv").exists())
+        evod("sweep", sweep, "--out", out, "--array-index", 2)
+        done = evod("sweep", sweep, "--out", out, "--gather")
+        self.assertIn("runs by what ended them: extinction 2, stagnation_limit 2, generation_limit 6", done.stdout)
+        self.assertEqual(one, (out / "runs.csv").read_bytes())
+        again = evod("sweep", sweep, "--out", out)  # all is there: nothing is run
+        self.assertIn("10 there already", again.stdout)
+        self.assertNotIn("busy", again.stdout)
+        self.assertEqual(one, (out / "runs.csv").read_bytes())
+
+    def test_tasks_of_an_array_may_begin_at_once(self):
+        sweep, out = self.file(SMALL), self.folder / "array"
+        tasks = [subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--array-index", str(cell % 4)],
+                                  stdout=subprocess.DEVNULL) for cell in range(8)]  # each of them twice
+        self.assertEqual([task.wait(PATIENCE_S) for task in tasks], [0] * 8)
+        evod("sweep", sweep, "--out", out, "--gather")
+        self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
+
+    def test_a_latin_hypercube_is_drawn_the_same_each_time(self):
+        sweep = self.file({"experiment": {"generation_s": 1, "population_size": 8}, "generations": 2, "seed": 5,
+                           "latin_hypercube": {"samples": 6, "parameters": {
+                               "mutation_chance": {"from": 0.0, "to": 0.6}, "food_count": {"from": 1, "to": 3},
+                               "selection": ["roulette", "random", "tournament"]}}})
+        evod("sweep", sweep, cwd=self.folder)
+        _, rows = rows_of(self.folder / "small/runs.csv")
+        cells = {row["cell"]: row for row in rows}.values()
+        self.assertEqual(sorted(int(float(cell["mutation_chance"]) * 10) for cell in cells), [0, 1, 2, 3, 4, 5])
+        self.assertEqual(sorted(cell["food_count"] for cell in cells), ["1", "1", "2", "2", "3", "3"])
+        printed = evod("sweep", sweep, "--dry-run").stdout.split("\ncell\t")[1].splitlines()
+        self.assertEqual([line.split("\t")[1:] for line in printed[1:]],
+                         [[cell[name] for name in printed[0].split("\t")] for cell in cells])
+
+    def test_the_example_is_what_would_be_run(self):
+        done = evod("sweep", ROOT / "experiments/sweeps/mutation.json", "--dry-run", cwd=self.folder)
+        self.assertIn("16 cells of 4 replicates, 64 runs, seed 1", done.stdout)
+        self.assertIn("\ncell\tselection\tmutation_chance\tmutation_step\n0\troulette\t0.01\t5\n", done.stdout)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+class Interrupted(Folder):
+    LONG = {**SMALL, "experiment": {"population_size": 40, "generation_s": 20}, "replicates": 10, "generations": 30}
+
+    def killed_once(self, parts, out, sweep, how, *options):
+        """Ends a sweep once so many of its runs are there, and others are under way; returns how many there are then."""
+        process = subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--jobs", "2", *options], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
+        there, until = [], time.monotonic() + PATIENCE_S
+        while len(there) < parts:
+            self.assertIsNone(process.poll(), "it ended before it could be ended")
+            self.assertLess(time.monotonic(), until)
+            there = list((out / "parts").glob("*.csv")) if (out / "parts").exists() else []
+        process.send_signal(how)
+        said = process.communicate(timeout=PATIENCE_S)[0]
+        self.assertEqual(process.returncode, 130 if how != signal.SIGKILL else -how)
+        self.assertFalse((out / "runs.csv").exists())
+        there = list((out / "parts").glob("*.csv"))
+        self.assertLess(len(there), 40)
+        return len(there), said
+
+    def test_killed_and_gone_on_with_it_gives_the_same_bytes(self):
+        sweep, out = self.file(self.LONG), self.folder / "killed"
+        there = 0
+        for _ in range(3):
+            there, _ = self.killed_once(there + 5, out, sweep, signal.SIGKILL)
+        unfinished = list((out / "parts").glob("*unfinished*"))
+        done = evod("sweep", sweep, "--out", out, "--jobs", 1)
+        self.assertIn(f", {there} there already", done.stdout)
+        self.assertIn(f"\n{40 - there} run", done.stdout)
+        self.assertTrue(unfinished)  # a kill does leave them
+        self.assertEqual(list((out / "parts").glob("*unfinished*")), [])
+        self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
+
+    def test_a_signal_stops_it_and_the_same_command_goes_on(self):
+        sweep, out = self.file(self.LONG), self.folder / "stopped"
+        there = 0
+        for how in (signal.SIGINT, signal.SIGTERM):
+            there, said = self.killed_once(there + 3, out, sweep, how)
+            self.assertIn(f"stopped: {40 - there} runs to go; the same command goes on with them", said)
+            self.assertEqual(list((out / "parts").glob("*unfinished*")), [])
+        evod("sweep", sweep, "--out", out)
+        self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
+
+    def test_a_torn_part_is_made_again_and_a_changed_one_is_told(self):
+        sweep = self.file(SMALL)
+        whole, out = self.swept(sweep), self.folder / "torn"
+        evod("sweep", sweep, "--out", out)
+        part = out / "parts/cell-1-replicate-2.csv"
+        text = part.read_text()
+        for torn in ("", text[:-1], text[:100]):
+            part.write_text(torn)
+            self.assertIn("11 there already", evod("sweep", sweep, "--out", out).stdout)
+            self.assertEqual(part.read_text(), text)
+            self.assertEqual((out / "runs.csv").read_bytes(), whole)
+        part.write_text(text.split("\n", 1)[1])  # a row less
+        done = evod("sweep", sweep, "--out", out, status=1)
+        self.assertIn("cell-1-replicate-2.csv is not as it was written; delete it", done.stderr)
+
+    def test_run_files_are_whole_and_agree_also_after_a_kill(self):
+        sweep, out = self.file(self.LONG), self.folder / "kept"
+        self.killed_once(4, out, sweep, signal.SIGKILL, "--run-files")
+        evod("sweep", sweep, "--out", out, "--run-files")
+        files = sorted((out / "run-files").iterdir())
+        self.assertEqual([file.name for file in files],
+                         [f"cell-{cell}-replicate-{replicate}.evod" for cell in range(4) for replicate in range(10)])
+        _, rows = rows_of(out / "runs.csv")
+        names = set()
+        for file in files[::7]:
+            self.assertIn("all agrees: 30 generations", evod("verify", file).stdout)
+            _, cell, _, replicate = file.stem.split("-")
+            mine = [row for row in rows if (row["cell"], row["replicate"]) == (cell, replicate)]
+            exported = io.StringIO(evod("export", file, "--what", "generations").stdout)
+            for row, other in zip(mine, csv.DictReader(exported), strict=True):
+                self.assertEqual({name: row[name] for name in other}, other)
+            with sqlite3.connect(f"file:{file}?immutable=1", uri=True) as database:
+                told = dict(database.execute("SELECT key, value FROM run"))
+            self.assertEqual((told["name"], told["seed"]), (file.stem, mine[0]["seed"]))
+            names.add(told["run_id"])
+        self.assertEqual(len(names), len(files[::7]))
+        self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
+
+    def test_run_files_that_are_missing_are_made(self):
+        sweep, out = self.file(SMALL), self.folder / "later"
+        evod("sweep", sweep, "--out", out)
+        table = (out / "runs.csv").read_bytes()
+        self.assertFalse((out / "run-files").exists())
+        evod("sweep", sweep, "--out", out, "--run-files")
+        (out / "run-files/cell-2-replicate-0.evod").unlink()
+        done = evod("sweep", sweep, "--out", out, "--run-files")
+        self.assertIn("11 there already", done.stdout)
+        self.assertIn("all agrees", evod("verify", out / "run-files/cell-2-replicate-0.evod").stdout)
+        self.assertEqual((out / "runs.csv").read_bytes(), table)
+
+    def test_what_cannot_be_written_stops_it_with_the_reason(self):
+        sweep, out = self.file(SMALL), self.folder / "shut"
+        evod("sweep", sweep, "--out", out, "--array-index", 0)
+        shutil.rmtree(out / "parts")
+        (out / "parts").write_text("in the way")
+        done = evod("sweep", sweep, "--out", out, status=1)
+        self.assertIn("parts cannot be made: ", done.stderr)
+        (out / "parts").unlink()
+        (out / "runs.csv").mkdir()
+        done = evod("sweep", sweep, "--out", out, status=1)
+        self.assertIn("runs.csv cannot be written: Is a directory", done.stderr)
+        self.assertEqual(len(list((out / "parts").glob("*.csv"))), 12)  # nothing is lost by it
+
+
+class Refused(Folder):
+    def test_what_is_wrong_with_a_file_is_named_before_anything_runs(self):
+        for text, words in {
+            '{"grid": {"mutation_chance": [0.1, 1.5]}, "generations": 3}':
+                "small.json: the sweep has fields that cannot be used\n  grid.mutation_chance[1] (line 1): got 1.5, allowed 0 to 1",
+            '{"list": [{}],\n"generation": 3}': "generation (line 2): got an unknown name, allowed description, experiment",
+            '{"list": [{}], "experiment": "nowhere.json"}': "nowhere.json: cannot be read: No such file",
+            '{"list": [{}]}': "generations: got nothing, allowed what ends a run",
+            '{"list": [{}]': "small.json: not JSON: line 1",
+        }.items():
+            with self.subTest(text):
+                self.assertIn(words, evod("sweep", self.file(text), status=1, cwd=self.folder).stderr)
+                self.assertFalse((self.folder / "small").exists())
+        self.assertIn("cannot be read: No such file", evod("sweep", "/nowhere.json", status=1).stderr)
+        self.assertIn("this is a folder, not a sweep file", evod("sweep", "/tmp", status=1).stderr)
+
+    def test_an_experiment_is_found_beside_the_sweep_file_and_its_faults_are_told(self):
+        (self.folder / "deep").mkdir()
+        sweep = self.file('{"list": [{}], "experiment": "../mine.json"}', "deep/small.json")
+        self.file('{"generation_limit": 1, "generation_s": 1}', "mine.json")
+        evod("sweep", sweep, "--out", self.folder / "out")
+        self.file('{"generation_limit": 1,\n"generation_s": -1}', "mine.json")
+        said = evod("sweep", sweep, "--out", self.folder / "out", status=1).stderr
+        self.assertIn("experiment ../mine.json: generation_s (line 2): got -1, allowed 0.001 to 86400", said)
+        # What it says now is another sweep.
+        self.file('{"generation_limit": 2, "generation_s": 1}', "mine.json")
+        said = evod("sweep", sweep, "--out", self.folder / "out", status=1).stderr
+        self.assertRegex(said, r"another sweep.*\n  parameters: got \{.*\"generation_limit\": 1\}, allowed \{.*: 2\}")
+
+    def test_a_folder_of_another_sweep_is(self):
+        out = self.folder / "out"
+        evod("sweep", self.file(SMALL), "--out", out)
+        table = (out / "runs.csv").read_bytes()
+        for gather in ([], ["--gather"], ["--array-index", "0"]):
+            said = evod("sweep", self.file({**SMALL, "seed": 8}), "--out", out, *gather, status=1).stderr
+            self.assertRegex(said, "another sweep.*--out.*\n  seed: got 7, allowed 8\n  sweep file: got one that has been changed")
+        self.assertEqual((out / "runs.csv").read_bytes(), table)
+
+    def test_wrong_usage_is(self):
+        sweep = self.file(SMALL)
+        for arguments in ((), (sweep, "--jobs", "0"), (sweep, "--jobs", "many"), (sweep, "--array-index", "-1"),
+                          (sweep, "--array-index", "x"), (sweep, "--array-index"), (sweep, "--gather", "--run-files"),
+                          (sweep, "--gather", "--array-index", "0"), (sweep, "--dry-run", "--gather"), (sweep, "--seed", "1"),
+                          (sweep, "--gather", "--jobs", "2"), (sweep, sweep)):
+            with self.subTest(arguments):
+                evod("sweep", *arguments, status=2)
+        said = evod("sweep", sweep, "--array-index", 4, status=1, cwd=self.folder).stderr
+        self.assertIn("--array-index: got 4, allowed 0 to 3", said)
+        said = evod("sweep", sweep, "--gather", status=1, cwd=self.folder).stderr
+        self.assertIn("small: there is no such folder, so nothing to gather", said)
+        self.assertFalse((self.folder / "small").exists())
+        self.assertTrue(re.search(r"--array-index.*--gather.*docs/CLUSTER\.md", evod("sweep", "--help").stdout, re.S))
+
+
+if __name__ == "__main__":
+    unittest.main()
