@@ -5,6 +5,7 @@
 import os
 import pathlib
 import select
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -66,9 +67,10 @@ class FullDisk(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
-        self.data, self.mounted, self.servers = folder.name, False, []
+        self.data, self.mounted, self.servers, self.readers = folder.name, False, [], []
 
     def tearDown(self):
+        self.close_readers()
         for server in self.servers:
             if server.process.poll() is None:
                 server.kill()
@@ -90,7 +92,11 @@ class FullDisk(unittest.TestCase):
         return client
 
     def fill(self):
-        """Takes every byte that is left."""
+        """Takes every byte that is left, and sees to it that nothing is given back: a file's log goes when the last who
+        has it open closes it, and a server in trouble does so before it tries again."""
+        reader = sqlite3.connect(f"file:{self.data}/default.evod?mode=ro", uri=True)
+        reader.execute("SELECT count(*) FROM journal").fetchall()
+        self.readers.append(reader)
         with open(f"{self.data}/big", "wb", buffering=0) as big:
             for chunk in (bytes(1 << 20), bytes(1 << 12), b"x"):
                 try:
@@ -101,6 +107,11 @@ class FullDisk(unittest.TestCase):
 
     def make_room(self):
         os.remove(f"{self.data}/big")
+        self.close_readers()
+
+    def close_readers(self):
+        while self.readers:
+            self.readers.pop().close()
 
     def status(self, server):
         return subprocess.run([evoctl, "--server", f"127.0.0.1:{server.port}", "status"], capture_output=True, text=True,
