@@ -9,6 +9,8 @@
 
 namespace evod::support {
 
+constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail a statistical test
+
 /// Σ (observed − expected)² / expected; `expected` are counts > 0 of the same total as `observed`.
 inline double chi_square(std::span<const std::uint64_t> observed, std::span<const double> expected) {
     double sum = 0;

@@ -12,7 +12,7 @@
 namespace evod::base {
 namespace {
 
-constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail
+using support::alpha;
 
 RandomStream stream(std::uint64_t seed, std::uint32_t entity = 0) {
     return RandomStream{RandomKey{Seed{seed}, Purpose::ScenarioTest, 0, 1}, entity};

@@ -11,7 +11,7 @@
 
 namespace evod::evolution {
 
-constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail a statistical test
+using support::alpha;
 
 inline base::RandomKey key_of(std::uint64_t seed) {
     return {base::Seed{seed}, base::Purpose::ScenarioTest, 0, 1};

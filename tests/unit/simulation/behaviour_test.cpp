@@ -17,7 +17,7 @@ namespace {
 using physics::Coordinate;
 using physics::to_units;
 
-constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail
+using support::alpha;
 
 /// One organism beside at most one food and one poison. The items are put at random, so the organism is put beside
 /// them.

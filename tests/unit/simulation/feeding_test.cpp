@@ -14,12 +14,11 @@
 namespace evod::simulation {
 namespace {
 
-base::InlineExecutor executor; // has no state
-
 using physics::to_units;
 
 Items items_of(std::uint32_t count, base::Purpose placement, physics::Area area, float radius = 4) {
     Items items;
+    base::InlineExecutor executor;
     items.begin_generation({.placement = placement,
                             .respawn_purpose = placement,
                             .kind = 2,

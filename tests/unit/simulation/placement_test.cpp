@@ -23,7 +23,7 @@ using physics::Boxes;
 using physics::Coordinate;
 using physics::to_units;
 
-constexpr double alpha = 1e-6; // share of seeds for which a correct build would fail
+using support::alpha;
 
 TEST(RandomPlace, IsUniformWithinTheWallsByItsRadius) {
     // Pearson chi-square over 10 × 10 equal cells of where a centre can be, 99 degrees of freedom.
