@@ -161,6 +161,22 @@ quit
     EXPECT_EQ(image.getSize(), (sf::Vector2u{200, 300}));
 }
 
+TEST_F(PlotsTest, ATabIsFoundByItsNameAndWhatItShowsIsSaved) {
+    make_world();
+    run(3);
+    std::ofstream{folder.file("script")} << R"(wait picture
+key F7
+wait widget "3 generations, up to 3"
+click Selection
+click "Save PNG"
+quit
+)";
+    const Ran ran = run_evoview(server.address() + " --world lab --script " + folder.file("script"));
+    ASSERT_EQ(ran.status, 0) << ran.output;
+    sf::Image image;
+    EXPECT_TRUE(image.loadFromFile(path_of("selection", 3) + ".png"));
+}
+
 /// A plot that fills the window, and a mouse.
 struct PlotUnderTheMouse {
     Plot plot;

@@ -153,7 +153,9 @@ void PlotsPanel::build(Context& context) {
     }
     if (ImGui::BeginTabBar("quantities")) {
         for (const Tab& tab : tabs) {
-            if (ImGui::BeginTabItem(tab.name)) {
+            const bool open = ImGui::BeginTabItem(tab.name);
+            widgets::mark(tab.name);
+            if (open) {
                 build_quantity(context, tab.quantity);
                 ImGui::EndTabItem();
             }
