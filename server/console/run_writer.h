@@ -7,7 +7,7 @@
 // Determinism  it only looks.
 #pragma once
 
-#include "server/storage/run_file.h"
+#include "server/storage/recorder.h"
 
 #include <memory>
 #include <string>
@@ -31,7 +31,7 @@ class RunWriter {
   private:
     const std::string path_, unfinished_;
     base::Result<std::unique_ptr<storage::RunFile>> file_;
-    std::uint64_t generation_ = 0, tick_ = 0; // the last that are in it
+    storage::RunNews news_; // that is in it
 };
 
 } // namespace evod::console

@@ -8,43 +8,29 @@
 
 namespace evod::storage {
 
-namespace {
-
-RunIdentity identity_of(const simulation::Entry& entry) {
+RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world) {
     using namespace std::chrono;
     const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
-    return {.name = entry.name,
-            .run_id = entry.run_id,
-            .seed = entry.world.seed(),
-            .parameters = entry.world.parameters().requested,
+    return {.name = std::move(name),
+            .run_id = run_id,
+            .seed = world.seed(),
+            .parameters = world.parameters().requested,
             .began_unix_ms = now.count(),
-            .first_generation = entry.world.moment().generation,
-            .first_tick = entry.world.moment().tick,
+            .first_generation = world.moment().generation,
+            .first_tick = world.moment().tick,
             .forked_from = {},
             .inherited_generations = 0,
-            .first_population = entry.world.first_population(),
-            .schedule = entry.world.schedule()};
+            .first_population = world.first_population(),
+            .schedule = world.schedule()};
 }
-
-} // namespace
 
 std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
     // Together, so that a file tells of a tick all there is to tell or nothing.
     std::vector<StorageThread::Record> records;
-    const simulation::Moment& moment = world.moment();
-    if (moment.generation != written_.generations) {
-        records.emplace_back(beginning_of(world));
-        written_.generations = moment.generation;
+    const std::uint64_t begun = news_.generations_begun();
+    news_.tell(world, [&records](auto record) { records.emplace_back(std::move(record)); });
+    if (news_.generations_begun() != begun)
         since_beginning_ = {};
-    }
-    const bool new_tick = moment.tick > written_.tick;
-    written_.tick = std::max(written_.tick, moment.tick);
-    if (new_tick && moment.tick % ticks_per_link == 0)
-        records.emplace_back(HashLink{moment.tick, world.hash()});
-    if (world.generation_over() && generations_ended_ != moment.generation) {
-        records.emplace_back(end_of(world));
-        generations_ended_ = moment.generation;
-    }
     return records;
 }
 
@@ -62,14 +48,14 @@ bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::na
 }
 
 void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor& executor) {
-    written_.tick = std::max(written_.tick, world.moment().tick);
-    thread_.write(number_, checkpoint_of(world, written_.journal_entries, executor), writing_);
+    news_.seen(world.moment().tick);
+    thread_.write(number_, checkpoint_of(world, journal_entries_, executor), writing_);
     since_beginning_ = since_checkpoint_ = {};
 }
 
 JournalEntry RunRecorder::entry(CommandRecord& command) {
-    written_.tick = std::max(written_.tick, command.tick);
-    return {.number = ++written_.journal_entries,
+    news_.seen(command.tick);
+    return {.number = ++journal_entries_,
             .tick = command.tick,
             .origin = std::move(command.origin),
             .answer = std::move(command.answer),
@@ -98,9 +84,8 @@ StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::s
         ending.last.records.emplace_back(entry(*command));
         ending.last.done = std::move(command->done);
     }
-    written_.tick = std::max(written_.tick, tick);
-    written_.ended = ended;
-    ending.last.records.emplace_back(written_);
+    news_.seen(tick);
+    ending.last.records.emplace_back(EndMark{.ended = ended, .tick = news_.tick()});
     return ending;
 }
 
@@ -142,15 +127,15 @@ void Recorder::add(const std::string& world, RunRecorder run) {
 
 void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
     RunRecorder run{thread_};
-    run.number_ =
-        thread_.create(folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+    run.number_ = thread_.create(folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
+                                 run.first(entry.world, std::move(command)));
     add(entry.name, std::move(run));
 }
 
 void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
                           base::Executor& executor) {
     RunRecorder run{thread_};
-    RunIdentity identity = identity_of(entry);
+    RunIdentity identity = identity_of(entry.name, entry.run_id, entry.world);
     identity.forked_from = origin;
     Inherited inherited = inherited_by(entry.world);
     identity.inherited_generations = inherited.history.size();
@@ -168,9 +153,10 @@ void Recorder::begin_again(const simulation::Entry& entry, const simulation::Run
     const auto old = runs_.find(entry.name);
     EVOD_ASSERT(old != runs_.end());
     RunRecorder run{thread_};
-    run.number_ = thread_.replace(
-        old->second.number_, old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
-        folder_.file_of(entry.name), identity_of(entry), run.first(entry.world, std::move(command)));
+    run.number_ = thread_.replace(old->second.number_,
+                                  old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
+                                  folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
+                                  run.first(entry.world, std::move(command)));
     runs_.erase(old);
     add(entry.name, std::move(run));
 }

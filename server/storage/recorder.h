@@ -7,6 +7,7 @@
 #include "server/storage/data_folder.h"
 #include "server/storage/storage_thread.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <map>
@@ -24,6 +25,43 @@ struct CommandRecord {
     StorageThread::Done done = {};
 };
 
+/// What a file says first of a run that begins with this world, now.
+RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world);
+
+/// What a run has to say as its world is advanced: beginnings and ends of generations, and the chain of hashes.
+class RunNews {
+  public:
+    RunNews() = default;
+    /// Of a run that goes on, of which this has been told.
+    RunNews(std::uint64_t tick, std::uint64_t generations_begun, std::uint64_t generations_ended)
+        : tick_{tick}, begun_{generations_begun}, ended_{generations_ended} {}
+
+    /// Gives write(…) what is new; to be called after every tick and before the first.
+    template <class Write>
+    void tell(const simulation::World& world, Write&& write) {
+        const simulation::Moment& moment = world.moment();
+        if (moment.generation != begun_) {
+            write(storage::beginning_of(world));
+            begun_ = moment.generation;
+        }
+        if (moment.tick > tick_ && moment.tick % ticks_per_link == 0)
+            write(HashLink{moment.tick, world.hash()});
+        seen(moment.tick);
+        if (world.generation_over() && ended_ != moment.generation) {
+            write(storage::end_of(world));
+            ended_ = moment.generation;
+        }
+    }
+    /// Of this tick all has been told, by whatever else.
+    void seen(std::uint64_t tick) { tick_ = std::max(tick_, tick); }
+
+    std::uint64_t tick() const { return tick_; } // the last
+    std::uint64_t generations_begun() const { return begun_; }
+
+  private:
+    std::uint64_t tick_ = 0, begun_ = 0, ended_ = 0;
+};
+
 /// Of one run.
 class RunRecorder {
   public:
@@ -36,12 +74,16 @@ class RunRecorder {
     /// A run that goes on.
     RunRecorder(StorageThread& thread, StorageThread::RunNumber number, const EndMark& so_far,
                 std::uint64_t generations_ended)
-        : thread_{thread}, number_{number}, written_{so_far}, generations_ended_{generations_ended} {}
+        : thread_{thread}
+        , number_{number}
+        , news_{so_far.tick, so_far.generations, generations_ended}
+        , journal_entries_{so_far.journal_entries} {}
 
     /// Hands over what is new; to be called after every tick and before the first.
     void follow(const simulation::World& world) {
         const simulation::Moment& moment = world.moment();
-        if (moment.generation != written_.generations || moment.tick % ticks_per_link == 0 || world.generation_over())
+        if (moment.generation != news_.generations_begun() || moment.tick % ticks_per_link == 0 ||
+            world.generation_over())
             hand_over(world);
     }
     void journal(CommandRecord command);
@@ -68,8 +110,8 @@ class RunRecorder {
 
     StorageThread& thread_;
     StorageThread::RunNumber number_ = 0;
-    EndMark written_; // what has been handed over; its links are not counted
-    std::uint64_t generations_ended_ = 0;
+    RunNews news_; // that has been handed over
+    std::uint64_t journal_entries_ = 0;
 
     // Simulated since the file holds something to begin from; since the last checkpoint.
     std::chrono::nanoseconds since_beginning_{0}, since_checkpoint_{0};
