@@ -22,10 +22,6 @@
 namespace evod::console {
 namespace {
 
-base::Refusal refused(std::string message) {
-    return {.code = base::RefusalCode::InvalidArgument, .message = std::move(message), .violations = {}};
-}
-
 /// All that was asked for, found to be good.
 struct Plan {
     std::vector<Arm> arms;         // that are run; the first is the world
@@ -36,9 +32,10 @@ struct Plan {
 
 base::Result<Plan> plan_of(const CompareOptions& options) {
     if (options.controls && options.experiments.size() > 1)
-        return refused("--controls are those of one experiment; got " + std::to_string(options.experiments.size()));
+        return refusal(base::RefusalCode::InvalidArgument,
+                       "--controls are those of one experiment; got " + std::to_string(options.experiments.size()));
     if (!options.controls && options.experiments.size() < 2)
-        return refused("give --controls, or two experiments or more");
+        return refusal(base::RefusalCode::InvalidArgument, "give --controls, or two experiments or more");
     std::vector<simulation::Experiment> experiments;
     std::vector<std::string> names;
     for (const std::string& path : options.experiments) {
