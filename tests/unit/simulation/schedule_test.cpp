@@ -5,6 +5,7 @@
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world.h"
 #include "tests/support/thread_executor.h"
+#include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,14 +47,6 @@ class ScheduleTest : public testing::Test {
         const auto requested = request_of(world.parameters(), std::vector{Assignment{name, std::move(value)}});
         ASSERT_TRUE(requested) << to_text(requested.error());
         world.request_parameters(*requested);
-    }
-    template <class Kind>
-    static std::vector<Kind> events(World& world) {
-        std::vector<Kind> found;
-        for (EventKind& event : world.take_events())
-            if (auto* kind = std::get_if<Kind>(&event))
-                found.push_back(std::move(*kind));
-        return found;
     }
 
     base::InlineExecutor executor;

@@ -5,6 +5,7 @@
 #include "server/evolution/migration.h"
 #include "server/simulation/fitness.h"
 #include "tests/support/thread_executor.h"
+#include "tests/unit/simulation/events.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,14 +33,6 @@ class WorldTest : public testing::Test {
         do
             world.advance_tick(executor);
         while (!world.generation_over());
-    }
-    template <class Kind>
-    static std::vector<Kind> events(World& world) {
-        std::vector<Kind> found;
-        for (EventKind& event : world.take_events())
-            if (auto* kind = std::get_if<Kind>(&event))
-                found.push_back(std::move(*kind));
-        return found;
     }
     void request(World& world, std::vector<Assignment> assignments) {
         const auto requested = assign(world.parameters().requested, assignments);

@@ -28,11 +28,6 @@ class CheckpointTest : public testing::Test {
         EXPECT_TRUE(file) << to_text(file.error());
         return *std::move(file);
     }
-    void change(const char* sql) {
-        Database database{data.file_of("w"), Database::Mode::Write};
-        database.run(sql);
-        ASSERT_FALSE(database.failed()) << database.error();
-    }
     static std::vector<std::uint64_t> ticks_of(RunFile& file) {
         std::vector<std::uint64_t> ticks;
         for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
@@ -155,7 +150,7 @@ TEST_F(CheckpointTest, OneThatIsNotAsItWasWrittenIsNamed) {
     for (const char* damage : {"UPDATE checkpoint SET state = substr(state, 1, length(state) - 1)",
                                "UPDATE checkpoint SET low = low + 1", "UPDATE checkpoint SET journal_entries = 7",
                                "UPDATE checkpoint SET state = CAST(x'00' || substr(state, 2) AS BLOB)"}) {
-        change(damage);
+        change(data.file_of("w"), damage);
         const auto file = RunFile::open(data.file_of("w"), {});
         for (const auto& refused : {(*file)->check().error(), recover(**file, executor).error()}) {
             EXPECT_EQ(refused.code, base::RefusalCode::DataLoss);
@@ -246,7 +241,7 @@ TEST_F(CheckpointTest, AFileOfTheFormatBeforeIsReadAndGoneOnWith) {
         hash = run.world().hash();
     }
     (void)file_left();
-    change(support::as_of_format(1).c_str());
+    change(data.file_of("w"), support::as_of_format(1));
     {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
@@ -278,7 +273,7 @@ TEST_F(CheckpointTest, AFileWithWholeOnesIsReadAndGoneOnWith) {
         hash = run.world().hash();
     }
     (void)file_left();
-    change(support::as_of_format(3).c_str());
+    change(data.file_of("w"), support::as_of_format(3));
     {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
@@ -361,7 +356,7 @@ TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
          }) {
         const std::string sound = data.file_of("w") + ".sound";
         std::filesystem::copy_file(data.file_of("w"), sound, std::filesystem::copy_options::overwrite_existing);
-        change(damage);
+        change(data.file_of("w"), damage);
         {
             const auto file = RunFile::open_read_only(data.file_of("w"));
             for (const auto& refused : {(*file)->check().error(), recover(**file, executor).error()}) {

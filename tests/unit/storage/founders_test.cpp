@@ -26,11 +26,6 @@ class FoundersTest : public testing::Test {
         run.recorder().close_all(run.laboratory());
     }
     std::string path() const { return data.file_of("w"); }
-    void change(const char* sql) const {
-        Database database{path(), Database::Mode::Write};
-        database.run(sql);
-        ASSERT_FALSE(database.failed()) << database.error();
-    }
 
     TemporaryFolder folder;
     DataFolder data = *DataFolder::open(folder.path());
@@ -60,7 +55,7 @@ TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
 
 TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
     record(1);
-    change(support::as_of_format(2).c_str());
+    change(path(), support::as_of_format(2));
     {
         const auto file = RunFile::open_read_only(path());
         ASSERT_TRUE(file) << to_text(file.error());
@@ -86,7 +81,7 @@ TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
 
 TEST_F(FoundersTest, ThatAreMissingAreNamed) {
     record(1);
-    change("DELETE FROM founders WHERE generation = 5 AND island = 1");
+    change(path(), "DELETE FROM founders WHERE generation = 5 AND island = 1");
     const auto file = RunFile::open_read_only(path());
     EXPECT_THAT(to_text((*file)->check().error()), HasSubstr("the founders of generation 5"));
 }

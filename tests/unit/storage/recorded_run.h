@@ -5,6 +5,7 @@
 #include "server/base/inline_executor.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/parameters.h"
+#include "server/storage/database.h"
 #include "server/storage/recorder.h"
 
 #include <gtest/gtest.h>
@@ -37,6 +38,13 @@ class TemporaryFolder {
   private:
     std::string path_;
 };
+
+/// Does this to a run file behind everybody's back.
+inline void change(const std::string& path, const std::string& sql) {
+    Database database{path, Database::Mode::Write};
+    database.run(sql.c_str());
+    ASSERT_FALSE(database.failed()) << database.error();
+}
 
 /// A world that breeds soon and dies now and then: twelve organisms, generations of two seconds, two islands.
 inline simulation::Parameters small_world() {

@@ -24,12 +24,6 @@ void put(const std::string& path, std::string_view bytes) {
     std::ofstream{path, std::ios::binary}.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-void change(const std::string& path, const char* sql) {
-    Database database{path, Database::Mode::Write};
-    database.run(sql);
-    ASSERT_FALSE(database.failed()) << database.error();
-}
-
 class RunFileTest : public testing::Test {
   protected:
     /// The file of a run of four generations and a half with changes, closed.

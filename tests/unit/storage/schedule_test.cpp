@@ -34,11 +34,6 @@ class StoredScheduleTest : public testing::Test {
         EXPECT_TRUE(file) << to_text(file.error());
         return *std::move(file);
     }
-    void change(const std::string& sql) {
-        Database database{data.file_of("w"), Database::Mode::Write};
-        database.run(sql.c_str());
-        ASSERT_FALSE(database.failed()) << database.error();
-    }
     void expect_agrees(RunFile& file) {
         const auto verified = verify(file, three_threads, [](const VerifyProgress&) {});
         ASSERT_TRUE(verified) << to_text(verified.error());
@@ -151,7 +146,7 @@ TEST_F(StoredScheduleTest, AnotherScheduleIsFound) {
     std::filesystem::copy_file(path, path + ".sound");
     const auto forged = [&](const std::string& sql) -> base::Refusal {
         std::filesystem::copy_file(path + ".sound", path, std::filesystem::copy_options::overwrite_existing);
-        change(sql);
+        change(data.file_of("w"), sql);
         const auto file = RunFile::open(path, {});
         return file ? base::Refusal{.code = {}, .message = "read", .violations = {}} : file.error();
     };
@@ -193,7 +188,7 @@ TEST_F(StoredScheduleTest, AFileOfTheFormatBeforeHasNoneAndIsGoneOnWith) {
         run.advance(170);
     }
     (void)file_left();
-    change(support::as_of_format(3).c_str());
+    change(data.file_of("w"), support::as_of_format(3));
     {
         const auto file = RunFile::open_read_only(data.file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());

@@ -50,13 +50,8 @@ class SelectionAccountTest : public testing::Test {
         run.recorder().close_all(run.laboratory());
     }
     std::string path() const { return data.file_of("w"); }
-    void change(const char* sql) const {
-        Database database{path(), Database::Mode::Write};
-        database.run(sql);
-        ASSERT_FALSE(database.failed()) << database.error();
-    }
     /// As it was before there were accounts.
-    void bring_to_format_3() const { change(support::as_of_format(3).c_str()); }
+    void bring_to_format_3() const { change(path(), support::as_of_format(3)); }
     void expect_agrees(RunFile& file) {
         const auto verified = verify(file, executor, [](const VerifyProgress&) {});
         ASSERT_TRUE(verified) << to_text(verified.error());
@@ -190,9 +185,9 @@ TEST_F(SelectionAccountTest, ThatAreMissingOrChangedAreNamed) {
         return verified ? std::string{} : to_text(verified.error());
     };
     EXPECT_EQ(complaint(), "");
-    change("UPDATE selection_account SET impulse_selection = 1 WHERE generation = 3 AND island = 0");
+    change(path(), "UPDATE selection_account SET impulse_selection = 1 WHERE generation = 3 AND island = 0");
     EXPECT_THAT(complaint(), HasSubstr("the selection accounts of generation 3"));
-    change("DELETE FROM selection_account WHERE generation = 3");
+    change(path(), "DELETE FROM selection_account WHERE generation = 3");
     EXPECT_THAT(complaint(), HasSubstr("the selection accounts of generation 3"));
 }
 

@@ -45,11 +45,6 @@ class VerifyTest : public testing::Test {
         EXPECT_TRUE(opened) << to_text(opened.error());
         return *std::move(opened);
     }
-    void change(const char* sql) {
-        Database database{data.file_of("w"), Database::Mode::Write};
-        database.run(sql);
-        ASSERT_FALSE(database.failed()) << database.error();
-    }
     template <class Record>
     void write(const Record& record) {
         const auto to = file();
@@ -160,9 +155,9 @@ TEST_F(VerifyTest, AgreesWhereverTheLastCommitCame) {
                             "DELETE FROM state_hash WHERE tick = 420", "DELETE FROM generation WHERE generation = 4",
                             "DELETE FROM statistics WHERE generation = 3", "DELETE FROM state_hash WHERE tick = 360",
                             "DELETE FROM journal WHERE number = 4", "DELETE FROM state_hash WHERE tick = 300"}) {
-        change(sql);
-        change("DELETE FROM population WHERE generation > (SELECT max(generation) FROM generation)");
-        change("DELETE FROM outcome WHERE generation > (SELECT max(generation) FROM statistics)");
+        change(data.file_of("w"), sql);
+        change(data.file_of("w"), "DELETE FROM population WHERE generation > (SELECT max(generation) FROM generation)");
+        change(data.file_of("w"), "DELETE FROM outcome WHERE generation > (SELECT max(generation) FROM statistics)");
         const auto result = verified(two_threads);
         ASSERT_TRUE(result) << sql << ": " << to_text(result.error());
         EXPECT_FALSE(result->difference) << sql << ": " << result->difference->part;
@@ -324,7 +319,7 @@ TEST_F(VerifyTest, AnotherStateHashIsTold) {
 
 TEST_F(VerifyTest, AStateHashThatIsMissingAtTheEndIsTold) {
     record();
-    change("DELETE FROM state_hash WHERE tick >= 480");
+    change(data.file_of("w"), "DELETE FROM state_hash WHERE tick >= 480");
     expect_difference(4, 480, "the state hash", 420);
 }
 
@@ -503,7 +498,7 @@ TEST_F(VerifyTest, OfManyDifferencesTheFirstIsTold) {
 
 TEST_F(VerifyTest, DamageIsNamed) {
     record();
-    change("UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 4 AND island = 1");
+    change(data.file_of("w"), "UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 4 AND island = 1");
     const auto result = verified(two_threads);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, base::RefusalCode::DataLoss);

@@ -1,0 +1,22 @@
+// What has happened in a world, one kind at a time, for tests.
+#pragma once
+
+#include "server/simulation/world.h"
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace evod::simulation {
+
+/// Those of one kind since events were taken last; the others are forgotten.
+template <class Kind>
+std::vector<Kind> events(World& world) {
+    std::vector<Kind> found;
+    for (EventKind& event : world.take_events())
+        if (auto* kind = std::get_if<Kind>(&event))
+            found.push_back(std::move(*kind));
+    return found;
+}
+
+} // namespace evod::simulation
