@@ -440,12 +440,14 @@ bool StorageThread::fail(const Refusal& why) {
 }
 
 Result<void> StorageThread::begin(Run& run) {
-    const bool was_open = run.file != nullptr;
-    const auto is_new = was_open ? Result<bool>{false} : open(run);
-    if (!is_new)
-        return is_new.error();
-    if (!*is_new)
-        run.file->begin();
+    if (!run.file) {
+        const auto is_new = open(run);
+        if (!is_new)
+            return is_new.error();
+        if (*is_new) // and has begun
+            return {};
+    }
+    run.file->begin();
     return {};
 }
 
