@@ -1,5 +1,8 @@
 #include "server/storage/packing_thread.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <utility>
 
 namespace evod::storage {
@@ -25,6 +28,9 @@ void PackingThread::add(Job job) {
 
 void PackingThread::work() {
     pthread_setname_np(pthread_self(), "packing"); // as `top -H` shows it
+    // Where processors are few it gives way to threads that somebody waits for; Linux has this for each thread, and
+    // where it is refused all is well but slower.
+    (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
     for (;;) {
         Job job;
         {

@@ -27,6 +27,8 @@ class PackingThread {
     pthread_t handle() { return thread_.native_handle(); }
 
   private:
+    static constexpr int niceness = 10; // about a tenth of what a thread of the simulation gets beside it
+
     void work();
 
     std::mutex mutex_; // guards what follows
