@@ -106,6 +106,12 @@ void add_storage(v1::Metrics& to, storage::StorageThread& thread, const v1::Stor
         .add(number(storage::StorageThread::waiting_bytes_max));
     add_gauge(to, "evod_journal_lag_seconds", "For how long the oldest of it has waited; 0.2 s is usual")
         .add(std::max(lag.count(), 0.0));
+    add_histogram(to, "evod_journal_wait_seconds",
+                  "Time from when a command has been carried out until it is on the disk, and is answered")
+        .add(thread.times().journal_wait);
+    add_histogram(to, "evod_journal_commit_seconds",
+                  "Time of a commit of commands, hashes and generations, putting it on the disk included")
+        .add(thread.times().commit);
 }
 
 } // namespace

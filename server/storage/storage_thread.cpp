@@ -92,6 +92,8 @@ std::vector<StorageThread::Item> StorageThread::items_of(Batch batch) {
     }
     if (items.empty())
         items.emplace_back();
+    if (batch.done)
+        items.back().handed_over = std::chrono::steady_clock::now();
     items.back().done = std::move(batch.done);
     waiting_bytes_.fetch_add(bytes, std::memory_order_relaxed);
     return items;
@@ -503,8 +505,10 @@ bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
     for (const Item& item : items)
         if (item.record)
             std::visit([&](const auto& record) { run.file->write(record); }, *item.record);
+    const auto began = std::chrono::steady_clock::now();
     if (auto committed = run.file->commit(); !committed)
         return fail(run, committed.error());
+    times_.commit.add(std::chrono::steady_clock::now() - began);
     if (run.to_create)
         if (auto settled = run.file->settle(); !settled)
             return fail(run, settled.error());
@@ -517,8 +521,11 @@ void StorageThread::tell(std::vector<Item>& items) {
     std::size_t bytes = 0;
     for (const Item& item : std::exchange(items, {})) {
         bytes += item.bytes;
-        if (item.done)
+        if (item.done) {
+            if (item.record) // with a command as its last
+                times_.journal_wait.add(std::chrono::steady_clock::now() - item.handed_over);
             item.done();
+        }
         if (item.writing) {
             item.writing->took = item.took;
             item.writing->waits = false;

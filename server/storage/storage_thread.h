@@ -31,6 +31,7 @@
 // News         of both, trouble and room, are called out: whoever sleeps meanwhile can be woken.
 #pragma once
 
+#include "server/metrics/counters.h"
 #include "server/storage/packing_thread.h"
 #include "server/storage/run_file.h"
 
@@ -108,6 +109,12 @@ class StorageThread {
     std::size_t waiting_bytes() const { return waiting_bytes_.load(std::memory_order_relaxed); }
     /// Since when the oldest of what waits has; nullopt: nothing waits.
     std::optional<std::chrono::steady_clock::time_point> waiting_since() const;
+    /// What is counted of it; for any thread to read.
+    struct Times {
+        metrics::TimeHistogram journal_wait; // of commands, from when they were handed over until they are on the disk
+        metrics::TimeHistogram commit;       // of what runs have to say, putting it on the disk included
+    };
+    const Times& times() const { return times_; }
     /// To ask the system about it.
     pthread_t handle() { return thread_.native_handle(); }
     pthread_t packing_handle() { return packing_.handle(); }
@@ -124,8 +131,9 @@ class StorageThread {
         Done done;
         std::shared_ptr<CheckpointWriting> writing; // of a checkpoint
         std::size_t bytes = 0;
-        std::chrono::nanoseconds took{0}; // of a checkpoint: to pack and to write
-        bool away = false;                // a checkpoint that is being packed, and is empty here
+        std::chrono::steady_clock::time_point handed_over = {}; // where somebody waits
+        std::chrono::nanoseconds took{0};                       // of a checkpoint: to pack and to write
+        bool away = false;                                      // a checkpoint that is being packed, and is empty here
     };
     /// What comes back from the packing thread.
     struct Packed {
@@ -212,6 +220,7 @@ class StorageThread {
     const RunFile::Options options_;
     const std::chrono::milliseconds retry_after_;
     std::atomic<std::size_t> waiting_bytes_ = 0, waiting_checkpoints_ = 0;
+    Times times_;                       // written by the storage thread
     std::atomic<bool> working_ = false; // the storage thread, or there is more for it to do
 
     mutable std::mutex mutex_; // guards what follows
