@@ -1,0 +1,122 @@
+// What the network thread does to make a picture, stage by stage, without sending it: to put what the simulation thread
+// copied in order and into whole numbers, to tell it from the picture before, and to make bytes of that, with a
+// checksum, as they are or by zstd.
+//
+// Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
+// bytes. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
+// --movers`; pictures are 3 ticks apart, or 300, as a world at full speed has them.
+#include "server/base/inline_executor.h"
+#include "server/network/chains.h"
+#include "server/network/snapshot_columns.h"
+#include "server/runtime/snapshot.h"
+#include "tests/bench/experiment.h"
+
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace evod::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The default world, with so many organisms and items on the ground of `ground` organisms.
+simulation::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std::uint32_t poison, double ground) {
+    simulation::Parameters parameters = experiment("default");
+    const double longer = std::sqrt(ground / parameters.population_size);
+    parameters.island_width_px *= longer;
+    parameters.island_height_px *= longer;
+    parameters.population_size = organisms;
+    parameters.food_count = food;
+    parameters.poison_count = poison;
+    return parameters;
+}
+
+struct Kind {
+    const char* name;
+    simulation::Parameters parameters;
+    int ticks_between = 3;
+};
+
+/// Snapshots of a run, so many ticks apart.
+std::vector<runtime::SnapshotPtr> snapshots_of(const Kind& kind) {
+    constexpr int warm_up_ticks = 60, snapshot_count = 40;
+    simulation::Entry entry{
+        .name = "w", .run_id = {1, 2}, .control = {}, .world = simulation::World{kind.parameters, base::Seed{1}}};
+    base::InlineExecutor executor;
+    for (int tick = 0; tick < warm_up_ticks; ++tick)
+        entry.world.advance_tick(executor);
+    runtime::SnapshotPool pool;
+    std::vector<runtime::SnapshotPtr> snapshots;
+    for (int i = 0; i < snapshot_count; ++i) {
+        snapshots.push_back(pool.take(entry, {0}, false));
+        for (int tick = 0; tick < kind.ticks_between; ++tick)
+            entry.world.advance_tick(executor);
+    }
+    return snapshots;
+}
+
+void pictures(benchmark::State& state, const Kind& kind, v1::Compression compression) {
+    const std::vector<runtime::SnapshotPtr> snapshots = snapshots_of(kind);
+    network::SnapshotColumns columns;
+    wire::Compressor compressor;
+    std::chrono::duration<double> order{0}, scene{0}, delta{0}, bytes{0};
+    std::uint64_t entities = 0, size = 0;
+    for (auto _ : state) {
+        network::Chain chain;
+        for (std::size_t i = 0; i < snapshots.size(); ++i) {
+            const runtime::Snapshot& snapshot = *snapshots[i];
+            v1::SnapshotFrame about;
+            about.set_sequence(i + 1);
+            about.set_generation(snapshot.moment.generation);
+            about.set_generation_tick(snapshot.moment.generation_tick);
+            const auto began = Clock::now();
+            const wire::IslandColumns island = columns.of(snapshot.islands.front());
+            wire::describe(island, about);
+            const auto ordered = Clock::now();
+            auto made = std::make_shared<const wire::Scene>(wire::scene_of(island));
+            const auto in_numbers = Clock::now();
+            const network::ChainPicturePtr& picture =
+                chain.add(std::make_shared<const v1::SnapshotFrame>(about), std::move(made), compressor, {}, {});
+            const auto told = Clock::now();
+            const network::SharedBytes frame = picture->after(i, compression);
+            benchmark::DoNotOptimize(frame->data());
+            const auto done = Clock::now();
+            if (i == 0) // a keyframe
+                continue;
+            order += ordered - began;
+            scene += in_numbers - ordered;
+            delta += told - in_numbers;
+            bytes += done - told;
+            entities += about.organism_count() + about.food_count() + about.poison_count();
+            size += frame->size();
+        }
+    }
+    const auto each_ns = [&](std::chrono::duration<double> took) {
+        return 1e9 * took.count() / static_cast<double>(entities);
+    };
+    state.counters["order_ns"] = each_ns(order);
+    state.counters["scene_ns"] = each_ns(scene);
+    state.counters["delta_ns"] = each_ns(delta);
+    state.counters["bytes_ns"] = each_ns(bytes);
+    state.counters["all_ns"] = each_ns(order + scene + delta + bytes);
+    state.counters["bytes"] = static_cast<double>(size) / static_cast<double>(entities);
+}
+
+const bool registered = [] {
+    const simulation::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
+    for (const Kind& kind : {Kind{"half move", half}, Kind{"a tenth moves", world_of(2'300, 8'000, 12'700, 10'000)},
+                             Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300}})
+        for (const auto& [name, compression] :
+             {std::pair{"none", v1::COMPRESSION_NONE}, std::pair{"zstd", v1::COMPRESSION_ZSTD}})
+            benchmark::RegisterBenchmark((std::string{kind.name} + '/' + name).c_str(), pictures, kind, compression)
+                ->Unit(benchmark::kMillisecond);
+    return true;
+}();
+
+} // namespace
+} // namespace evod::bench
