@@ -5,7 +5,8 @@
 A world runs at full speed, in a generation that does not end. One client sends a command and a query by turns, each once
 the one before is answered. Both wait for the tick that is being simulated; only the command waits for the disk. A command
 came beside a checkpoint if the server wrote more than 100 KB meanwhile, which commands and hashes do not take: then a
-checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and fdatasync.
+checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and fdatasync. How long
+commands waited for the disk once they had been carried out, and commits took, is what the server measures itself.
 """
 import argparse
 import contextlib
@@ -39,6 +40,19 @@ def shares(seconds):
     ordered = sorted(1e3 * s for s in seconds)
     return {"count": len(ordered), "p50_ms": ordered[len(ordered) // 2], "p99_ms": ordered[len(ordered) * 99 // 100],
             "max_ms": ordered[-1]}
+
+
+def told(control, name):
+    """Of a histogram of the server's metrics: its mean, and by milliseconds how many in 100 took no longer."""
+    histogram = next(family for family in control.call(get_metrics=c.GetMetrics()).metrics.families
+                     if family.name == name).samples[0].histogram
+    count = sum(histogram.counts)
+    shares, below = {}, 0
+    for bound, of_bucket in zip(histogram.bounds, histogram.counts):
+        below += of_bucket
+        if 0.2e-3 < bound < 0.1:
+            shares[f"within_{1e3 * bound:g}_ms_percent"] = 100 * below / count
+    return {"count": count, "mean_ms": 1e3 * histogram.sum / count} | shares
 
 
 def timed(act):
@@ -85,8 +99,10 @@ def measure_commands(folder):
                     looked = time.monotonic()
                     checkpoints |= {tick for (tick,) in run.execute("SELECT tick FROM checkpoint")}
             ticks = tick() - first_tick
+            waited, commits = told(control, "evod_journal_wait_seconds"), told(control, "evod_journal_commit_seconds")
     return {"checkpoints": len(checkpoints), "tick_ms": 1e3 * options.seconds / max(ticks, 1),
-            "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries)}
+            "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries), "waited_for_the_disk": waited,
+            "commit": commits}
 
 
 with tempfile.TemporaryDirectory(dir=options.data) as folder:
