@@ -30,6 +30,10 @@ constexpr std::uint64_t exception_bytes = 8;
 
 class BodyWriter {
   public:
+    BodyWriter() = default;
+    /// bytes  that it will hold.
+    explicit BodyWriter(std::size_t bytes) { body_.reserve(bytes); }
+
     template <std::unsigned_integral Number>
     void number(Number value) {
         store(value, grow(sizeof value));

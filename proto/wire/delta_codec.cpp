@@ -3,7 +3,6 @@
 #include "proto/wire/body.h"
 #include "proto/wire/compression.h"
 #include "proto/wire/framing.h"
-#include "proto/wire/steps.h"
 
 #include <algorithm>
 #include <numeric>
@@ -356,53 +355,6 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
 }
 
 } // namespace
-
-Counts counts_of(const Scene& scene) {
-    Counts counts{};
-    std::transform(kinds.begin(), kinds.end(), counts.begin(),
-                   [&](const Kind& kind) { return static_cast<std::uint32_t>((scene.*kind.entities).x.size()); });
-    return counts;
-}
-
-namespace {
-
-template <class Value, class Convert>
-Column converted(std::span<const Value> values, const Convert& convert) {
-    Column column(values.size());
-    std::transform(values.begin(), values.end(), column.begin(), convert);
-    return column;
-}
-
-} // namespace
-
-Scene scene_of(const IslandColumns& island) {
-    const std::uint32_t position_bytes = position_bytes_of(island.width_px, island.height_px);
-    const PositionInSteps in_steps{island.position_fraction_bits, position_bytes};
-    const auto boxes = [&](const BoxColumns& of) {
-        return Entities{.id = {},
-                        .x = converted(of.x, in_steps),
-                        .y = converted(of.y, in_steps),
-                        .width = converted(of.half_width_px, size_in_steps),
-                        .height = converted(of.half_height_px, size_in_steps)};
-    };
-    const auto items = [&](const ItemColumns& of) {
-        return Entities{.id = {of.id.begin(), of.id.end()},
-                        .x = converted(of.x, in_steps),
-                        .y = converted(of.y, in_steps),
-                        .width = {},
-                        .height = {}};
-    };
-    return {.position_bytes = position_bytes,
-            .organisms = {.id = {island.organisms.id.begin(), island.organisms.id.end()},
-                          .x = converted(island.organisms.x, in_steps),
-                          .y = converted(island.organisms.y, in_steps),
-                          .width = converted(island.organisms.radius_px, size_in_steps),
-                          .height = converted(island.organisms.health, size_in_steps)},
-            .food = items(island.food),
-            .poison = items(island.poison),
-            .crates = boxes(island.crates),
-            .obstacles = boxes(island.obstacles)};
-}
 
 Footing standing(std::shared_ptr<const Scene> scene) {
     Footing footing;

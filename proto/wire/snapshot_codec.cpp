@@ -1,14 +1,13 @@
 #include "proto/wire/snapshot_codec.h"
 
+#include "proto/wire/body.h"
 #include "proto/wire/little_endian.h"
 #include "proto/wire/steps.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -33,66 +32,6 @@ std::uint64_t body_bytes(const evod::v1::SnapshotFrame& frame) {
     return frame.organism_count() * organism_bytes(position) +
            (std::uint64_t{frame.food_count()} + frame.poison_count()) * item_bytes(position) +
            (std::uint64_t{frame.crate_count()} + frame.obstacle_count()) * box_bytes(position);
-}
-
-// ---- encoding --------------------------------------------------------------------------------------------------
-
-/// Where the next column goes.
-class Writer {
-  public:
-    explicit Writer(char* to) : to_{to} {}
-
-    void ids(std::span<const std::uint32_t> column) {
-        each(column, [](std::uint32_t id) { return id; });
-    }
-    template <std::unsigned_integral Step>
-    void positions(std::span<const std::int32_t> column, unsigned fraction_bits) {
-        const PositionInSteps in_steps{fraction_bits, sizeof(Step)};
-        each(column, [=](std::int32_t position) { return static_cast<Step>(in_steps(position)); });
-    }
-    void sizes(std::span<const float> column) { each(column, size_in_steps); }
-
-  private:
-    template <class Value, class Convert>
-    void each(std::span<const Value> column, const Convert& convert) {
-        using Number = decltype(convert(column[0]));
-        char* const to = to_;
-        for (std::size_t i = 0; i < column.size(); ++i) {
-            store(convert(column[i]), to + i * sizeof(Number));
-        }
-        to_ += column.size() * sizeof(Number);
-    }
-
-    char* to_;
-};
-
-template <class First, class... Rest>
-void require_same_length(const char* what, const First& first, const Rest&... rest) {
-    if (((rest.size() != first.size()) || ...)) {
-        throw std::invalid_argument{std::string{"columns of different lengths: "} + what};
-    }
-}
-
-template <std::unsigned_integral Step>
-void write_columns(const IslandColumns& island, char* to) {
-    Writer writer{to};
-    const unsigned bits = island.position_fraction_bits;
-    writer.ids(island.organisms.id);
-    writer.positions<Step>(island.organisms.x, bits);
-    writer.positions<Step>(island.organisms.y, bits);
-    writer.sizes(island.organisms.radius_px);
-    writer.sizes(island.organisms.health);
-    for (const ItemColumns* items : {&island.food, &island.poison}) {
-        writer.ids(items->id);
-        writer.positions<Step>(items->x, bits);
-        writer.positions<Step>(items->y, bits);
-    }
-    for (const BoxColumns* boxes : {&island.crates, &island.obstacles}) {
-        writer.positions<Step>(boxes->x, bits);
-        writer.positions<Step>(boxes->y, bits);
-        writer.sizes(boxes->half_width_px);
-        writer.sizes(boxes->half_height_px);
-    }
 }
 
 // ---- decoding --------------------------------------------------------------------------------------------------
@@ -149,34 +88,32 @@ bool rise(const std::vector<std::uint32_t>& ids) {
 
 } // namespace
 
-void describe(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
-    require_same_length("organisms", island.organisms.id, island.organisms.x, island.organisms.y,
-                        island.organisms.radius_px, island.organisms.health);
-    require_same_length("food", island.food.id, island.food.x, island.food.y);
-    require_same_length("poison", island.poison.id, island.poison.x, island.poison.y);
-    require_same_length("crates", island.crates.x, island.crates.y, island.crates.half_width_px,
-                        island.crates.half_height_px);
-    require_same_length("obstacles", island.obstacles.x, island.obstacles.y, island.obstacles.half_width_px,
-                        island.obstacles.half_height_px);
-    frame.set_width_px(island.width_px);
-    frame.set_height_px(island.height_px);
-    frame.set_organism_count(static_cast<std::uint32_t>(island.organisms.id.size()));
-    frame.set_food_count(static_cast<std::uint32_t>(island.food.id.size()));
-    frame.set_poison_count(static_cast<std::uint32_t>(island.poison.id.size()));
-    frame.set_crate_count(static_cast<std::uint32_t>(island.crates.x.size()));
-    frame.set_obstacle_count(static_cast<std::uint32_t>(island.obstacles.x.size()));
-    frame.set_position_bytes(position_bytes_of(island.width_px, island.height_px));
+void describe(const Scene& scene, evod::v1::SnapshotFrame& frame) {
+    const Counts counts = counts_of(scene);
+    frame.set_organism_count(counts[0]);
+    frame.set_food_count(counts[1]);
+    frame.set_poison_count(counts[2]);
+    frame.set_crate_count(counts[3]);
+    frame.set_obstacle_count(counts[4]);
+    frame.set_position_bytes(scene.position_bytes);
 }
 
-void encode(const IslandColumns& island, evod::v1::SnapshotFrame& frame) {
-    describe(island, frame);
+void encode(const Scene& scene, evod::v1::SnapshotFrame& frame) {
+    describe(scene, frame);
     frame.set_codec(evod::v1::CODEC_COLUMNS);
-    frame.mutable_body()->resize(body_bytes(frame));
-    if (frame.position_bytes() == 2) {
-        write_columns<std::uint16_t>(island, frame.mutable_body()->data());
-    } else {
-        write_columns<std::uint32_t>(island, frame.mutable_body()->data());
+    BodyWriter writer{body_bytes(frame)};
+    const auto positions = [&](const Column& column) {
+        scene.position_bytes == 2 ? writer.plain<std::uint16_t>(column) : writer.plain<std::uint32_t>(column);
+    };
+    for (const auto part : scene_parts) {
+        const Entities& entities = scene.*part; // columns that a kind does not have are empty
+        writer.plain<std::uint32_t>(entities.id);
+        positions(entities.x);
+        positions(entities.y);
+        writer.plain<std::uint16_t>(entities.width);
+        writer.plain<std::uint16_t>(entities.height);
     }
+    frame.set_body(writer.take());
 }
 
 std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {

@@ -1,4 +1,4 @@
-// Snapshot codec: an island's columns → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
+// Snapshot codec: a scene → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
 // stream.proto.
 //
 // The server encodes a picture once for all its viewers; clients decode. The encoder is handed arrays that are right;
@@ -10,48 +10,19 @@
 
 #include "evod/v1/stream.pb.h"
 #include "proto/wire/result.h"
+#include "proto/wire/scene.h"
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace evod::wire {
 
-/// All spans of one struct have the same length. Positions are centres, in fixed point: see IslandColumns.
-struct OrganismColumns {
-    std::span<const std::uint32_t> id; // rising
-    std::span<const std::int32_t> x, y;
-    std::span<const float> radius_px;
-    std::span<const float> health;
-};
-struct ItemColumns {
-    std::span<const std::uint32_t> id; // rising; only the items that are there to be eaten
-    std::span<const std::int32_t> x, y;
-};
-struct BoxColumns {
-    std::span<const std::int32_t> x, y;
-    std::span<const float> half_width_px, half_height_px;
-};
+/// Sets the counts and position_bytes of `frame`, and leaves its other fields alone.
+void describe(const Scene& scene, evod::v1::SnapshotFrame& frame);
 
-/// An island as the server holds it.
-struct IslandColumns {
-    double width_px = 0, height_px = 0;
-    unsigned position_fraction_bits = 12; // an x or y of 1 is 2^-position_fraction_bits px; 4 to 30
-    OrganismColumns organisms{};
-    ItemColumns food{}, poison{};
-    BoxColumns crates{}, obstacles{};
-};
-
-/// Sets width_px, height_px, the counts and position_bytes of `frame`, and leaves its other fields alone. Throws
-/// std::invalid_argument where the columns of one struct differ in length.
-void describe(const IslandColumns& columns, evod::v1::SnapshotFrame& frame);
-
-/// Sets codec and body of `frame` too.
-///
-/// Positions are rounded to the nearest 1/16 px (a half goes right or down); what is beyond the column's range stands
-/// at its end.
-void encode(const IslandColumns& columns, evod::v1::SnapshotFrame& frame);
+/// Sets codec and body of `frame` too. scene: of a whole island.
+void encode(const Scene& scene, evod::v1::SnapshotFrame& frame);
 
 struct OrganismPicture {
     std::vector<std::uint32_t> id; // rising

@@ -19,6 +19,8 @@ v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::Isl
     frame.set_run_id(to_text(snapshot.run_id));
     frame.set_island(island.island);
     frame.set_island_count(snapshot.island_count);
+    frame.set_width_px(island.width_px);
+    frame.set_height_px(island.height_px);
     frame.set_tick(snapshot.moment.tick);
     frame.set_generation(snapshot.moment.generation);
     frame.set_generation_tick(snapshot.moment.generation_tick);
@@ -127,7 +129,7 @@ void Streams::update_demand() {
     }
     groups_ = std::move(groups);
     if (watches.empty())
-        columns_ = {}; // nobody needs that memory now
+        scene_maker_ = {}; // nobody needs that memory now
     for (auto& [world, watch] : watches) {
         std::sort(watch.islands.begin(), watch.islands.end());
         watch.islands.erase(std::unique(watch.islands.begin(), watch.islands.end()), watch.islands.end());
@@ -167,12 +169,11 @@ class Pace {
 /// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
 class EncodedIslands {
   public:
-    /// columns  working memory, one for each island or more.
-    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, std::vector<SnapshotColumns>& columns,
+    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, SceneMaker& scene_maker,
                    wire::Compressor& compressor)
         : snapshot_{snapshot}
         , sequence_{sequence}
-        , columns_{columns}
+        , scene_maker_{scene_maker}
         , compressor_{compressor}
         , islands_(snapshot.islands.size()) {}
 
@@ -181,7 +182,7 @@ class EncodedIslands {
         if (!island.about) {
             v1::SnapshotFrame about = about_of(snapshot_, snapshot_.islands[i]);
             about.set_sequence(++sequence_);
-            wire::describe(columns_of(i), about);
+            wire::describe(*scene(i), about);
             island.about = std::make_shared<const v1::SnapshotFrame>(std::move(about));
         }
         return island.about;
@@ -190,7 +191,7 @@ class EncodedIslands {
         Island& island = islands_[i];
         if (!island.columns) {
             v1::SnapshotFrame frame = *about(i);
-            wire::encode(columns_of(i), frame);
+            wire::encode(*scene(i), frame);
             island.columns = std::make_shared<const std::string>(frame.SerializeAsString());
         }
         return island.columns;
@@ -198,7 +199,7 @@ class EncodedIslands {
     const std::shared_ptr<const wire::Scene>& scene(std::size_t i) {
         Island& island = islands_[i];
         if (!island.scene)
-            island.scene = std::make_shared<const wire::Scene>(wire::scene_of(columns_of(i)));
+            island.scene = std::make_shared<const wire::Scene>(scene_maker_.scene_of(snapshot_.islands[i]));
         return island.scene;
     }
     const std::shared_ptr<IslandTiles>& tiles(std::size_t i) {
@@ -210,22 +211,14 @@ class EncodedIslands {
 
   private:
     struct Island {
-        std::optional<wire::IslandColumns> in_order;
         std::shared_ptr<const v1::SnapshotFrame> about;
         SharedBytes columns;
         std::shared_ptr<const wire::Scene> scene;
         std::shared_ptr<IslandTiles> tiles;
     };
-    const wire::IslandColumns& columns_of(std::size_t i) {
-        std::optional<wire::IslandColumns>& in_order = islands_[i].in_order;
-        if (!in_order)
-            in_order = columns_[i].of(snapshot_.islands[i]);
-        return *in_order;
-    }
-
     const runtime::Snapshot& snapshot_;
     std::uint64_t& sequence_;
-    std::vector<SnapshotColumns>& columns_;
+    SceneMaker& scene_maker_;
     wire::Compressor& compressor_;
     std::vector<Island> islands_;
 };
@@ -234,8 +227,7 @@ class EncodedIslands {
 
 void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
     const runtime::Snapshot& snapshot = *picture.snapshot;
-    columns_.resize(std::max(columns_.size(), snapshot.islands.size()));
-    EncodedIslands encoded{snapshot, sequence_, columns_, compressor_};
+    EncodedIslands encoded{snapshot, sequence_, scene_maker_, compressor_};
     struct Shown {
         double rate_hz;
         bool in_tiles;

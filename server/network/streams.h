@@ -6,8 +6,8 @@
 // Owner        the server; on the network thread.
 #pragma once
 
+#include "server/network/scene_maker.h"
 #include "server/network/session.h"
-#include "server/network/snapshot_columns.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/outbox.h"
@@ -74,7 +74,7 @@ class Streams {
     runtime::Demand& demand_;
     runtime::Mailbox& mailbox_;
     std::uint64_t newcomers_ = 0, sequence_ = 0;
-    std::vector<SnapshotColumns> columns_; // working memory, of the islands of one snapshot
+    SceneMaker scene_maker_;
     wire::Compressor compressor_;
     std::map<GroupName, Group> groups_;
 };

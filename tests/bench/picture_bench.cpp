@@ -5,9 +5,10 @@
 // Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
 // bytes. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
 // --movers`; pictures are 3 ticks apart, or 300, as a world at full speed has them.
+#include "proto/wire/snapshot_codec.h"
 #include "server/base/inline_executor.h"
 #include "server/network/chains.h"
-#include "server/network/snapshot_columns.h"
+#include "server/network/scene_maker.h"
 #include "server/runtime/snapshot.h"
 #include "tests/bench/experiment.h"
 
@@ -62,9 +63,9 @@ std::vector<runtime::SnapshotPtr> snapshots_of(const Kind& kind) {
 
 void pictures(benchmark::State& state, const Kind& kind, v1::Compression compression) {
     const std::vector<runtime::SnapshotPtr> snapshots = snapshots_of(kind);
-    network::SnapshotColumns columns;
+    network::SceneMaker scene_maker;
     wire::Compressor compressor;
-    std::chrono::duration<double> order{0}, scene{0}, delta{0}, bytes{0};
+    std::chrono::duration<double> scene{0}, delta{0}, bytes{0};
     std::uint64_t entities = 0, size = 0;
     for (auto _ : state) {
         network::Chain chain;
@@ -75,11 +76,9 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             about.set_generation(snapshot.moment.generation);
             about.set_generation_tick(snapshot.moment.generation_tick);
             const auto began = Clock::now();
-            const wire::IslandColumns island = columns.of(snapshot.islands.front());
-            wire::describe(island, about);
-            const auto ordered = Clock::now();
-            auto made = std::make_shared<const wire::Scene>(wire::scene_of(island));
-            const auto in_numbers = Clock::now();
+            auto made = std::make_shared<const wire::Scene>(scene_maker.scene_of(snapshot.islands.front()));
+            wire::describe(*made, about);
+            const auto ready = Clock::now();
             const network::ChainPicturePtr& picture =
                 chain.add(std::make_shared<const v1::SnapshotFrame>(about), std::move(made), compressor, {}, {});
             const auto told = Clock::now();
@@ -88,9 +87,8 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             const auto done = Clock::now();
             if (i == 0) // a keyframe
                 continue;
-            order += ordered - began;
-            scene += in_numbers - ordered;
-            delta += told - in_numbers;
+            scene += ready - began;
+            delta += told - ready;
             bytes += done - told;
             entities += about.organism_count() + about.food_count() + about.poison_count();
             size += frame->size();
@@ -99,11 +97,10 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
     const auto each_ns = [&](std::chrono::duration<double> took) {
         return 1e9 * took.count() / static_cast<double>(entities);
     };
-    state.counters["order_ns"] = each_ns(order);
     state.counters["scene_ns"] = each_ns(scene);
     state.counters["delta_ns"] = each_ns(delta);
     state.counters["bytes_ns"] = each_ns(bytes);
-    state.counters["all_ns"] = each_ns(order + scene + delta + bytes);
+    state.counters["all_ns"] = each_ns(scene + delta + bytes);
     state.counters["bytes"] = static_cast<double>(size) / static_cast<double>(entities);
 }
 

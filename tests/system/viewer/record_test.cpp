@@ -175,7 +175,9 @@ TEST(RecordOptions, AWrongCommandLineIsRefusedWithStatus2) {
 TEST(RecordAsAViewer, TakesPicturesAsTheyComeAndSendsNoCommand) {
     const TemporaryFolder folder;
     evod::v1::SnapshotFrame picture;
-    wire::encode({.width_px = 100, .height_px = 100}, picture);
+    picture.set_width_px(100);
+    picture.set_height_px(100);
+    wire::encode({}, picture);
     picture.set_world("default");
     picture.set_run_id("00112233445566778899aabbccddeeff");
     picture.set_island_count(1);

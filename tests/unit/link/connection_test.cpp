@@ -404,7 +404,9 @@ TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
     v1::SnapshotFrame frame;
-    wire::encode({.width_px = 100, .height_px = 100}, frame);
+    frame.set_width_px(100);
+    frame.set_height_px(100);
+    wire::encode({}, frame);
     frame.set_island_count(1);
     frame.set_subscription_id(1);
     frame.set_organism_count(1'000'000'000);
@@ -425,16 +427,13 @@ class WalkingPictures {
 
   private:
     v1::SnapshotFrame next(bool as_delta) {
-        const std::vector<std::uint32_t> ids{5};
-        const std::vector<std::int32_t> x{static_cast<std::int32_t>(sequence_) * 4096}, y{4096};
-        const std::vector<float> radius{1.F}, health{2.F};
-        const wire::IslandColumns columns{
-            .width_px = 100,
-            .height_px = 100,
-            .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}};
+        const auto x = static_cast<std::uint32_t>(sequence_) * 16;
+        const auto scene = std::make_shared<const wire::Scene>(
+            wire::Scene{.organisms = {.id = {5}, .x = {x}, .y = {16}, .width = {16}, .height = {32}}});
         v1::SnapshotFrame frame;
-        wire::describe(columns, frame);
-        const auto scene = std::make_shared<const wire::Scene>(wire::scene_of(columns));
+        frame.set_width_px(100);
+        frame.set_height_px(100);
+        wire::describe(*scene, frame);
         frame.set_island_count(1);
         frame.set_subscription_id(1);
         frame.set_codec(v1::CODEC_DELTA);
@@ -587,21 +586,18 @@ TEST(Views, AreAskedForChangedAndAskedForAgain) {
 
 /// A picture of one tile, with two organisms in it.
 v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequence) {
-    const std::vector<std::uint32_t> ids{5, 6};
-    const std::vector<std::int32_t> place(2, 4096);
-    const std::vector<float> size(2, 1.F);
-    const wire::IslandColumns columns{
-        .width_px = 100,
-        .height_px = 100,
-        .organisms = {.id = ids, .x = place, .y = place, .radius_px = size, .health = size}};
+    const auto scene = std::make_shared<const wire::Scene>(
+        wire::Scene{.organisms = {.id = {5, 6}, .x = {16, 16}, .y = {16, 16}, .width = {16, 16}, .height = {16, 16}}});
     v1::SnapshotFrame frame;
-    wire::describe(columns, frame);
+    frame.set_width_px(100);
+    frame.set_height_px(100);
+    wire::describe(*scene, frame);
     frame.set_codec(v1::CODEC_DELTA);
     frame.set_island_count(1);
     frame.set_subscription_id(1);
     frame.set_sequence(sequence);
     frame.set_tick(sequence);
-    wire::TiledScene tiled{std::make_shared<const wire::Scene>(wire::scene_of(columns)), wire::tile_layout(100, 100)};
+    wire::TiledScene tiled{scene, wire::tile_layout(100, 100)};
     frame.set_tile_px(tiled.layout().tile_px);
     v1::TilePicture& tile = *frame.add_tiles();
     tile.set_detail(v1::DETAIL_FULL);

@@ -73,7 +73,9 @@ class FakeSession {
     }
     void send_picture(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t tick) {
         v1::SnapshotFrame frame;
-        wire::encode({.width_px = 100, .height_px = 100}, frame);
+        frame.set_width_px(100);
+        frame.set_height_px(100);
+        wire::encode({}, frame);
         frame.set_subscription_id(subscription_id);
         frame.set_island(island);
         frame.set_island_count(4);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
+#include <utility>
 
 namespace evod::network {
 namespace {
@@ -16,19 +16,17 @@ class ChainTest : public testing::Test {
   protected:
     /// Adds a picture of what `frame_` tells, `between` after the last.
     ChainPicturePtr add(Clock::duration between = 100ms) {
-        const std::vector<std::uint32_t> ids{1, 2};
-        const std::vector<std::int32_t> x(2, static_cast<std::int32_t>(frame_.generation_tick()) * 4096), y(2, 4096);
-        const std::vector<float> radius(2, 1.F), health(2, 100.F);
-        const wire::IslandColumns columns{
-            .width_px = 100,
-            .height_px = 100,
-            .organisms = {.id = ids, .x = x, .y = y, .radius_px = radius, .health = health}};
-        wire::describe(columns, frame_);
+        const auto x = static_cast<std::uint32_t>(frame_.generation_tick()) * 16;
+        wire::Scene scene{
+            .organisms = {.id = {1, 2}, .x = {x, x}, .y = {16, 16}, .width = {16, 16}, .height = {1600, 1600}}};
+        frame_.set_width_px(100);
+        frame_.set_height_px(100);
+        wire::describe(scene, frame_);
         frame_.set_island_count(1);
         frame_.set_sequence(frame_.sequence() + 1);
         now_ += between;
         return chain_.add(std::make_shared<const v1::SnapshotFrame>(frame_),
-                          std::make_shared<const wire::Scene>(wire::scene_of(columns)), compressor_, now_, between);
+                          std::make_shared<const wire::Scene>(std::move(scene)), compressor_, now_, between);
     }
     ChainPicturePtr add_next() {
         frame_.set_generation_tick(frame_.generation_tick() + 6);

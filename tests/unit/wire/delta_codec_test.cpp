@@ -23,8 +23,8 @@ class Sender {
 
     Sent send(const LivingIsland& island, std::uint16_t ticks) {
         Sent sent{.columns = island.about(), .keyframe = island.about(), .delta = {}};
-        encode(island.arrays().columns(), sent.columns);
         const auto scene = std::make_shared<const Scene>(island.scene());
+        encode(*scene, sent.columns);
         const bool has_base = footing_.scene && follows(*scene, *footing_.scene);
         sent.columns.set_sequence(++sequence_);
         sent.keyframe.set_sequence(sequence_);

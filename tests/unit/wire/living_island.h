@@ -3,12 +3,13 @@
 
 #include "proto/wire/delta_codec.h"
 #include "proto/wire/snapshot_codec.h"
+#include "proto/wire/steps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace evod::wire {
@@ -106,58 +107,38 @@ struct LivingIsland {
         }
     }
 
-    /// What encoders are handed.
-    struct Arrays {
-        double side_px;
-        struct Places {
-            std::vector<std::uint32_t> id;
-            std::vector<std::int32_t> x, y;
-            std::vector<float> width, height;
+    Scene scene() const {
+        Scene scene;
+        scene.position_bytes = position_bytes_of(side_px, side_px);
+        const PositionInSteps in_steps{12, scene.position_bytes};
+        const auto place = [&](Entities& entities, const auto& entity) {
+            entities.x.push_back(in_steps(static_cast<std::int32_t>(std::min<std::int64_t>(entity.x, 0x7fffffff))));
+            entities.y.push_back(in_steps(static_cast<std::int32_t>(std::min<std::int64_t>(entity.y, 0x7fffffff))));
         };
-        std::array<Places, 5> all;
-
-        IslandColumns columns() const {
-            return {.width_px = side_px,
-                    .height_px = side_px,
-                    .position_fraction_bits = 12,
-                    .organisms = {all[0].id, all[0].x, all[0].y, all[0].width, all[0].height},
-                    .food = {all[1].id, all[1].x, all[1].y},
-                    .poison = {all[2].id, all[2].x, all[2].y},
-                    .crates = {all[3].x, all[3].y, all[3].width, all[3].height},
-                    .obstacles = {all[4].x, all[4].y, all[4].width, all[4].height}};
-        }
-    };
-
-    Arrays arrays() const {
-        Arrays arrays{.side_px = side_px, .all = {}};
-        auto& all = arrays.all;
-        const auto place = [](Arrays::Places& places, const auto& entity) {
-            places.x.push_back(static_cast<std::int32_t>(std::min<std::int64_t>(entity.x, 0x7fffffff)));
-            places.y.push_back(static_cast<std::int32_t>(std::min<std::int64_t>(entity.y, 0x7fffffff)));
+        const auto size = [](Entities& entities, float width, float height) {
+            entities.width.push_back(size_in_steps(width));
+            entities.height.push_back(size_in_steps(height));
         };
         for (const Organism& organism : organisms) {
-            place(all[0], organism);
-            all[0].id.push_back(organism.id);
-            all[0].width.push_back(organism.radius);
-            all[0].height.push_back(organism.health);
+            scene.organisms.id.push_back(organism.id);
+            place(scene.organisms, organism);
+            size(scene.organisms, organism.radius, organism.health);
         }
-        const std::array<const std::vector<Item>*, 2> items{&food, &poison};
-        const std::array<const std::vector<Box>*, 2> boxes{&crates, &obstacles};
-        for (std::size_t k = 0; k < 2; ++k) {
-            for (const Item& item : *items[k]) {
-                place(all[1 + k], item);
-                all[1 + k].id.push_back(item.id);
-            }
-            for (const Box& box : *boxes[k]) {
-                place(all[3 + k], box);
-                all[3 + k].width.push_back(box.half_width);
-                all[3 + k].height.push_back(box.half_height);
+        for (const auto& [items, entities] : {std::pair{&food, &scene.food}, std::pair{&poison, &scene.poison}}) {
+            for (const Item& item : *items) {
+                entities->id.push_back(item.id);
+                place(*entities, item);
             }
         }
-        return arrays;
+        for (const auto& [boxes, entities] :
+             {std::pair{&crates, &scene.crates}, std::pair{&obstacles, &scene.obstacles}}) {
+            for (const Box& box : *boxes) {
+                place(*entities, box);
+                size(*entities, box.half_width, box.half_height);
+            }
+        }
+        return scene;
     }
-
-    Scene scene() const { return scene_of(arrays().columns()); }
 
     /// All of a frame but its body, codec and sequence.
     evod::v1::SnapshotFrame about() const {
@@ -165,7 +146,9 @@ struct LivingIsland {
         frame.set_world("w");
         frame.set_run_id("r");
         frame.set_island_count(1);
-        describe(arrays().columns(), frame);
+        frame.set_width_px(side_px);
+        frame.set_height_px(side_px);
+        describe(scene(), frame);
         return frame;
     }
 };

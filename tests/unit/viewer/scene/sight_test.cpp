@@ -102,11 +102,15 @@ struct SightTest : testing::Test {
     }
     void show(std::uint64_t generation, std::uint64_t tick, const std::string& run_id = "a",
               std::uint32_t subscription_id = 7, std::uint32_t born = 3, const std::string& world = "default") {
-        const std::array<std::uint32_t, 3> ids{0, 1, 2};
-        const std::array<std::int32_t, 3> x{100 << 12, 200 << 12, 300 << 12};
-        const std::array<float, 3> radius{10, 10, 10}, health{50, 60, 70};
         evod::v1::SnapshotFrame frame;
-        wire::encode({.width_px = 1000, .height_px = 1000, .organisms = {ids, x, x, radius, health}}, frame);
+        frame.set_width_px(1000);
+        frame.set_height_px(1000);
+        wire::encode({.organisms = {.id = {0, 1, 2},
+                                    .x = {1600, 3200, 4800},
+                                    .y = {1600, 3200, 4800},
+                                    .width = {160, 160, 160},
+                                    .height = {800, 960, 1120}}},
+                     frame);
         frame.set_world(world);
         frame.set_run_id(run_id);
         frame.set_subscription_id(subscription_id);

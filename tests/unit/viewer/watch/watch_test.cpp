@@ -48,7 +48,9 @@ struct WatchTest : testing::Test {
     static void send_picture(link::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
                              std::uint64_t tick, const std::string& world = "default") {
         evod::v1::SnapshotFrame frame;
-        wire::encode({.width_px = 100, .height_px = 100}, frame);
+        frame.set_width_px(100);
+        frame.set_height_px(100);
+        wire::encode({}, frame);
         frame.set_world(world);
         frame.set_run_id("a");
         frame.set_subscription_id(subscription_id);

@@ -1,0 +1,47 @@
+// Scene: the entities of a picture in whole numbers, which are steps of 1/16 px, or 1/16 of health (steps.h). Every
+// codec tells these numbers, and no others.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace evod::wire {
+
+/// Entities of one kind, by rising id or, of an island's boxes, in their order. All columns that a kind has are of one
+/// length; the others are empty.
+struct Entities {
+    std::vector<std::uint32_t> id; // organisms, food, poison; in a tile, boxes too: the index among the island's
+    std::vector<std::uint32_t> x, y;
+    std::vector<std::uint32_t> width;  // organisms: radius; boxes: half width
+    std::vector<std::uint32_t> height; // organisms: health; boxes: half height
+    friend bool operator==(const Entities&, const Entities&) = default;
+};
+
+/// The entities of one picture, or of one tile of it.
+struct Scene {
+    std::uint32_t position_bytes = 2; // 2 or 4
+    bool of_tile = false;             // boxes have ids, for they come and go
+    Entities organisms{}, food{}, poison{}, crates{}, obstacles{};
+    friend bool operator==(const Scene&, const Scene&) = default;
+};
+
+/// Of organisms, food, poison, crates, obstacles: the order of everything that is told.
+using Counts = std::array<std::uint32_t, 5>;
+constexpr std::array<Entities Scene::*, 5> scene_parts{&Scene::organisms, &Scene::food, &Scene::poison, &Scene::crates,
+                                                       &Scene::obstacles};
+inline Counts counts_of(const Scene& scene) {
+    Counts counts;
+    std::ranges::transform(scene_parts, counts.begin(),
+                           [&](auto part) { return static_cast<std::uint32_t>((scene.*part).x.size()); });
+    return counts;
+}
+/// Message  SnapshotFrame or TilePicture.
+template <class Message>
+Counts counts_of(const Message& message) {
+    return {message.organism_count(), message.food_count(), message.poison_count(), message.crate_count(),
+            message.obstacle_count()};
+}
+
+} // namespace evod::wire

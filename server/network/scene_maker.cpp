@@ -1,0 +1,107 @@
+#include "server/network/scene_maker.h"
+
+#include "proto/wire/steps.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace evod::network {
+namespace {
+
+using Column = std::vector<std::uint32_t>;
+
+/// From fixed point, as it was put there, in place: all at once, which vectors do.
+void to_steps(Column& positions, std::uint32_t position_bytes) {
+    const wire::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
+                                         position_bytes};
+    for (std::uint32_t& position : positions)
+        position = in_steps(static_cast<std::int32_t>(position));
+}
+
+/// Room for `count`, and for one more: what is to be left out is written there and written over.
+template <class... Columns>
+void make_room(std::size_t count, Columns&... columns) {
+    (columns.resize(count + 1), ...);
+}
+
+template <class... Columns>
+void keep_first(std::size_t count, Columns&... columns) {
+    (columns.resize(count), ...);
+}
+
+wire::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t position_bytes) {
+    wire::Entities to;
+    make_room(items.present_count, to.id, to.x, to.y);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < items.all.size(); ++i) { // without a branch: which items are away is unpredictable
+        const simulation::Items::Item& item = items.all[i];
+        to.id[kept] = static_cast<std::uint32_t>(i);
+        to.x[kept] = static_cast<std::uint32_t>(item.x);
+        to.y[kept] = static_cast<std::uint32_t>(item.y);
+        kept += item.due_tick == 0;
+    }
+    keep_first(kept, to.id, to.x, to.y);
+    to_steps(to.x, position_bytes);
+    to_steps(to.y, position_bytes);
+    return to;
+}
+
+wire::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end,
+                        std::uint32_t position_bytes) {
+    const auto part = [=](const auto& column) { return std::span{column}.subspan(begin, end - begin); };
+    const auto positions = [&](const auto& column) {
+        Column steps(part(column).begin(), part(column).end());
+        to_steps(steps, position_bytes);
+        return steps;
+    };
+    const auto sizes = [&](const auto& column) {
+        Column steps(end - begin);
+        std::ranges::transform(part(column), steps.begin(), wire::size_in_steps);
+        return steps;
+    };
+    return {.id = {},
+            .x = positions(boxes.x),
+            .y = positions(boxes.y),
+            .width = sizes(boxes.half_width_px),
+            .height = sizes(boxes.half_height_px)};
+}
+
+} // namespace
+
+wire::Entities SceneMaker::organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
+    const std::uint32_t largest_id = organisms.id.empty() ? 0 : *std::ranges::max_element(organisms.id);
+    by_id_.assign(organisms.id.empty() ? 0 : std::size_t{largest_id} + 1, Organism{});
+    for (std::size_t i = 0; i < organisms.id.size(); ++i)
+        if (organisms.x[i] != physics::elsewhere)
+            by_id_[organisms.id[i]] = {organisms.x[i], organisms.y[i], organisms.radius_px[i], organisms.health[i]};
+    wire::Entities to;
+    make_room(organisms.alive_count, to.id, to.x, to.y, to.width, to.height);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < by_id_.size(); ++i) { // without a branch, as above
+        const Organism& organism = by_id_[i];
+        to.id[kept] = static_cast<std::uint32_t>(i);
+        to.x[kept] = static_cast<std::uint32_t>(organism.x);
+        to.y[kept] = static_cast<std::uint32_t>(organism.y);
+        to.width[kept] = wire::size_in_steps(organism.radius_px);
+        to.height[kept] = wire::size_in_steps(organism.health);
+        kept += organism.x != physics::elsewhere;
+    }
+    keep_first(kept, to.id, to.x, to.y, to.width, to.height);
+    to_steps(to.x, position_bytes);
+    to_steps(to.y, position_bytes);
+    return to;
+}
+
+wire::Scene SceneMaker::scene_of(const runtime::IslandSnapshot& island) {
+    const std::uint32_t position_bytes = wire::position_bytes_of(island.width_px, island.height_px);
+    const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
+    return {.position_bytes = position_bytes,
+            .organisms = organisms_of(island.organisms, position_bytes),
+            .food = items_of(island.food, position_bytes),
+            .poison = items_of(island.poison, position_bytes),
+            .crates = boxes_of(island.boxes, 0, crates, position_bytes),
+            .obstacles = boxes_of(island.boxes, crates, boxes, position_bytes)};
+}
+
+} // namespace evod::network
