@@ -38,7 +38,10 @@ bool is_right(const v1::Hello& hello) {
 } // namespace
 
 WatchingClient::WatchingClient(int descriptor, Answers& answers, bool refused)
-    : descriptor_{descriptor}, answers_{answers}, refused_{refused}, all_heard_{clock().now()} {}
+    : descriptor_{descriptor}, answers_{answers}, all_heard_{clock().now()} {
+    if (refused)
+        refuse();
+}
 
 WatchingClient::~WatchingClient() {
     ::close(descriptor_);
@@ -67,7 +70,7 @@ void WatchingClient::said(std::span<const std::byte> bytes) {
     while (!refused_) {
         const auto frame = said_.next();
         if (!frame)
-            refused_ = true;
+            refuse();
         else if (*frame)
             said(**frame);
         else
@@ -79,8 +82,9 @@ void WatchingClient::said(const wire::Frame& frame) {
     const auto message = wire::parse_body<v1::ClientMessage>(frame.body);
     if (!greeted_) {
         greeted_ = message && message->has_hello() && is_right(message->hello());
-        refused_ = !greeted_;
-        if (greeted_) {
+        if (!greeted_)
+            refuse();
+        else {
             role_ = admit(message->hello().token())->role;
             said_.set_limits(wire::server_limits);
         }
@@ -106,6 +110,11 @@ void WatchingClient::said(const wire::Frame& frame) {
     owed(request.request_id(), {.request = request, .place = ++place_});
 }
 
+void WatchingClient::refuse() {
+    refused_ = true;
+    refused_since_ = clock().now();
+}
+
 void WatchingClient::owed(std::uint64_t request_id, Asked asked) {
     ids_are_mixed_ = ids_are_mixed_ || outstanding_.contains(request_id);
     outstanding_.emplace(request_id, std::move(asked));
@@ -125,7 +134,9 @@ bool WatchingClient::hear(std::size_t count) {
     // Once its session ends, for what it said or did not say in time, the last bytes do not wait for it as long.
     const bool may_be_ending = refused_ || !greeted_ || said_.buffered_bytes() > 0;
     const auto patience = may_be_ending ? network::farewell_timeout : network::stalled_timeout;
-    may_have_stalled_ = may_have_stalled_ || clock().now() - all_heard_ >= patience;
+    const auto now = clock().now();
+    may_have_stalled_ = may_have_stalled_ || now - all_heard_ >= patience ||
+                        now - refused_since_ >= network::farewell_timeout; // however much it has heard
     if (heard_bytes <= 0) {
         closed_ = true;
         return false;

@@ -87,6 +87,7 @@ class WatchingClient {
 
     void said(std::span<const std::byte> bytes);
     void said(const wire::Frame& frame);
+    void refuse();
     void owed(std::uint64_t request_id, Asked asked);
     void heard(const wire::Frame& frame);
     void heard(const v1::Response& response);
@@ -104,6 +105,7 @@ class WatchingClient {
     bool may_be_reason_ = false; // the last response; or it answers what could not be read
     bool ids_are_mixed_ = false, may_have_stalled_ = false;
     runtime::Clock::time_point all_heard_; // when it had last read everything
+    runtime::Clock::time_point refused_since_ = runtime::Clock::time_point::max();
     access::Role role_{};
     std::uint64_t request_id_ = 0, place_ = 0, last_place_answered_ = 0;
     std::multimap<std::uint64_t, Asked> outstanding_; // by request id; 0: what could not be read
