@@ -1,7 +1,7 @@
 // Snapshot codec: a scene → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
 // stream.proto.
 //
-// The server encodes a picture once for all its viewers; clients decode. The encoder is handed arrays that are right;
+// The server encodes a picture once for all its viewers; clients decode. The encoder is handed scenes that are right;
 // the decoder trusts nothing.
 //
 // Threads      none; nothing here is shared.
