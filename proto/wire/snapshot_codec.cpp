@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -89,6 +90,15 @@ bool rise(const std::vector<std::uint32_t>& ids) {
 } // namespace
 
 void describe(const Scene& scene, evod::v1::SnapshotFrame& frame) {
+    for (const auto part : scene_parts) {
+        const Entities& entities = scene.*part;
+        for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height}) {
+            const bool may_be_left_out = column != &entities.y; // what a kind does not have
+            if (column->size() != entities.x.size() && !(may_be_left_out && column->empty())) {
+                throw std::invalid_argument{"a scene has columns of different lengths"};
+            }
+        }
+    }
     const Counts counts = counts_of(scene);
     frame.set_organism_count(counts[0]);
     frame.set_food_count(counts[1]);

@@ -18,7 +18,8 @@
 
 namespace evod::wire {
 
-/// Sets the counts and position_bytes of `frame`, and leaves its other fields alone.
+/// Sets the counts and position_bytes of `frame`, and leaves its other fields alone. Throws std::invalid_argument where
+/// the columns of a kind differ in length.
 void describe(const Scene& scene, evod::v1::SnapshotFrame& frame);
 
 /// Sets codec and body of `frame` too. scene: of a whole island.

@@ -5,8 +5,8 @@
 A world runs at full speed, in a generation that does not end. One client sends a command and a query by turns, each once
 the one before is answered. Both wait for the tick that is being simulated; only the command waits for the disk. A command
 came beside a checkpoint if the server wrote more than 100 KB meanwhile, which commands and hashes do not take: then a
-checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and fdatasync. How long
-commands waited for the disk once they had been carried out, and commits took, is what the server measures itself.
+checkpoint was being written, or a log copied. The disk itself: 4 KiB appended to a file of the same folder, and fdatasync.
+How long commands waited for the disk once they had been carried out, and commits took, is what the server measures itself.
 """
 import argparse
 import contextlib
@@ -101,8 +101,8 @@ def measure_commands(folder):
             ticks = tick() - first_tick
             waited, commits = told(control, "evod_journal_wait_seconds"), told(control, "evod_journal_commit_seconds")
     return {"checkpoints": len(checkpoints), "tick_ms": 1e3 * options.seconds / max(ticks, 1),
-            "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries), "waited_for_the_disk": waited,
-            "commit": commits}
+            "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries),
+            "waited_for_the_disk": waited, "commit": commits}
 
 
 with tempfile.TemporaryDirectory(dir=options.data) as folder:

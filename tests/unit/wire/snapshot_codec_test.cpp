@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,19 @@ TEST(SnapshotCodec, PositionsMayTakeFourBytes) {
     EXPECT_EQ(frame.position_bytes(), 4U);
     EXPECT_EQ(decode(frame)->organisms.x_px, (Floats{100.F, 285'999.5F}));
     EXPECT_EQ(decode(frame)->obstacles.half_height_px, (Floats{14.F}));
+}
+
+TEST(SnapshotCodec, ColumnsOfDifferentLengthsAreTheCallersError) {
+    for (const auto column : {&Entities::id, &Entities::x, &Entities::y}) {
+        Scene scene = small_scene();
+        (scene.food.*column).pop_back();
+        evod::v1::SnapshotFrame frame;
+        EXPECT_THROW(encode(scene, frame), std::invalid_argument);
+    }
+    Scene scene = small_scene();
+    scene.poison.y.clear();
+    evod::v1::SnapshotFrame frame;
+    EXPECT_THROW(encode(scene, frame), std::invalid_argument);
 }
 
 TEST(SnapshotDamage, EveryOtherLengthOfBodyIsRefused) {
