@@ -1,6 +1,6 @@
 #include "proto/wire/compression.h"
 
-#include <zlib.h>
+#include <libdeflate.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -104,8 +104,7 @@ Result<std::string> decompress(std::string_view bytes, std::uint64_t bytes_max) 
 }
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
-    return static_cast<std::uint32_t>(
-        crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+    return libdeflate_crc32(before, bytes.data(), bytes.size());
 }
 
 } // namespace evod::wire

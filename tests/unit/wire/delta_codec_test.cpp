@@ -247,6 +247,17 @@ TEST(DeltaDamage, FieldsAroundTheBodyAreJudgedAsOfAnyPicture) {
 TEST(Crc32, IsThatOfZlib) {
     EXPECT_EQ(crc32("123456789"), 0xcbf43926U);
     EXPECT_EQ(crc32("56789", crc32("1234")), 0xcbf43926U);
+    EXPECT_EQ(crc32(std::string(1'000'000, 'a')), 0xdc25bfbcU); // Python's zlib.crc32(b"a" * 1000000)
+}
+TEST(Crc32, IsTheSameHoweverBytesAreCut) {
+    std::string bytes(3000, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        bytes[i] = static_cast<char>(i * i >> 3);
+    }
+    const std::string_view all = bytes;
+    for (std::size_t cut = 0; cut <= all.size(); ++cut) {
+        EXPECT_EQ(crc32(all.substr(cut), crc32(all.substr(0, cut))), crc32(all)) << cut;
+    }
 }
 
 } // namespace
