@@ -43,5 +43,14 @@ Counts counts_of(const Message& message) {
     return {message.organism_count(), message.food_count(), message.poison_count(), message.crate_count(),
             message.obstacle_count()};
 }
+/// Likewise.
+template <class Message>
+void set_counts(const Counts& counts, Message& message) {
+    message.set_organism_count(counts[0]);
+    message.set_food_count(counts[1]);
+    message.set_poison_count(counts[2]);
+    message.set_crate_count(counts[3]);
+    message.set_obstacle_count(counts[4]);
+}
 
 } // namespace evod::wire

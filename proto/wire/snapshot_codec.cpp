@@ -99,12 +99,7 @@ void describe(const Scene& scene, evod::v1::SnapshotFrame& frame) {
             }
         }
     }
-    const Counts counts = counts_of(scene);
-    frame.set_organism_count(counts[0]);
-    frame.set_food_count(counts[1]);
-    frame.set_poison_count(counts[2]);
-    frame.set_crate_count(counts[3]);
-    frame.set_obstacle_count(counts[4]);
+    set_counts(counts_of(scene), frame);
     frame.set_position_bytes(scene.position_bytes);
 }
 

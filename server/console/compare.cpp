@@ -251,13 +251,6 @@ void print_verdict(const Plan& plan, std::span<const std::vector<Course>> course
         std::puts(sentence.c_str());
 }
 
-/// "37 %, 2 min left"
-std::string progress_text(double share, double seconds_gone) {
-    const double left = seconds_gone / share * (1 - share);
-    return formatted("%3.0f %% of all generations  ", std::floor(share * 100)) +
-           (left < 90 ? formatted("%.0f s left", left) : formatted("%.0f min left", left / 60));
-}
-
 } // namespace
 
 int compare(const CompareOptions& options) {
@@ -285,8 +278,8 @@ int compare(const CompareOptions& options) {
     RunsWanted wanted{.seed = plan->seed, .replicates = options.replicates, .jobs = options.jobs};
     wanted.progress = [&](double share) {
         line.show([&] {
-            return progress_text(share,
-                                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+            const std::chrono::duration<double> gone = std::chrono::steady_clock::now() - start;
+            return formatted("%3.0f %% of all generations, ", std::floor(share * 100)) + time_left(share, gone.count());
         });
     };
     wanted.stopped = interrupted;

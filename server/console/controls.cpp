@@ -140,9 +140,9 @@ simulation::Schedule of_fixed_length(simulation::Schedule world) {
 
 std::string changes_between(const Parameters& world, const Parameters& other) {
     std::string text;
-    for (const simulation::ParameterDescription& description : simulation::parameter_registry())
-        if (const auto value = description.get(other); value != description.get(world))
-            text += (text.empty() ? "" : " ") + std::string{description.name} + "=" + simulation::to_text(value);
+    for (const simulation::ParameterDescription* description : simulation::parameters_that_differ(world, other))
+        text += (text.empty() ? "" : " ") + std::string{description->name} + "=" +
+                simulation::to_text(description->get(other));
     return text;
 }
 

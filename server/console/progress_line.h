@@ -30,4 +30,8 @@ class ProgressLine {
     Clock::time_point shown_{};
 };
 
+/// "90 s left", "37 min left", "2 h 05 min left".
+/// share  in (0, 1]: how much of the work the seconds that are gone have been enough for
+std::string time_left(double share, double seconds_gone);
+
 } // namespace evod::console

@@ -48,9 +48,9 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
         // What is answered takes the place of what is scheduled; Enter leaves it.
         const simulation::Parameters proposed = experiment.parameters;
         experiment.parameters = interview(proposed, std::cin, std::cout);
-        for (const simulation::ParameterDescription& description : simulation::parameter_registry())
-            if (description.get(experiment.parameters) != description.get(proposed))
-                experiment.schedule.remove(description.name);
+        for (const simulation::ParameterDescription* description :
+             simulation::parameters_that_differ(experiment.parameters, proposed))
+            experiment.schedule.remove(description->name);
     }
     if (options.generations) {
         experiment.parameters.generation_limit = *options.generations;

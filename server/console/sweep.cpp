@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
@@ -44,18 +43,6 @@ std::optional<double> work_of(const Parameters& parameters) {
     if (parameters.generation_limit == 0)
         return std::nullopt;
     return work_of_generation(parameters) * parameters.generation_limit;
-}
-
-std::string duration_text(double seconds) {
-    char text[48];
-    if (seconds < 120)
-        std::snprintf(text, sizeof text, "%.0f s", seconds);
-    else if (seconds < 2 * 3600)
-        std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-    else
-        std::snprintf(text, sizeof text, "%.0f h %02.0f min", std::floor(seconds / 3600),
-                      std::floor(std::fmod(seconds, 3600) / 60));
-    return text;
 }
 
 /// How far the runs are. Called by all threads.
@@ -93,8 +80,7 @@ class Progress {
             std::snprintf(text, sizeof text, "%zu of %zu runs, %.3g runs/%s", runs_done_, runs_,
                           rate < 1 ? 60 * rate : rate, rate < 1 ? "min" : "s");
             // Before, it is a guess.
-            return std::string{text} +
-                   (s > 2 && share > 0 ? ", " + duration_text(s * (1 - share) / share) + " to go" : "");
+            return std::string{text} + (s > 2 && share > 0 ? ", " + time_left(share, s) : "");
         });
     }
 

@@ -26,12 +26,12 @@ namespace evod::network {
 namespace {
 
 /// "population_size (50, not 60), selection (roulette, not tournament)".
-std::string parameters_that_differ(const simulation::Parameters& there, const simulation::Parameters& wanted) {
+std::string differences_of(const simulation::Parameters& there, const simulation::Parameters& wanted) {
     std::string text;
-    for (const simulation::ParameterDescription& parameter : simulation::parameter_registry())
-        if (const auto is = parameter.get(there), asked = parameter.get(wanted); !(is == asked))
-            text += (text.empty() ? "" : ", ") + std::string{parameter.name} + " (" + simulation::to_text(is) +
-                    ", not " + simulation::to_text(asked) + ")";
+    for (const simulation::ParameterDescription* parameter : simulation::parameters_that_differ(there, wanted))
+        text += (text.empty() ? "" : ", ") + std::string{parameter->name} + " (" +
+                simulation::to_text(parameter->get(there)) + ", not " + simulation::to_text(parameter->get(wanted)) +
+                ")";
     return text;
 }
 
@@ -136,7 +136,7 @@ base::Result<void> Server::open_archive() {
                              .violations = {}};
     };
     if (there && !(there->parameters == wanted.parameters))
-        return differs("parameters: " + parameters_that_differ(there->parameters, wanted.parameters));
+        return differs("parameters: " + differences_of(there->parameters, wanted.parameters));
     if (there && there->schedule != wanted.schedule)
         return differs("schedule of parameters");
     if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value)
@@ -189,13 +189,11 @@ void Server::begin_first_world() {
         v1::CreateWorld& create = *request.mutable_create_world();
         create.set_name(world.name);
         create.set_seed(world.seed.value);
-        for (const simulation::ParameterDescription& parameter : simulation::parameter_registry()) {
-            const simulation::ParameterValue value = parameter.get(world.parameters);
-            if (value == parameter.default_value())
-                continue;
+        for (const simulation::ParameterDescription* parameter :
+             simulation::parameters_that_differ(world.parameters, {})) {
             v1::ParameterAssignment& assignment = *create.add_parameters();
-            assignment.set_name(std::string{parameter.name});
-            *assignment.mutable_value() = protocol::to_proto(value);
+            assignment.set_name(std::string{parameter->name});
+            *assignment.mutable_value() = protocol::to_proto(parameter->get(world.parameters));
         }
         *create.mutable_schedule() = protocol::to_proto(world.schedule, 1);
         protocol::add_population(create, world.first_population);

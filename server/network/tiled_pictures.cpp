@@ -27,12 +27,7 @@ SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, const wi
                                 v1::Compression compression) {
     using google::protobuf::internal::WireFormatLite;
     using google::protobuf::io::CodedOutputStream;
-    const wire::Counts counts = scene_.counts(tile.tile());
-    tile.set_organism_count(counts[0]);
-    tile.set_food_count(counts[1]);
-    tile.set_poison_count(counts[2]);
-    tile.set_crate_count(counts[3]);
-    tile.set_obstacle_count(counts[4]);
+    wire::set_counts(scene_.counts(tile.tile()), tile);
     tile.set_sequence(about_.sequence());
     tile.set_checksum(wire::checksum_of(about_, tile, body));
     set_body(tile, std::move(body), seams, compression, *compressor_);

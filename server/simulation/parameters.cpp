@@ -357,11 +357,16 @@ ParameterSet after_request(const ParameterSet& set, const Parameters& requested)
             .revision = set.revision + 1};
 }
 
-bool operator==(const Parameters& a, const Parameters& b) {
+std::vector<const ParameterDescription*> parameters_that_differ(const Parameters& a, const Parameters& b) {
+    std::vector<const ParameterDescription*> differing;
     for (const ParameterDescription& description : parameter_registry())
         if (description.get(a) != description.get(b))
-            return false;
-    return true;
+            differing.push_back(&description);
+    return differing;
+}
+
+bool operator==(const Parameters& a, const Parameters& b) {
+    return parameters_that_differ(a, b).empty();
 }
 
 } // namespace evod::simulation

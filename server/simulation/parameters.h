@@ -116,6 +116,9 @@ struct ParameterDescription {
 /// Every parameter, those of the model first, in the order of the lists.
 std::span<const ParameterDescription> parameter_registry();
 
+/// Those that do not have the same value in both, in the order of the registry.
+std::vector<const ParameterDescription*> parameters_that_differ(const Parameters& a, const Parameters& b);
+
 /// nullptr if there is none of that name.
 const ParameterDescription* find_parameter(std::string_view name);
 

@@ -84,11 +84,12 @@ Found compare_organisms(const char* name, const std::string& of_island, std::spa
 }
 
 Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
-    for (const simulation::ParameterDescription& parameter : simulation::parameter_registry())
-        if (const auto one = parameter.get(stored), other = parameter.get(simulated); one != other)
-            return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which, simulation::to_text(one),
-                            simulation::to_text(other)};
-    return std::nullopt;
+    const auto differing = simulation::parameters_that_differ(stored, simulated);
+    if (differing.empty())
+        return std::nullopt;
+    const simulation::ParameterDescription& parameter = *differing.front();
+    return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which,
+                    simulation::to_text(parameter.get(stored)), simulation::to_text(parameter.get(simulated))};
 }
 
 /// Where nobody knows the stored one, as in files of before there were any, there is nothing to compare.

@@ -67,10 +67,10 @@ void WatchingClient::finish() {
 
 void WatchingClient::said(std::span<const std::byte> bytes) {
     said_.feed(bytes);
-    while (!refused_) {
+    while (!refused()) {
         const auto frame = said_.next();
         if (!frame)
-            refuse();
+            refused_since_ = clock().now();
         else if (*frame)
             said(**frame);
         else
@@ -83,7 +83,7 @@ void WatchingClient::said(const wire::Frame& frame) {
     if (!greeted_) {
         greeted_ = message && message->has_hello() && is_right(message->hello());
         if (!greeted_)
-            refuse();
+            refused_since_ = clock().now();
         else {
             role_ = admit(message->hello().token())->role;
             said_.set_limits(wire::server_limits);
@@ -110,11 +110,6 @@ void WatchingClient::said(const wire::Frame& frame) {
     owed(request.request_id(), {.request = request, .place = ++place_});
 }
 
-void WatchingClient::refuse() {
-    refused_ = true;
-    refused_since_ = clock().now();
-}
-
 void WatchingClient::owed(std::uint64_t request_id, Asked asked) {
     ids_are_mixed_ = ids_are_mixed_ || outstanding_.contains(request_id);
     outstanding_.emplace(request_id, std::move(asked));
@@ -132,11 +127,11 @@ bool WatchingClient::hear(std::size_t count) {
         return false;
     }
     // Once its session ends, for what it said or did not say in time, the last bytes do not wait for it as long.
-    const bool may_be_ending = refused_ || !greeted_ || said_.buffered_bytes() > 0;
+    const bool may_be_ending = refused() || !greeted_ || said_.buffered_bytes() > 0;
     const auto patience = may_be_ending ? network::farewell_timeout : network::stalled_timeout;
     const auto now = clock().now();
-    may_have_stalled_ = may_have_stalled_ || now - all_heard_ >= patience ||
-                        now - refused_since_ >= network::farewell_timeout; // however much it has heard
+    const bool long_refused = refused() && now - *refused_since_ >= network::farewell_timeout; // whatever it has heard
+    may_have_stalled_ = may_have_stalled_ || long_refused || now - all_heard_ >= patience;
     if (heard_bytes <= 0) {
         closed_ = true;
         return false;

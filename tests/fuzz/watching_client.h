@@ -53,7 +53,7 @@ class WatchingClient {
     bool closed() const { return closed_; } // by the server
     bool finished() const { return finished_; }
     /// Whether what it said ends its session.
-    bool refused() const { return refused_; }
+    bool refused() const { return refused_since_.has_value(); }
     /// It has left things unread for so long that its session may be closed without a word.
     bool may_have_stalled() const { return may_have_stalled_; }
     /// Nothing is owed to it.
@@ -87,7 +87,6 @@ class WatchingClient {
 
     void said(std::span<const std::byte> bytes);
     void said(const wire::Frame& frame);
-    void refuse();
     void owed(std::uint64_t request_id, Asked asked);
     void heard(const wire::Frame& frame);
     void heard(const v1::Response& response);
@@ -99,13 +98,12 @@ class WatchingClient {
     Answers& answers_;
     std::string unsent_;
     wire::FrameReader said_{wire::hello_limits}, heard_{wire::client_limits};
-    bool refused_ = false; // what it says is not heard any more
     bool greeted_ = false, welcomed_ = false, finished_ = false, closed_ = false;
     bool told_of_end_ = false;   // it is certain
     bool may_be_reason_ = false; // the last response; or it answers what could not be read
     bool ids_are_mixed_ = false, may_have_stalled_ = false;
-    runtime::Clock::time_point all_heard_; // when it had last read everything
-    runtime::Clock::time_point refused_since_ = runtime::Clock::time_point::max();
+    runtime::Clock::time_point all_heard_;                    // when it had last read everything
+    std::optional<runtime::Clock::time_point> refused_since_; // what it says is not heard any more
     access::Role role_{};
     std::uint64_t request_id_ = 0, place_ = 0, last_place_answered_ = 0;
     std::multimap<std::uint64_t, Asked> outstanding_; // by request id; 0: what could not be read

@@ -107,6 +107,7 @@ TEST(ParameterRegistry, GivesBackWhatWasSetAndChangesNothingElse) {
             EXPECT_EQ(each.get(*changed), &each == &description ? assignment.value : each.default_value())
                 << each.name << " after setting " << description.name;
         EXPECT_FALSE(*changed == Parameters{});
+        EXPECT_THAT(parameters_that_differ({}, *changed), testing::ElementsAre(&description));
         Parameters copy;
         description.copy(*changed, copy);
         EXPECT_TRUE(copy == *changed);
