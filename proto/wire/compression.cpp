@@ -1,6 +1,7 @@
 #include "proto/wire/compression.h"
 
 #include <libdeflate.h>
+#define ZSTD_STATIC_LINKING_ONLY // ZSTD_c_literalCompressionMode
 #include <zstd.h>
 
 #include <algorithm>
@@ -14,6 +15,8 @@ namespace {
 
 // The fastest of the ordinary levels: a picture waits for it on the network thread.
 constexpr int level = 1;
+// Instead of 1: of a world at full speed a quarter less time and 1 % more bytes, by picture_bench.
+constexpr int bytes_between_looks = 16;
 
 constexpr std::size_t block_bytes_min = 1024; // shorter ones would cost more than they save
 constexpr std::size_t block_bytes_more = 16;  // that a block can take beyond its content
@@ -34,6 +37,11 @@ struct Compressor::Context {
         // there is to find is found with little memory.
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_minMatch, 7);
         ZSTD_CCtx_setParameter(zstd, ZSTD_c_hashLog, 8);
+        // For the same reason it looks for matches at every so many bytes only. By itself zstd would then leave out
+        // entropy coding too, which is what makes columns shorter; where it cannot be told not to, it looks everywhere.
+        if (!ZSTD_isError(ZSTD_CCtx_setParameter(zstd, ZSTD_c_literalCompressionMode, ZSTD_ps_enable))) {
+            ZSTD_CCtx_setParameter(zstd, ZSTD_c_targetLength, bytes_between_looks);
+        }
     }
     ~Context() { ZSTD_freeCCtx(zstd); }
     Context(const Context&) = delete;
