@@ -60,6 +60,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
 
     // Paced worlds that live first: they have a time to keep.
     std::optional<Clock::time_point> next;
+    std::optional<Clock::time_point> in_time; // the same of those that keep their pace
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
     if (waiting_since_ && !laboratory_.storage()->worlds_wait())
         at_latest(*waiting_since_ + slow_disk_patience);
@@ -76,24 +77,37 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         const auto now = clock_.now();
         if (track.due <= now)
             advance_slice(*entry, track, now + slice);
-        if (entry->wants_tick())
-            at_latest(track.due);
+        if (!entry->wants_tick())
+            continue;
+        at_latest(track.due);
+        if (!entry->slowed)
+            in_time = in_time ? std::min(*in_time, track.due) : track.due;
     }
-    const auto end_of_slice = [&, keeps = next] {
-        const auto now = clock_.now();
-        return keeps ? std::min(*keeps, now + slice) : now + slice;
+    // The others share what is left until then, journeys like a world.
+    const auto wants_share = [&](const simulation::Entry& entry) {
+        return !has_to_be_in_time(entry) && wants_tick(entry) &&
+               (!entry.control.speed || tracks_.find(entry.name)->second.due <= clock_.now());
     };
+    auto shares = std::ranges::count_if(laboratory_.entries(), [&](const auto& entry) { return wants_share(*entry); }) +
+                  (past_.under_way() ? 1 : 0);
+    const auto end_of_share = [&](std::optional<Clock::time_point> until) {
+        const auto now = clock_.now();
+        const auto share = until ? (*until - now) / std::max<std::ptrdiff_t>(shares--, 1) : slice;
+        return now + std::min<Clock::duration>(share, slice);
+    };
+    const auto paced_until = next;
     for (const auto& entry : laboratory_.entries()) {
         if (has_to_be_in_time(*entry) || !wants_tick(*entry))
             continue;
         Track& track = tracks_.find(entry->name)->second;
         if (!entry->control.speed || track.due <= clock_.now())
-            advance_slice(*entry, track, end_of_slice());
+            advance_slice(*entry, track, end_of_share(paced_until));
         if (entry->wants_tick())
             at_latest(entry->control.speed ? track.due : clock_.now());
     }
     if (past_.under_way()) {
-        const auto end = end_of_slice();
+        // A world that cannot keep its pace anyway shares the processor with them.
+        const auto end = end_of_share(in_time);
         past_.travel([&] { return clock_.now() >= end || mailbox_.pending() || demand_.changed(); });
         at_latest(clock_.now());
     }

@@ -6,7 +6,8 @@
 //
 // Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
 //              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another
-//              world is due, so answers and paced worlds wait for one tick of another world at most.
+//              world is due, so answers and paced worlds wait for one tick of another world at most. Until then all
+//              that have no pace to keep are given equal slices, and of each a tick.
 // Disk         while it has no room for what worlds have to say, those that live stand still. Mail, worlds that show
 //              the past, and pictures for who comes new go on.
 // Threads      called by one; that is the simulation thread.

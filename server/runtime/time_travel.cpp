@@ -197,7 +197,7 @@ bool TimeTravel::advance(Journey& journey, base::Executor& executor) {
 }
 
 void TimeTravel::travel(const std::function<bool()>& stop) {
-    for (std::size_t next = 0; !journeys_.empty() && !stop(); ++next) {
+    for (std::size_t next = 0; !journeys_.empty() && (next == 0 || !stop()); ++next) {
         const std::size_t i = next % journeys_.size();
         if (!advance(journeys_[i], executor_))
             continue;

@@ -803,6 +803,52 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     EXPECT_EQ(alone.hash(), lived.hash());
 }
 
+TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
+    ask_create("long");
+    ask_run("long");
+    pass_until([&] { return tick("long") > 300; });
+    v1::Request pause;
+    pause.mutable_pause()->set_world("long");
+    ask(std::move(pause));
+    std::string look;
+    mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
+                          [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+    pass_until([&] { return !look.empty(); });
+    const auto run_at = [&](const std::string& name, std::optional<double> factor) {
+        ask_create(name);
+        v1::Request speed;
+        speed.mutable_set_speed()->set_world(name);
+        factor ? speed.mutable_set_speed()->mutable_speed()->set_real_time_factor(*factor)
+               : speed.mutable_set_speed()->mutable_speed()->set_max(true);
+        ask(std::move(speed));
+        ask_run(name);
+        kept.pass();
+    };
+    const auto seek = [&](std::uint64_t to) {
+        bool on_the_way = true;
+        mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = to}},
+                              [&](const Laboratory&, const base::Result<std::string>& there) {
+                                  EXPECT_TRUE(there);
+                                  on_the_way = false;
+                              }});
+        pass_until([&] { return !on_the_way; });
+    };
+    clock.per_look = 50us;
+    run_at("paced", 20.0);
+    run_at("free", std::nullopt);
+    const auto began = clock.now();
+    const std::uint64_t first = tick("paced");
+    seek(299); // beside one that keeps its pace and one that takes what is left
+    seek(0);
+    const std::chrono::duration<double> passed = clock.now() - began;
+    EXPECT_NEAR(static_cast<double>(tick("paced") - first), passed.count() * 1200, 10);
+    EXPECT_FALSE(entry("paced").slowed);
+
+    run_at("too_fast", 10'000.0);
+    pass_until([&] { return entry("too_fast").slowed; });
+    seek(299); // beside one that cannot keep its pace
+}
+
 TEST_F(LoopWithADisk, ThatIsSlowIsToldOfAfterAWhile) {
     ask_create("w");
     kept.pass();
