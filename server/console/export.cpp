@@ -100,6 +100,9 @@ Result<void> export_to(const ExportOptions& options) {
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held;
+    const Result<void> sound = (*file)->check();
+    if (!sound && !options.bundle.empty())
+        return sound;
     const auto executor = runtime::make_executor(options.threads);
     const tables::RunSource run{**file, *executor};
     using tables::RunTable;
@@ -121,7 +124,7 @@ Result<void> export_to(const ExportOptions& options) {
         return cannot_write(options.output.empty()
                                 ? "standard output cannot be written, the disk may be full"
                                 : "--output: cannot write " + options.output + ", the disk may be full");
-    return {};
+    return sound; // what is not damaged is written
 }
 
 } // namespace

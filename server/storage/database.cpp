@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cstring>
+
 namespace evod::storage {
 
 namespace {
@@ -58,6 +60,9 @@ void Database::check(int code) {
     if (failed() || code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE)
         return;
     error_ = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
+    if (const int system = handle_ ? sqlite3_system_errno(handle_.get()) : 0;
+        (code & 0xff) == SQLITE_CANTOPEN && system != 0)
+        error_ += std::string{": "} + std::strerror(system); // too many open files, and the like
     damaged_ = (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
 }
 

@@ -68,6 +68,10 @@ Result<Past> Past::of_file(const std::string& path) {
         return file.error();
     if (auto refused = (*file)->other_model())
         return *refused;
+    if (auto held = (*file)->hold_still(); !held)
+        return held.error();
+    if (auto whole = (*file)->check_end_mark(); !whole)
+        return whole.error();
     return Past{{path}, (*file)->identity().run_id};
 }
 

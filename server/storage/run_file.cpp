@@ -4,6 +4,8 @@
 #include "server/storage/checkpoint.h"
 #include "server/storage/data_folder.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -311,9 +313,31 @@ Result<bool> RunFile::holds_nothing(const std::string& path) {
     return nothing;
 }
 
+namespace {
+
+/// Two servers might write to a file that has two names: neither sees the other's lock, and each has a log of its own.
+Result<void> expect_one_name(const std::string& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0)
+        return {}; // opening it says why
+    if (S_ISLNK(status.st_mode))
+        return refusal(RefusalCode::FailedPrecondition,
+                       path + " is a link, and what it leads to may be another server's: put a copy in its place, or "
+                              "name the folder of the file itself with --data");
+    if (S_ISREG(status.st_mode) && status.st_nlink > 1)
+        return refusal(RefusalCode::FailedPrecondition,
+                       path + " has another name, a hard link, under which another server may write to it: remove "
+                              "that name, or put a copy in the place of this one");
+    return {};
+}
+
+} // namespace
+
 Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Options& options) {
     if (auto there = expect_bytes(path); !there)
         return there.error();
+    if (auto one = expect_one_name(path); !one)
+        return one.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
     if (auto read = file->read_identity(); !read)
         return read.error();
@@ -1001,6 +1025,8 @@ Result<simulation::World::History> RunFile::history(std::uint64_t before, std::s
     }
     if (auto read = read_history("statistics", std::max(first, own), before, history); !read)
         return read.error();
+    if (first + history.size() < before)
+        return damaged(row_of("statistics", first + history.size()));
     return history;
 }
 

@@ -1,6 +1,8 @@
 """Tables of a run over real sockets: ExportRun, ContinueExport and evoctl export. EVOD and EVOCTL name the programs,
 MESSAGES the folder of the message classes."""
+import contextlib
 import pathlib
+import sqlite3
 import subprocess
 import sys
 import unittest
@@ -40,6 +42,23 @@ class Runs(past.Case):
         done = subprocess.run([EVOD, "export", f"{self.folder}/w.evod", *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
+
+
+class Damaged(Runs):
+    def test_what_is_damaged_is_named_and_the_rest_written(self):
+        server, client = self.serve()
+        self.run_world(client, 5)
+        server.end()
+        sound = self.evod_export("--what", "events")
+        path = pathlib.Path(self.folder, "w.evod")
+        with contextlib.closing(sqlite3.connect(path, isolation_level=None)) as run:
+            run.execute("DELETE FROM statistics WHERE generation = 3")
+        for words, written in ((["--what", "events"], sound), (["--bundle", f"{self.folder}/bundle"], "")):
+            with self.subTest(words):
+                done = subprocess.run([EVOD, "export", path, *words], capture_output=True, text=True)
+                self.assertEqual((done.returncode, done.stdout), (1, written))
+                self.assertIn("is damaged: ", done.stderr)
+        self.assertFalse(pathlib.Path(self.folder, "bundle").exists())
 
 
 class Export(Runs):

@@ -60,12 +60,19 @@ std::string told_by(RunFile& file) {
     for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
         const auto begun = *file.beginning_of(generation);
         text << generation << ' ' << begun->opening.moment.tick << ' ' << begun->opening.parameters.revision << '\n';
-        for (const evolution::NextGeneration& born : begun->born)
+        for (const evolution::NextGeneration& born : begun->born) {
             text << born.genes << '\n';
+            for (const auto& [first, second] : born.parents)
+                text << first << ' ' << second << ' ';
+        }
         if (const auto ended = *file.outcome_of(generation))
             for (const IslandOutcome& outcome : ended->outcomes)
-                for (const double fitness : outcome.fitness)
-                    text << fitness << ' ';
+                for (std::size_t i = 0; i < outcome.fitness.size(); ++i)
+                    text << outcome.fitness[i] << ' ' << outcome.lived_ticks[i] << ' ' << name_of(outcome.cause[i])
+                         << ' ';
+        if (generation < file.last_generation())
+            for (const simulation::GenerationStatistics& statistics : *file.statistics_of(generation))
+                simulation::for_each_number(statistics, [&](const std::string&, auto value) { text << value << ' '; });
     }
     for (const HashLink& link : *file.links(0, file.contents().tick))
         text << link.tick << ' ' << to_text(link.hash) << '\n';
@@ -116,11 +123,13 @@ class DamageTest : public testing::TestWithParam<Left> {
             if (tick % 60 == 1 && tick > middle)
                 write_out();
             hashes.push_back(run.world().hash());
+            histories.push_back(run.world().history().size());
             run.advance(1);
             if (run.world().moment().tick % 90 == 50)
                 run.checkpoint();
         }
         hashes.push_back(run.world().hash());
+        histories.push_back(run.world().history().size());
         command("food_health", 7);
         write_out();
         if (GetParam() == Left::HalfCopied)
@@ -163,6 +172,7 @@ class DamageTest : public testing::TestWithParam<Left> {
         const std::uint64_t tick = recovered->world.moment().tick;
         ASSERT_LT(tick, hashes.size());
         EXPECT_EQ(recovered->world.hash(), hashes[tick]) << "tick " << tick;
+        EXPECT_EQ(recovered->world.history().size(), histories[tick]) << "generations that are over";
         expect_first_commands(recovered->journal, tick);
         if (sound.log.empty()) {
             EXPECT_EQ(recovered->journal.size(), commands.size());
@@ -214,6 +224,7 @@ class DamageTest : public testing::TestWithParam<Left> {
     TemporaryFolder folder{std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()};
     base::InlineExecutor executor;
     std::vector<base::StateHash> hashes; // by tick
+    std::vector<std::size_t> histories;  // how many generations were over, by tick
     std::vector<std::uint64_t> commands; // the tick of each
     Content sound;
     std::string place, whole;

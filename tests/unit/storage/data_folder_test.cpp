@@ -1,6 +1,7 @@
 #include "server/storage/data_folder.h"
 
 #include "server/storage/archive.h"
+#include "server/storage/past.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -125,6 +126,38 @@ TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
         path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
         {}));
     expect_refused(" was made with evod 0.0.1", "`evod export`");
+}
+
+TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderEach) {
+    namespace fs = std::filesystem;
+    record(60);
+    const std::string path = folder.path() + "/w.evod", elsewhere = folder.path() + "/elsewhere.of";
+    fs::create_hard_link(path, elsewhere);
+    EXPECT_THAT(open().error().message, HasSubstr(path + " has another name, a hard link"));
+    fs::remove(path);
+    fs::create_symlink(elsewhere, path);
+    EXPECT_THAT(open().error().message, HasSubstr(path + " is a link"));
+    EXPECT_TRUE(RunFile::open_read_only(path)) << "it may be read";
+    fs::remove(path);
+    fs::rename(elsewhere, path);
+    EXPECT_TRUE(open());
+}
+
+TEST_F(ArchiveTest, AFileThatLostItsFirstStatisticsIsNamed) {
+    record(400);
+    Database database{folder.path() + "/w.evod", Database::Mode::Write};
+    ASSERT_GT(database.number("SELECT count(*) FROM statistics"), 1);
+    database.run("DELETE FROM statistics WHERE generation = 1");
+    EXPECT_THAT(open().error().message, HasSubstr("is damaged: the row 1 of its table statistics"));
+}
+
+TEST_F(ArchiveTest, AFileThatLostItsEndIsNamedToWhoLooksBack) {
+    record(400);
+    const std::string path = folder.path() + "/w.evod";
+    ASSERT_TRUE(Past::of_file(path));
+    Database{path, Database::Mode::Write}.run(
+        "DELETE FROM generation WHERE generation = (SELECT max(generation) FROM generation)");
+    EXPECT_THAT(Past::of_file(path).error().message, HasSubstr("end mark"));
 }
 
 TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
