@@ -180,12 +180,14 @@ std::string durability_of(const v1::Welcome& welcome) {
     }
 }
 
-std::string to_text(const v1::Speed& speed) {
-    return speed.has_real_time_factor() ? exact(speed.real_time_factor()) + "x" : "max";
+std::string speed_of(const v1::WorldInfo& world) {
+    const v1::Speed& speed = world.speed();
+    return (speed.has_real_time_factor() ? exact(speed.real_time_factor()) + "x" : "max") +
+           (world.slowed() ? " (slower)" : "");
 }
 
 std::string sentence(const v1::WorldInfo& world) {
-    std::string text = world.name() + ": " + state_of(world) + " at " + to_text(world.speed()) + ", generation " +
+    std::string text = world.name() + ": " + state_of(world) + " at " + speed_of(world) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
     // A world that shows the past waits at its end, whatever it was told.

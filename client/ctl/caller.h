@@ -83,8 +83,8 @@ std::string state_of(const v1::WorldInfo& world);
 std::string trouble_of(const v1::Storage& storage);
 /// What becomes of a command that was answered, where the machine may lose it; empty where it may not.
 std::string durability_of(const v1::Welcome& welcome);
-/// "2x", "max".
-std::string to_text(const v1::Speed& speed);
+/// What it was told, and whether the machine cannot keep up with that: "2x", "max", "100x (slower)".
+std::string speed_of(const v1::WorldInfo& world);
 /// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 

@@ -40,7 +40,7 @@ void status(const Common& common) {
                      {"ISLANDS", Align::Right},
                      {"SEED", Align::Right}}};
         for (const auto& world : worlds.worlds()) {
-            table.add({world.name(), state_of(world), to_text(world.speed()), std::to_string(world.generation()),
+            table.add({world.name(), state_of(world), speed_of(world), std::to_string(world.generation()),
                        std::to_string(world.tick()), duration(world.simulated_s()), fixed(world.ticks_per_s(), 0),
                        std::to_string(world.island_count()), std::to_string(world.seed())});
         }

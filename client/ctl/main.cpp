@@ -26,6 +26,9 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
         if (word == "--server" || word == "--world" || word == "--timeout" || word == "--token-file" ||
             word == "--ca" || word == "--cert" || word == "--key") {
             ++i; // its value
+        } else if (word == "--token" || word.starts_with("--token=")) {
+            throw Stop{ExitCode::Usage, "a command line is no place for a token, for everybody on the machine can read "
+                                        "it: put it into EVOD_TOKEN, or into a file for --token-file"};
         } else if (!word.starts_with('-')) {
             if (std::ranges::find(names, word) == names.end()) {
                 throw Stop{ExitCode::Usage,

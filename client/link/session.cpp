@@ -207,9 +207,9 @@ void Session::shake_hands() {
     SSL_CTX_set_min_proto_version(tls_context_->native_handle(), TLS1_2_VERSION);
     tls_context_->set_verify_mode(ssl::verify_peer);
     error_code error;
-    const auto fails = [&](const char* option, const std::string& file) {
+    const auto fails = [&](const char* option, const std::string& file, const char* also = "") {
         if (error) {
-            end({.reason = std::string{option} + ": " + file + " cannot be used for TLS: " + error.message(),
+            end({.reason = std::string{option} + ": " + file + " cannot be used for TLS: " + error.message() + also,
                  .final = true});
         }
         return error.failed();
@@ -228,7 +228,8 @@ void Session::shake_hands() {
             return;
         }
         tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, ssl::context::pem, error);
-        if (fails(files.key.empty() ? "--cert" : "--key", files.key.empty() ? files.certificate : files.key)) {
+        if (files.key.empty() ? fails("--cert", files.certificate, ": if its key is not in it, give that with --key")
+                              : fails("--key", files.key)) {
             return;
         }
     }

@@ -364,6 +364,11 @@ class Tls(Access):
         server = self.serve(*self.files())
         self.assertIn("speaks TLS only", self.come(server).refusal.message)
         self.assertIn("speaks TLS only", self.evoctl("worlds", server=server, status=3))
+        with socket.create_connection(("127.0.0.1", server.port)) as silent:
+            silent.settimeout(plain.patience_s)
+            self.assertEqual(silent.recv(1), b"")  # nothing can be told before TLS has begun
+        self.assertIn("no hello came within 5 s", server.output())
+        self.assertNotIn("Operation canceled", server.output())
         for hello in (b"\x16", b"\x16\x03\x01\x00\x05nonsense", b"\x00" * 100):
             with socket.create_connection(("127.0.0.1", server.port)) as rude:
                 rude.sendall(hello)
@@ -378,7 +383,8 @@ class Tls(Access):
         for words, options in ((f"not believed: .*{strangers} does not vouch for it", ["--ca", strangers]),
                                ("not believed: .*give the server's evod.crt with --ca", ["--tls"]),
                                ("^evoctl: --ca: /nowhere cannot be used for TLS: No such file", ["--ca", "/nowhere"]),
-                               (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__])):
+                               (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__]),
+                               ("^evoctl: --cert: .*give that with --key", ["--ca", certificates, "--cert", certificates])):
             self.assertRegex(self.evoctl(*options, "worlds", server=server, status=3), words)
         server.end()
         elsewhere = self.pair("elsewhere", "elsewhere.example")

@@ -13,6 +13,7 @@ import struct
 import subprocess
 import tempfile
 import termios
+import time
 import unittest
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
@@ -97,6 +98,13 @@ class Commands(WithServer):
         self.assertIn("FAILED_PRECONDITION", self.evoctl("resume", status=1))
         self.evoctl("speed", "0", status=1)
         self.evoctl("speed", "fast", status=2)
+
+    def test_a_world_that_cannot_keep_its_pace_is_said_to_be_slower(self):
+        self.evoctl("speed", "10000")
+        self.evoctl("run")
+        end = time.monotonic() + 60
+        while "10000x (slower)" not in self.evoctl("status"):
+            self.assertLess(time.monotonic(), end, "it is measured")
 
     def test_parameters_are_set_all_or_none(self):
         self.evoctl("set", "selection=tournament", "mutation_chance=0.05", "mutate_survivors=true", "tournament_size=4")
@@ -237,6 +245,13 @@ class WithoutServer(unittest.TestCase):
         for words in (["dance"], ["run", "-1"], ["step", "many"], ["create"], []):
             done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
             self.assertEqual(done.returncode, 2, words)
+
+    def test_a_token_on_the_command_line_is_refused_and_not_repeated(self):
+        for words in (["--token", "evod_secret", "worlds"], ["--token=evod_secret", "worlds"]):
+            done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
+            self.assertEqual(done.returncode, 2, words)
+            self.assertIn("EVOD_TOKEN", done.stderr)
+            self.assertNotIn("secret", done.stderr)
 
     def test_a_number_that_cannot_be_is_told_with_what_is_allowed(self):
         most, index = 2**64 - 1, 2**32 - 1
