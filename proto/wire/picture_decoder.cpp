@@ -62,6 +62,10 @@ Damage keyframe_needed() {
     return Damage{"a snapshot is told from one that is not known here: a keyframe is needed"};
 }
 
+Damage other_checksum() {
+    return Damage{"a snapshot's checksum is not that of its body"};
+}
+
 Damage other_base(std::uint64_t got, std::uint64_t last) {
     return Damage{"a snapshot's base_sequence is " + std::to_string(got) + ", not the last one, " +
                   std::to_string(last)};
@@ -75,6 +79,9 @@ bool is_keyframe(const evod::v1::SnapshotFrame& frame) {
 }
 
 Result<Picture> PictureDecoder::decode(evod::v1::SnapshotFrame frame) {
+    if (frame.codec() == evod::v1::CODEC_COLUMNS && checksum_of(frame, frame.body()) != frame.checksum()) {
+        return other_checksum();
+    }
     if (frame.codec() != evod::v1::CODEC_DELTA) {
         return wire::decode(std::move(frame));
     }
@@ -120,7 +127,7 @@ Result<Picture> PictureDecoder::decode_whole(evod::v1::SnapshotFrame frame) {
         return content.error();
     }
     if (checksum_of(frame, *content) != frame.checksum()) {
-        return Damage{"a snapshot's checksum is not that of its body"};
+        return other_checksum();
     }
     auto footing =
         decode_body(*content, {.counts = counts, .position_bytes = frame.position_bytes(), .of_tile = false}, base);

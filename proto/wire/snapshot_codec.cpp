@@ -1,6 +1,7 @@
 #include "proto/wire/snapshot_codec.h"
 
 #include "proto/wire/body.h"
+#include "proto/wire/delta_codec.h"
 #include "proto/wire/little_endian.h"
 #include "proto/wire/steps.h"
 
@@ -119,6 +120,7 @@ void encode(const Scene& scene, evod::v1::SnapshotFrame& frame) {
         writer.plain<std::uint16_t>(entities.height);
     }
     frame.set_body(writer.take());
+    frame.set_checksum(checksum_of(frame, frame.body()));
 }
 
 std::optional<Damage> damage_of_fields(const evod::v1::SnapshotFrame& frame) {

@@ -22,7 +22,7 @@ namespace evod::wire {
 /// the columns of a kind differ in length.
 void describe(const Scene& scene, evod::v1::SnapshotFrame& frame);
 
-/// Sets codec and body of `frame` too. scene: of a whole island.
+/// Sets codec, body and checksum of `frame` too, which has its sequence. scene: of a whole island.
 void encode(const Scene& scene, evod::v1::SnapshotFrame& frame);
 
 struct OrganismPicture {

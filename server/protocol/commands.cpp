@@ -190,6 +190,9 @@ void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
     if (!v1::Compression_IsValid(request.compression()))
         violations.push_back(
             {"subscribe_snapshots.compression", "one of Compression's", std::to_string(request.compression())});
+    else if (request.compression() == v1::COMPRESSION_ZSTD && request.codec() != v1::CODEC_DELTA)
+        violations.push_back({"subscribe_snapshots.codec", "CODEC_DELTA (2) with COMPRESSION_ZSTD (2)",
+                              std::to_string(request.codec())});
     const std::uint32_t unacknowledged = request.unacknowledged_max();
     if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_pictures_max))
         violations.push_back({"subscribe_snapshots.unacknowledged_max",

@@ -37,6 +37,26 @@ v1::Response refusing(std::uint64_t request_id, const base::Refusal& refusal) {
     return response;
 }
 
+namespace {
+
+/// Bytes of the character that `text` begins with, if it steers a terminal, ends a line or turns the order of what
+/// follows; else 0.
+std::size_t steering_bytes(std::string_view text) {
+    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
+    const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
+    if (byte(0) < 0x20 || byte(0) == 0x7f)
+        return 1;
+    if ((byte(0) == 0xc2 && is(byte(1), 0x80, 0x9f)) || (byte(0) == 0xd8 && byte(1) == 0x9c)) // U+0080 to 9F, U+061C
+        return 2;
+    const bool e280 = byte(0) == 0xe2 && byte(1) == 0x80, e281 = byte(0) == 0xe2 && byte(1) == 0x81;
+    if ((e280 && (is(byte(2), 0x8e, 0x8f) || is(byte(2), 0xa8, 0xae))) || // U+200E, U+200F, U+2028 to 202E
+        (e281 && is(byte(2), 0xa6, 0xa9)))                                // U+2066 to 2069
+        return 3;
+    return 0;
+}
+
+} // namespace
+
 std::string quotable(std::string_view text, std::size_t bytes_max) {
     const bool cut = text.size() > bytes_max;
     if (cut) {
@@ -46,12 +66,10 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
         text = text.substr(0, end);
     }
     std::string quoted;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
-        const bool of_two_bytes = byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0; // U+0080 to U+009F
-        const bool control = of_two_bytes || byte(i) < 0x20 || byte(i) == 0x7f;
-        quoted += control ? '?' : text[i];
-        i += of_two_bytes ? 1 : 0;
+    while (!text.empty()) {
+        const std::size_t steering = steering_bytes(text);
+        quoted += steering > 0 ? '?' : text[0];
+        text.remove_prefix(std::max<std::size_t>(steering, 1));
     }
     return cut ? quoted + "…" : quoted;
 }

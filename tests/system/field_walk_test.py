@@ -32,6 +32,7 @@ EDGES = {
     "set_speed.speed.real_time_factor": ([0.001, 10000.0], [0.0009, 10001.0, 0.0, -1.0]),
     "subscribe_snapshots.rate_hz": ([1e-3, 1e9], [0.0, -1.0]),
     "subscribe_snapshots.unacknowledged_max": ([1, 1000], [0, 1001]),
+    "subscribe_snapshots.view.bytes_per_s_max": ([1000, 10**12], [0, 999, 10**12 + 1]),
     "set_parameters.at_generation": ([2, 2**64 - 1], [0, 1]),
     "set_parameters.at_tick": ([1, 2**64 - 1], [0]),
     "request_id": ([1, 2**64 - 1], [0]),
@@ -106,7 +107,7 @@ class Walk(access.Access):
         self.server_ = self.serve("--durability", "relaxed")
         self.client = self.come(self.server_)
         self.pool = told_descriptors(self.client)
-        self.sent = 0
+        self.sent = self.subscription_id = 0
         self.make("walked")
         self.make("untouched")
         self.fresh = self.state()
@@ -138,6 +139,9 @@ class Walk(access.Access):
 
     def remake(self):
         """Takes back what was done, where something was."""
+        if self.subscription_id:
+            self.client.call(unsubscribe=c.Unsubscribe(subscription_id=self.subscription_id))
+            self.subscription_id = 0
         worlds = {world.name for world in self.client.call(list_worlds=c.ListWorlds()).worlds.worlds}
         for name in worlds - {"default", "walked", "untouched"}:
             self.client.call(delete_world=c.DeleteWorld(world=name))
@@ -159,7 +163,9 @@ class Walk(access.Access):
             return None
         while not self.client.responses:
             self.client.step()
-        return self.client.responses.popitem()[1].status
+        response = self.client.responses.popitem()[1]
+        self.subscription_id = response.subscription.subscription_id
+        return response.status
 
     def base(self, name, path=""):
         kind = getattr(c, {f.name: f for f in c.Request.DESCRIPTOR.fields}[name].message_type.name)

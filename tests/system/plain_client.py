@@ -27,6 +27,7 @@ import tempfile
 import time
 import types
 import unittest
+import zlib
 
 evod_path, messages_path, protocol_path = sys.argv[1:4]
 sys.path.insert(0, messages_path)
@@ -217,7 +218,15 @@ def as_dict(parameter_set):
     return {p.name: p for p in parameter_set.parameters}
 
 
+def checksum(picture):
+    """Of a body that is not compressed."""
+    counts = (getattr(picture, kind + "_count") for kind in ("organism", "food", "poison", "crate", "obstacle"))
+    head = struct.pack("<QQ6I", picture.sequence, picture.base_sequence, *counts, picture.position_bytes)
+    return zlib.crc32(head + picture.body)
+
+
 def columns(picture):
+    assert picture.checksum == checksum(picture), "a picture's checksum is not that of its body"
     position = "<u2" if picture.position_bytes == 2 else "<u4"
     items = [("id", "<u4"), ("x", position), ("y", position)]
     boxes = [("x", position), ("y", position), ("half_width", "<u2"), ("half_height", "<u2")]
@@ -1379,6 +1388,9 @@ class Deltas(WithServer):
 
     def test_what_cannot_be_subscribed_to_is_refused(self):
         world = self.new_world()
+        columns_by_zstd = c.SubscribeSnapshots(world=world, rate_hz=1, compression=stream_pb2.COMPRESSION_ZSTD)
+        status = self.viewer.call(INVALID, subscribe_snapshots=columns_by_zstd).status
+        self.assertEqual([v.field for v in status.violations], ["subscribe_snapshots.codec"])
         for field, number in (("codec", 99), ("compression", 99), ("unacknowledged_max", 0),
                               ("unacknowledged_max", 1001)):
             status = self.viewer.call(INVALID, subscribe_snapshots=c.SubscribeSnapshots(
@@ -2002,10 +2014,11 @@ class Documentation(unittest.TestCase):
         self.assertEqual(blocks[0][:8], b"EV\x01\x01\x08\0\0\0")
         hello = session_pb2.ClientMessage.FromString(blocks[0][8:])
         self.assertEqual((hello.hello.protocol_version, hello.hello.client_name), (1, "me"))
-        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xc6\0\0\0")
-        self.assertEqual(len(blocks[1]), 8 + 0xc6)
+        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xcc\0\0\0")
+        self.assertEqual(len(blocks[1]), 8 + 0xcc)
         picture = stream_pb2.SnapshotFrame.FromString(blocks[1][8:])
         self.assertEqual((picture.world, picture.tick, picture.dropped_count), ("default", 120, 3))
+        self.assertEqual(picture.checksum, checksum(picture))
         names = {}
         exec(compile(documented_python(), protocol_path, "exec"), names)
         seen = names["columns"](picture)

@@ -214,7 +214,7 @@ def _columns(message: stream_pb2.SnapshotFrame) -> Content:
     if message.codec != stream_pb2.CODEC_COLUMNS:
         raise DamagedData(f"a picture's codec is {message.codec}, not one that is known here")
     position = _position_kind(message.position_bytes)
-    body = _Body(message.body)
+    body = _body_of(message, message.position_bytes, b"", len(message.body))
     content = {}
     for (name, sizes), count in zip(_SIZES.items(), _counts_of(message)):
         columns = {"id": body.take("<u4", count)} if name in _HAVE_IDS else {}

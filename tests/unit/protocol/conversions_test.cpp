@@ -525,6 +525,13 @@ TEST(Requests, WhatIsLeftOutIsDrawnAndWhatIs0IsKept) {
 TEST(Refusals, QuoteNothingThatHarms) {
     EXPECT_EQ(quotable("a\nb\x1b[31m"), "a?b?[31m");
     EXPECT_EQ(quotable("a\xc2\x9b[31m é\xc2\xa0\xc2"), "a?[31m é\xc2\xa0\xc2") << "U+009B begins an escape, too";
+    EXPECT_EQ(quotable("a\xe2\x80\xa8"
+                       "b\xe2\x80\xae"
+                       "c\xe2\x81\xa6"
+                       "d\xd8\x9c"),
+              "a?b?c?d?")
+        << "U+2028 ends a line, and others turn the order of what follows";
+    EXPECT_EQ(quotable("a – b … c\xe2\x80"), "a – b … c\xe2\x80");
     EXPECT_EQ(quotable("abcdef", 3), "abc…");
     EXPECT_EQ(quotable("ää", 3), "ä…") << "not in the middle of a character";
     EXPECT_EQ(quotable("äää", 0), "…");

@@ -244,6 +244,18 @@ TEST(DeltaDamage, FieldsAroundTheBodyAreJudgedAsOfAnyPicture) {
     EXPECT_THAT(PictureDecoder{}.decode(keyframe).error().what, testing::HasSubstr("width_px"));
 }
 
+TEST(ColumnsDamage, IsNoticedByTheChecksum) {
+    evod::v1::SnapshotFrame frame;
+    frame.set_island_count(1);
+    frame.set_width_px(1280);
+    frame.set_height_px(720);
+    frame.set_sequence(5);
+    encode({.food = {.id = {1, 2}, .x = {16, 32}, .y = {48, 64}, .width = {}, .height = {}}}, frame);
+    EXPECT_TRUE(PictureDecoder{}.decode(frame));
+    frame.mutable_body()->back() ^= 1;
+    EXPECT_THAT(PictureDecoder{}.decode(frame).error().what, testing::HasSubstr("checksum"));
+}
+
 TEST(Crc32, IsThatOfZlib) {
     EXPECT_EQ(crc32("123456789"), 0xcbf43926U);
     EXPECT_EQ(crc32("56789", crc32("1234")), 0xcbf43926U);
