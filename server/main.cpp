@@ -21,6 +21,8 @@
 #include <CLI/CLI.hpp>
 #include <google/protobuf/stubs/logging.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -74,8 +76,18 @@ std::string folder_of_runs(const std::string& asked) {
 
 const std::string no_folder = "neither XDG_STATE_HOME nor HOME says where runs are kept: name a folder with --data";
 
+/// As many file descriptors as the system allows: what is usual, 1,024, is soon taken by connections.
+void allow_descriptors() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0)
+        return;
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 /// Serves until it is told to end.
 int serve(network::ServerOptions options) {
+    allow_descriptors();
     const std::string folder = options.data_folder, first_world = options.first_world.name;
     const bool encrypted = !options.tls.certificate.empty();
     const std::string replay = options.replay ? ", replay of " + options.replay->path : "";

@@ -30,15 +30,17 @@ constexpr LimitRow table[] = {
     {Limit::MessageDepth, "message_depth_max", wire::message_depth_max, "messages within messages",
      "refused, `INVALID_ARGUMENT`, with `request_id` 0; in a first frame also closed"},
     {Limit::HelloTimeout, "hello_timeout_s", seconds(hello_timeout), "from connecting to a hello, TLS included",
-     "told, and closed"},
+     "told, unless TLS has not begun, and closed"},
     {Limit::FrameTimeout, "frame_timeout_s", seconds(frame_timeout), "from the first byte of a frame to its last",
      "told, and closed"},
     {Limit::StalledTimeout, "stalled_timeout_s", seconds(stalled_timeout),
      "a client's machine takes nothing of what waits for it", "closed"},
     {Limit::Sessions, "sessions_max", SessionBounds{}.sessions_max, "sessions; `--sessions-max`",
-     "a new one is told, and closed"},
+     "the first that has not said hello is told, and closed; if all have, the new one. Where 64 are being told, it is "
+     "closed at once"},
     {Limit::SessionsPerAddress, "sessions_per_address_max", SessionBounds{}.sessions_per_address_max,
-     "sessions from one address, of IPv6 from one /64; `--sessions-per-address-max`", "a new one is told, and closed"},
+     "sessions from one address, of IPv6 from one /64; `--sessions-per-address-max`",
+     "the same, among those of the address"},
     {Limit::RequestsPerSecond, "requests_per_s_max", requests_per_s_max,
      "frames of a session a second in the long run, damaged ones too",
      "no more is read until it is time: nothing is refused"},
@@ -112,8 +114,7 @@ v1::Limits limits_message(const SessionBounds& bounds) {
     v1::Limits limits;
     for (const LimitRow& row : table) {
         const auto* field = v1::Limits::descriptor()->FindFieldByName(std::string{row.name});
-        if (field == nullptr)
-            continue;
+        EVOD_ASSERT(field != nullptr);
         const auto& in = *v1::Limits::GetReflection();
         if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE)
             in.SetDouble(&limits, field, static_cast<double>(row.value));

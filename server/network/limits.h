@@ -84,7 +84,7 @@ enum class Limit : std::uint8_t {
 
 struct LimitRow {
     Limit limit;
-    std::string_view name; // of the field of v1::Limits that tells it; others are known to the server alone
+    std::string_view name; // of the field of v1::Limits that tells it
     std::uint64_t value;   // unless set otherwise
     std::string_view of;   // what is bounded
     std::string_view then; // what happens at the bound
@@ -131,6 +131,8 @@ constexpr std::chrono::milliseconds look_every{500};   // for a token file that 
 constexpr std::size_t ended_to_trim = 64;              // sessions between two looks; then memory is given back
 constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
 constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
+constexpr std::uint64_t descriptors_kept = 32;         // of the system's, for files: an eighth, if it gives few
+constexpr std::size_t farewells_max = 64; // connections that are told why they have no place; others are not
 
 // Of HTTP.
 constexpr std::chrono::seconds http_farewell_timeout{1}; // for the last bytes of a connection that ends

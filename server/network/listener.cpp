@@ -8,6 +8,9 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <utility>
 
 namespace evod::network {
@@ -48,15 +51,43 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     return Listener{std::move(acceptor)};
 }
 
+namespace {
+
+/// How many file descriptors the system gives this process.
+rlim_t descriptors_max() {
+    rlimit limit{};
+    return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? limit.rlim_cur : RLIM_INFINITY;
+}
+
+/// Whether only those are left that are kept for files: the system gives the lowest that is free.
+bool is_among_the_last(int descriptor) {
+    const rlim_t most = descriptors_max();
+    return static_cast<rlim_t>(descriptor) + std::min(descriptors_kept, most / 8) >= most;
+}
+
+} // namespace
+
 asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted) {
     asio::steady_timer pause{acceptor_.get_executor()};
+    bool told = false;
     while (acceptor_.is_open()) {
         auto [error, socket] = co_await acceptor_.async_accept(asio::as_tuple(asio::use_awaitable));
+        if (!error && is_among_the_last(socket.native_handle())) {
+            boost::system::error_code ignored; // closed is closed
+            socket.close(ignored);
+            error = asio::error::no_descriptors;
+        }
         if (!error) {
+            told = false;
             accepted(std::move(socket));
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
-            // Out of descriptors or memory: it would fail again at once, so give sessions time to end.
-            log::warn("cannot accept a connection: {}", error.message());
+            // It would fail again at once, so give sessions time to end.
+            if (!std::exchange(told, true))
+                log::warn("cannot accept a connection: {}; newcomers wait{}", error.message(),
+                          error == asio::error::no_descriptors
+                              ? " until one of the " + std::to_string(descriptors_max()) +
+                                    " file descriptors is free: allow evod more (ulimit -n, or systemd's LimitNOFILE)"
+                              : "");
             pause.expires_after(accept_pause);
             co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
         }

@@ -319,19 +319,38 @@ void Server::accepted(tcp::socket socket) {
     if (going_away_)
         return session->start(
             refusal(base::RefusalCode::Unavailable, "the server is going away: connect again when it is back"));
-    const SessionBounds& bounds = options_.session_bounds;
-    const auto full = [&](Limit limit, const std::string& why) {
-        limit_counters_.met(limit);
-        session->start(refusal(base::RefusalCode::ResourceExhausted, why));
+    const auto is_neighbour = [&](const auto& other) {
+        return other.second->neighbourhood() == session->neighbourhood();
     };
-    if (sessions_.size() >= bounds.sessions_max)
-        return full(Limit::Sessions, "the server has " + std::to_string(bounds.sessions_max) +
-                                         " sessions already: try again when one has ended");
-    const auto neighbours = std::ranges::count_if(
-        sessions_, [&](const auto& other) { return other.second->neighbourhood() == session->neighbourhood(); });
-    if (neighbours >= bounds.sessions_per_address_max)
-        return full(Limit::SessionsPerAddress, "there are " + std::to_string(bounds.sessions_per_address_max) +
-                                                   " sessions from this address already: end one of them first");
+    const SessionBounds& bounds = options_.session_bounds;
+    const bool all_full = sessions_.size() >= bounds.sessions_max;
+    const bool address_full = std::ranges::count_if(sessions_, is_neighbour) >= bounds.sessions_per_address_max;
+    if (all_full || address_full) {
+        limit_counters_.met(address_full ? Limit::SessionsPerAddress : Limit::Sessions);
+        // Whoever says nothing shall not keep others out: of those, the one that came first makes room.
+        const auto silent = std::ranges::find_if(sessions_, [&](const auto& other) {
+            return !other.second->greeted() && (!address_full || is_neighbour(other));
+        });
+        const bool may_be_told = connections_ - sessions_.size() <= farewells_max;
+        if (silent == sessions_.end()) {
+            if (may_be_told)
+                session->start(refusal(base::RefusalCode::ResourceExhausted,
+                                       address_full ? "there are " + std::to_string(bounds.sessions_per_address_max) +
+                                                          " sessions from this address already: end one of them first"
+                                                    : "the server has " + std::to_string(bounds.sessions_max) +
+                                                          " sessions already: try again when one has ended"));
+            else
+                --connections_; // it is closed without a word
+            return;
+        }
+        const SessionPtr first = silent->second;
+        sessions_.erase(silent);
+        if (may_be_told)
+            first->fail(refusal(base::RefusalCode::ResourceExhausted,
+                                "the place was needed, and no hello had come: connect again, and send one at once"));
+        else
+            first->close();
+    }
     sessions_.emplace(session->number(), session);
     session->start();
 }

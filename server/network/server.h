@@ -122,7 +122,7 @@ class Server {
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
     std::size_t ended_since_look_ = 0; // sessions
-    std::size_t connections_ = 0;      // sessions, and those that are being told there are too many
+    std::size_t connections_ = 0;      // sessions, and those that are being told they have no place
     SessionHost host_{limit_counters_, buffers_};
     Streams streams_;
     Dispatcher dispatcher_;

@@ -146,6 +146,8 @@ void Session::start(const std::optional<base::Refusal>& refused) {
             self->fail(refusal(base::RefusalCode::FailedPrecondition, "no hello came within " +
                                                                           std::to_string(hello_timeout.count()) +
                                                                           " s: connect again, and send one first"));
+            if (!self->begun_)
+                self->close(); // TLS has not begun: it cannot be told
         }
     });
 }
@@ -162,8 +164,9 @@ asio::awaitable<void> Session::read() {
         fail(refusal(base::RefusalCode::FailedPrecondition,
                      "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls"));
     else if (error) {
-        log::info({.session = number_, .client = to_text(peer_)}, "session {}: {} is closed: TLS: {}", number_,
-                  to_text(peer_), error.message());
+        if (!ended_) // otherwise whoever ended it has said why
+            log::info({.session = number_, .client = to_text(peer_)}, "session {}: {} is closed: TLS: {}", number_,
+                      to_text(peer_), error.message());
         close();
     }
     begun_ = true;

@@ -8,6 +8,7 @@ import contextlib
 import os
 import pathlib
 import re
+import resource
 import socket
 import struct
 import sys
@@ -21,7 +22,8 @@ from attack import Attack
 
 from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
 
-SANITIZED = b"__asan_init" in pathlib.Path(access.EVOD).read_bytes()  # its memory is not what it would be
+# Its memory is not what it would be.
+SANITIZED = any(name in pathlib.Path(access.EVOD).read_bytes() for name in (b"__asan_init", b"__tsan_init"))
 OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED = 0, 3, 5, 6, 8, 9, 12
 
 
@@ -165,6 +167,41 @@ class Sessions(Case):
             client.call(list_worlds=c.ListWorlds())
         here[3].socket.close()
         plain.until(lambda: self.come(server, come_from="127.0.0.3").welcome, "a place is free again")
+
+    def test_who_says_nothing_makes_room_for_newcomers(self):
+        server = self.serve("--sessions-max", "6", "--sessions-per-address-max", "4")
+        first = self.come(server)
+        silent = [self.enterContext(plain.Client(server, hello=False, come_from=f"127.0.0.{2 + i // 4}"))
+                  for i in range(5)]
+        with self.meets(first, "sessions_max"):
+            newcomer = self.come(server, come_from="127.0.0.4")
+            self.assertEqual(newcomer.welcome.limits.sessions_max, 6)
+        self.told_and_closed(silent[0], EXHAUSTED, "no hello had come")
+        with self.meets(first, "sessions_max"):  # both are full; of the address there is none who is silent
+            others = [self.come(server, come_from="127.0.0.4") for _ in range(3)]
+        self.assertTrue(all(other.welcome.instance_id for other in others))
+        for one in silent[1:4]:
+            self.told_and_closed(one, EXHAUSTED, "no hello had come")
+        with self.meets(first, "sessions_per_address_max"):
+            refused = self.come(server, come_from="127.0.0.4")
+            self.assertIn("4 sessions from this address", refused.refusal.message)
+        silent[4].hello()  # who was not the first is still there
+        self.assertTrue(silent[4].control().HasField("welcome"))
+        for client in (first, newcomer, *others):
+            client.call(list_worlds=c.ListWorlds())
+
+    def test_strangers_in_any_number_keep_nobody_from_coming_or_commanding(self):
+        few = resource.RLIMIT_NOFILE, (400, 400)
+        server = self.server("--data", self.folder, preexec_fn=lambda: resource.setrlimit(*few))
+        attack = Attack(plain.messages_path, server.port, "strangers", 500)
+        self.addCleanup(attack.process.kill)
+        for i in range(20):
+            with plain.Client(server) as honest:  # another each time, and each needs files
+                honest.call(create_world=c.CreateWorld(name=f"w{i}", seed=1, parameters=plain.assignments(
+                    population_size=5)))
+        became = attack.end(plain.patience_s)
+        self.assertGreater(became["closed"], 0)
+        self.assertNotIn("unable to open", server.output())
 
     def test_a_thousand_who_do_nothing_take_little(self):
         server = self.serve("--sessions-max", "1100", "--sessions-per-address-max", "1100")

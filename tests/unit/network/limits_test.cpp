@@ -27,6 +27,8 @@ TEST(Limits, AreToldToClientsAsTheTableHasThem) {
     EXPECT_EQ(limits.snapshot_rate_hz_max(), snapshot_rate_hz_max);
     EXPECT_EQ(limits.requests_in_flight_max(), requests_in_flight_max);
     EXPECT_EQ(limits.control_frame_bytes_max(), 1u << 20);
+    EXPECT_EQ(limits.http_connections_max(), http_connections_max);
+    EXPECT_EQ(v1::Limits::descriptor()->field_count(), static_cast<int>(limit_table().size()));
     const std::string list = limit_list();
     EXPECT_NE(list.find("| `sessions_max` | 256 | "), std::string::npos) << list;
 }
