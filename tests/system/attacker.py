@@ -7,7 +7,10 @@ became of it, as JSON. It never has more than NUMBER connections, and makes no m
 
     idle N       N sessions that log in and say nothing more
     slow N       N connections that send a frame a byte at a time; those that are closed come again
+    strangers N  N connections that say nothing; those that are closed come again
     deaf N       N sessions that subscribe to pictures and never read them
+    pauses N     a viewer of the world w who reads for a second, then not for N seconds, and reads on; if it is closed
+                 it comes again
     connects N   N connections a second, each closed at once
     malformed N  N frames a second with bodies that are no message, on one session that reads its answers
     churn N      N sessions that watch, listen and ask for half a second or so and leave, some of them rudely; then
@@ -212,12 +215,28 @@ def churn():
     hold(come, again=True, each_round=stays, pause_s=0.05)
 
 
+def pauses():
+    viewer = connect(0, hello, subscribing(), receive_bytes=4096)
+    ready()
+    while not over():
+        reads_until = time.monotonic() + 1
+        while time.monotonic() < reads_until and not over():
+            if select.select([viewer], [], [], 0.05)[0] and not take(viewer):
+                counts["closed"] += 1
+                viewer.close()
+                viewer = connect(0, hello, subscribing(), receive_bytes=4096)
+        counts["paused"] = counts.get("paused", 0) + 1
+        select.select([sys.stdin], [], [], number)
+
+
 def view(i):
     return c.View(region=c.Region(left_px=300.0 * (i % 20), top_px=300.0 * (i // 20 % 20), width_px=1280, height_px=720))
 
 
 attacks = {"idle": lambda: hold(lambda i: connect(i, hello)),
            "slow": slow,
+           "strangers": lambda: hold(lambda i: connect(i), again=True),
+           "pauses": pauses,
            "deaf": lambda: hold(lambda i: connect(i, hello, subscribing(), receive_bytes=4096), reads=False),
            "connects": connects,
            "malformed": malformed,
