@@ -315,11 +315,16 @@ Result<bool> RunFile::holds_nothing(const std::string& path) {
 
 namespace {
 
-/// Two servers might write to a file that has two names: neither sees the other's lock, and each has a log of its own.
-Result<void> expect_one_name(const std::string& path) {
+/// A file, with one name: two servers might write to one that has two, for neither sees the other's lock, and each has
+/// a log of its own.
+Result<void> expect_file_with_one_name(const std::string& path) {
     struct stat status {};
     if (::lstat(path.c_str(), &status) != 0)
         return {}; // opening it says why
+    if (S_ISDIR(status.st_mode))
+        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file; move it out of " +
+                                                         std::filesystem::path{path}.parent_path().string() +
+                                                         " to start without its world");
     if (S_ISLNK(status.st_mode))
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is a link, and what it leads to may be another server's: put a copy in its place, or "
@@ -336,7 +341,7 @@ Result<void> expect_one_name(const std::string& path) {
 Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Options& options) {
     if (auto there = expect_bytes(path); !there)
         return there.error();
-    if (auto one = expect_one_name(path); !one)
+    if (auto one = expect_file_with_one_name(path); !one)
         return one.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
     if (auto read = file->read_identity(); !read)
@@ -1025,7 +1030,7 @@ Result<simulation::World::History> RunFile::history(std::uint64_t before, std::s
     }
     if (auto read = read_history("statistics", std::max(first, own), before, history); !read)
         return read.error();
-    if (first + history.size() < before)
+    if (first + history.size() < std::min(before, last_generation())) // all before the last have ended
         return damaged(row_of("statistics", first + history.size()));
     return history;
 }

@@ -518,7 +518,7 @@ class Log(Case):
         connected = [line for line in lines if "connected as" in line["message"]]
         self.assertEqual([line["session"] for line in connected], list(range(1, len(names) + 1)))
         for name, line in zip(names, connected):
-            self.assertTrue(line["client"].startswith(re.sub(r"[\x00-\x1f\x7f-\x9f]", "?", name)), line)
+            self.assertTrue(line["client"].startswith(re.sub(r"[\x00-\x1f\x7f-\x9f\u2028]", "?", name)), line)
         refused = [line for line in lines if line.get("code") == "NOT_FOUND"]
         self.assertEqual((len(refused), {line["level"] for line in refused}), (len(names), {"debug"}))
         asked = [line["message"] for line in lines if line["level"] == "trace"]

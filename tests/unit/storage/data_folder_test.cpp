@@ -128,6 +128,11 @@ TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
     expect_refused(" was made with evod 0.0.1", "`evod export`");
 }
 
+TEST_F(ArchiveTest, AFolderInThePlaceOfARunFileIsRefusedWithTheWayOut) {
+    std::filesystem::create_directory(folder.path() + "/w.evod");
+    EXPECT_THAT(open().error().message, HasSubstr("w.evod: this is a folder, not a run file; move it out of "));
+}
+
 TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderEach) {
     namespace fs = std::filesystem;
     record(60);
