@@ -40,7 +40,7 @@ bool is_right(const v1::Hello& hello) {
 WatchingClient::WatchingClient(int descriptor, Answers& answers, bool refused)
     : descriptor_{descriptor}, answers_{answers}, all_heard_{clock().now()} {
     if (refused)
-        refuse();
+        refused_since_ = clock().now();
 }
 
 WatchingClient::~WatchingClient() {
