@@ -649,6 +649,21 @@ class LoopWithADisk : public Loop {
         ask(std::move(request));
     }
 
+    /// The name of a world that shows the past of another, which has 300 ticks and is paused.
+    std::string look_at_the_past_of_a_run() {
+        ask_create("long");
+        ask_run("long");
+        pass_until([&] { return tick("long") > 300; });
+        v1::Request pause;
+        pause.mutable_pause()->set_world("long");
+        ask(std::move(pause));
+        std::string look;
+        mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
+                              [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
+        pass_until([&] { return !look.empty(); });
+        return look;
+    }
+
     void take_away() { std::filesystem::rename(folder.path(), away); }
     void give_back() {
         if (std::filesystem::exists(away))
@@ -764,16 +779,7 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
 }
 
 TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
-    ask_create("long");
-    ask_run("long");
-    pass_until([&] { return tick("long") > 300; });
-    v1::Request pause;
-    pause.mutable_pause()->set_world("long");
-    ask(std::move(pause));
-    std::string look;
-    mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
-                          [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
-    pass_until([&] { return !look.empty(); });
+    const std::string look = look_at_the_past_of_a_run();
     ask_create("paced");
     ask_run("paced");
     kept.pass();
@@ -804,16 +810,7 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
 }
 
 TEST_F(LoopWithADisk, WhoTravelsArrivesWhateverElseRuns) {
-    ask_create("long");
-    ask_run("long");
-    pass_until([&] { return tick("long") > 300; });
-    v1::Request pause;
-    pause.mutable_pause()->set_world("long");
-    ask(std::move(pause));
-    std::string look;
-    mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
-                          [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
-    pass_until([&] { return !look.empty(); });
+    const std::string look = look_at_the_past_of_a_run();
     const auto run_at = [&](const std::string& name, std::optional<double> factor) {
         ask_create(name);
         v1::Request speed;
