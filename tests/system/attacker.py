@@ -10,7 +10,7 @@ became of it, as JSON. It never has more than NUMBER connections, and makes no m
     strangers N  N connections that say nothing; those that are closed come again
     deaf N       N sessions that subscribe to pictures and never read them
     pauses N     a viewer of the world w who reads for a second, then not for N seconds, and reads on; if it is closed
-                 it comes again
+                 it comes again, and its bytes are counted anew
     connects N   N connections a second, each closed at once
     malformed N  N frames a second with bodies that are no message, on one session that reads its answers
     churn N      N sessions that watch, listen and ask for half a second or so and leave, some of them rudely; then
@@ -224,6 +224,7 @@ def pauses():
             if select.select([viewer], [], [], 0.05)[0] and not take(viewer):
                 counts["closed"] += 1
                 viewer.close()
+                counts["bytes"] = 0
                 viewer = connect(0, hello, subscribing(), receive_bytes=4096)
         counts["paused"] = counts.get("paused", 0) + 1
         select.select([sys.stdin], [], [], number)

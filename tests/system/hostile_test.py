@@ -1,8 +1,8 @@
 """Clients that mean no good, or fail, beside honest ones: the run is the same, the others are served, memory comes back.
 
 EVOD names the program, MESSAGES the folder of the message classes; PAUSE_S is for how long a reader pauses, in whole
-seconds, and where SANITIZED is set memory is not judged: a sanitizer keeps what has been freed. Each test lets tests/system/attacker.py, a process of
-its own, at a server for a bounded time.
+seconds, and where SANITIZED is set memory is not judged: a sanitizer keeps what has been freed. Each test lets
+tests/system/attacker.py, a process of its own, at a server for a bounded time.
 """
 import math
 import os
@@ -107,6 +107,7 @@ class Hostile(Attacked):
         self.assertGreaterEqual(became["paused"], 1)
         self.assertGreaterEqual(became["closed"], 1)
         self.assertGreaterEqual(became["connected"], 2)
+        self.assertGreater(became["bytes"], 5000)  # pictures, when it has come again
 
 
 if __name__ == "__main__":

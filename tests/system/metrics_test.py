@@ -202,7 +202,7 @@ class Counts(Case):
             sleeps.call(subscribe_snapshots=c.SubscribeSnapshots(world="crowd", rate_hz=120))
             sleeps.call(subscribe_events=c.SubscribeEvents())
             sleeps.ask(run=c.Run(world="events"))
-            dropped = self.wait(server, lambda m: m("evod_pictures_dropped_total") > 20 and
+            dropped = self.wait(server, lambda m: m("evod_pictures_dropped_total") > 100 and
                                 m("evod_events_dropped_total") > 0, "drops")
             self.assertGreater(dropped("evod_client_buffer_bytes"), 0)
             self.assertEqual(dropped("evod_subscriptions", to="events"), 1)
