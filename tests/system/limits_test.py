@@ -463,7 +463,7 @@ class Unread(Case):
 
     @unittest.skipIf(SANITIZED, "its memory is not what it would be")
     def test_a_burst_of_long_answers_takes_no_more_than_may_wait(self):
-        server = self.serve()
+        server = self.server("--keep-nothing")  # what waits for the disk is not meant
         other = self.come(server)
         limits = other.welcome.limits
         self.world_of_short_generations(other, 1100, island_count=1)
