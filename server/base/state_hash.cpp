@@ -1,13 +1,18 @@
 #include "server/base/state_hash.h"
 
-#include <cstdio>
+#include <cstddef>
+#include <string>
 
 namespace evod::base {
 
 std::string to_text(const StateHash& hash) {
-    char text[33];
-    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high),
-                  static_cast<unsigned long long>(hash.low));
+    // Without printf, which was 1.5 % of what telling a picture of 10,000 organisms takes.
+    constexpr std::size_t digits = 16; // of a half
+    std::string text(2 * digits, '0');
+    for (std::size_t i = 0; i < digits; ++i) {
+        text[digits - 1 - i] = "0123456789abcdef"[hash.high >> (4 * i) & 15];
+        text[2 * digits - 1 - i] = "0123456789abcdef"[hash.low >> (4 * i) & 15];
+    }
     return text;
 }
 
