@@ -1,5 +1,8 @@
 #include "server/network/chains.h"
 
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/wire_format_lite.h>
+
 #include <limits>
 #include <utility>
 
@@ -13,24 +16,20 @@ std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, cons
     return static_cast<std::uint16_t>(after.generation_tick() - before.generation_tick());
 }
 
-ChainPicture::ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor)
-    : about_{std::move(about)}
-    , footing_{std::make_shared<const wire::Footing>(wire::standing(std::move(scene)))}
-    , compressor_{&compressor} {}
-
 ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const wire::Scene> scene, bool with_delta) const {
     const auto ticks = ticks_between(*about_, *about);
-    const bool goes_on = ticks && wire::follows(*scene, *footing_->scene);
-    auto picture = std::make_shared<ChainPicture>(std::move(about), scene, *compressor_);
-    if (!goes_on || !with_delta)
-        return picture;
+    if (!ticks || !with_delta || !wire::follows(*scene, *footing_.scene))
+        return std::make_shared<ChainPicture>(std::move(about), std::move(scene), *compressor_);
     // What stayed is paired once for both: the next footing, and the delta, which whoever keeps up is sent.
-    auto footing = std::make_shared<wire::Footing>(wire::standing(std::move(scene)));
-    footing->ticks = *ticks > 0 ? *ticks : footing_->ticks;
-    const wire::MovedOn moved{.organisms = {footing->organisms.x, footing->organisms.y},
-                              .crates = {footing->crates.x, footing->crates.y}};
-    picture->delta_body_ = wire::encode_delta(*footing_, *footing->scene, *ticks, &moved, &picture->delta_seams_);
-    picture->footing_ = std::move(footing);
+    wire::Footing footing = wire::standing(std::move(scene));
+    footing.ticks = *ticks > 0 ? *ticks : footing_.ticks;
+    const wire::MovedOn moved{.organisms = {footing.organisms.x, footing.organisms.y},
+                              .crates = {footing.crates.x, footing.crates.y}};
+    wire::Seams seams;
+    std::string delta = wire::encode_delta(footing_, *footing.scene, *ticks, &moved, &seams);
+    auto picture = std::make_shared<ChainPicture>(std::move(about), std::move(footing), *compressor_);
+    picture->delta_body_ = std::move(delta);
+    picture->delta_seams_ = std::move(seams);
     picture->base_sequence_ = sequence();
     return picture;
 }
@@ -45,17 +44,19 @@ const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression,
         frame.set_base_sequence(base_sequence_);
         wire::leave_out_unchanging(frame);
     }
-    wire::Seams seams;
-    std::string body;
-    if (as_delta) {
-        body = delta_body_;
-        seams = delta_seams_;
-    } else {
-        body = wire::encode_keyframe(*footing_, &seams);
-    }
+    wire::Seams keyframe_seams;
+    const std::string keyframe = as_delta ? "" : wire::encode_keyframe(footing_, &keyframe_seams);
+    const std::string& body = as_delta ? delta_body_ : keyframe;
     frame.set_checksum(wire::checksum_of(frame, body));
-    set_body(frame, std::move(body), seams, compression, *compressor_);
-    return bytes = std::make_shared<const std::string>(frame.SerializeAsString());
+    std::string compressed;
+    const std::string_view sent =
+        sent_body(frame, body, as_delta ? delta_seams_ : keyframe_seams, compression, *compressor_, compressed);
+    std::string made;
+    made.reserve(frame.ByteSizeLong() + field_bytes(v1::SnapshotFrame::kBodyFieldNumber, sent.size()));
+    frame.AppendToString(&made);
+    append_field_head(v1::SnapshotFrame::kBodyFieldNumber, sent.size(), made);
+    made += sent;
+    return bytes = std::make_shared<const std::string>(std::move(made));
 }
 
 const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const wire::Scene> scene,
@@ -68,6 +69,20 @@ const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const wire::Sc
     if (latest_->base_sequence() == 0)
         keyframe_made_ = now;
     return latest_;
+}
+
+using google::protobuf::internal::WireFormatLite;
+using google::protobuf::io::CodedOutputStream;
+
+void append_field_head(int number, std::size_t bytes, std::string& to) {
+    std::array<std::uint8_t, 10> head; // two numbers of at most five bytes each
+    std::uint8_t* end = WireFormatLite::WriteTagToArray(number, WireFormatLite::WIRETYPE_LENGTH_DELIMITED, head.data());
+    end = CodedOutputStream::WriteVarint32ToArray(static_cast<std::uint32_t>(bytes), end);
+    to.append(reinterpret_cast<const char*>(head.data()), static_cast<std::size_t>(end - head.data()));
+}
+
+std::size_t field_bytes(int number, std::size_t bytes) {
+    return WireFormatLite::TagSize(number, WireFormatLite::TYPE_BYTES) + WireFormatLite::LengthDelimitedSize(bytes);
 }
 
 } // namespace evod::network

@@ -15,10 +15,12 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace evod::network {
@@ -37,9 +39,12 @@ std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, cons
 class ChainPicture {
   public:
     /// about       what the codec says of it is set here.
-    /// scene       its entities.
+    /// scene       its entities, of which nothing has moved yet; or with the way they came.
     /// compressor  there as long as forms of the picture are asked for.
-    ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
+    ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor)
+        : ChainPicture{std::move(about), wire::standing(std::move(scene)), compressor} {}
+    ChainPicture(AboutPtr about, wire::Footing footing, wire::Compressor& compressor)
+        : about_{std::move(about)}, footing_{std::move(footing)}, compressor_{&compressor} {}
 
     /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
     /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
@@ -61,7 +66,7 @@ class ChainPicture {
     const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
 
     AboutPtr about_;
-    std::shared_ptr<const wire::Footing> footing_;
+    wire::Footing footing_;
     std::uint64_t base_sequence_ = 0;
     std::string delta_body_; // if there is one
     wire::Seams delta_seams_;
@@ -86,20 +91,26 @@ class Chain {
     runtime::Clock::time_point keyframe_made_; // the last that was one for all
 };
 
-/// Sets body and compression: compressed, if that is asked for and makes it smaller.
+/// A body as it is sent: compressed, if that is asked for and makes it shorter; then the message is told so.
 ///
-/// message  a SnapshotFrame or a TilePicture.
+/// message     a SnapshotFrame or a TilePicture.
+/// compressed  what the answer is a view of in that case.
 template <class Message>
-void set_body(Message& message, std::string body, const wire::Seams& seams, v1::Compression compression,
-              wire::Compressor& compressor) {
-    if (compression == v1::COMPRESSION_ZSTD) {
-        std::string shorter = compressor.compress(body, seams);
-        if (shorter.size() < body.size()) {
-            body = std::move(shorter);
-            message.set_compression(v1::COMPRESSION_ZSTD);
-        }
-    }
-    message.set_body(std::move(body));
+std::string_view sent_body(Message& message, std::string_view body, const wire::Seams& seams,
+                           v1::Compression compression, wire::Compressor& compressor, std::string& compressed) {
+    if (compression != v1::COMPRESSION_ZSTD)
+        return body;
+    compressed = compressor.compress(body, seams);
+    if (compressed.size() >= body.size())
+        return body;
+    message.set_compression(v1::COMPRESSION_ZSTD);
+    return compressed;
 }
+
+/// What a field of bytes begins with, added to a message that lies there serialized: what is long, as a body is, is
+/// then copied once only, when it is added itself.
+void append_field_head(int number, std::size_t bytes, std::string& to);
+/// Of that head and the bytes.
+std::size_t field_bytes(int number, std::size_t bytes);
 
 } // namespace evod::network

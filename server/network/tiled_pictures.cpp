@@ -1,8 +1,5 @@
 #include "server/network/tiled_pictures.h"
 
-#include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/wire_format_lite.h>
-
 #include <span>
 #include <utility>
 
@@ -23,23 +20,20 @@ const SharedBytes& IslandTiles::about_bytes() {
     return about_bytes_;
 }
 
-SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string body, const wire::Seams& seams,
+SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string_view body, const wire::Seams& seams,
                                 v1::Compression compression) {
-    using google::protobuf::internal::WireFormatLite;
-    using google::protobuf::io::CodedOutputStream;
     wire::set_counts(scene_.counts(tile.tile()), tile);
     tile.set_sequence(about_.sequence());
     tile.set_checksum(wire::checksum_of(about_, tile, body));
-    set_body(tile, std::move(body), seams, compression, *compressor_);
-
-    constexpr std::uint32_t tag =
-        WireFormatLite::MakeTag(v1::SnapshotFrame::kTilesFieldNumber, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
-    const auto length = static_cast<std::uint32_t>(tile.ByteSizeLong());
-    std::string field(CodedOutputStream::VarintSize32(tag) + CodedOutputStream::VarintSize32(length) + length, '\0');
-    auto* to = reinterpret_cast<std::uint8_t*>(field.data());
-    to = CodedOutputStream::WriteTagToArray(tag, to);
-    to = CodedOutputStream::WriteVarint32ToArray(length, to);
-    tile.SerializeWithCachedSizesToArray(to);
+    std::string compressed;
+    const std::string_view sent = sent_body(tile, body, seams, compression, *compressor_, compressed);
+    const std::size_t bytes = tile.ByteSizeLong() + field_bytes(v1::TilePicture::kBodyFieldNumber, sent.size());
+    std::string field;
+    field.reserve(field_bytes(v1::SnapshotFrame::kTilesFieldNumber, bytes));
+    append_field_head(v1::SnapshotFrame::kTilesFieldNumber, bytes, field);
+    tile.AppendToString(&field);
+    append_field_head(v1::TilePicture::kBodyFieldNumber, sent.size(), field);
+    field += sent;
     return std::make_shared<const std::string>(std::move(field));
 }
 
@@ -88,25 +82,21 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
     v1::TilePicture picture;
     picture.set_tile(tile);
     picture.set_detail(detail);
-    std::string body;
-    wire::Seams seams;
     switch (form) {
-    case Form::Keyframe:
-        body = wire::encode_keyframe(footing(tile), &seams);
-        break;
+    case Form::Keyframe: {
+        wire::Seams seams;
+        const std::string body = wire::encode_keyframe(footing(tile), &seams);
+        return bytes = island_->encode(std::move(picture), body, seams, compression);
+    }
     case Form::Delta:
         picture.set_base_sequence(of.base_sequence);
-        body = of.delta;
-        seams = of.delta_seams;
-        break;
-    case Form::Again: {
-        picture.set_base_sequence(sequence());
-        const wire::FootingView here = footing(tile);
-        body = wire::encode_delta(here, here.scene, 0);
+        return bytes = island_->encode(std::move(picture), of.delta, of.delta_seams, compression);
+    case Form::Again:
         break;
     }
-    }
-    return bytes = island_->encode(std::move(picture), std::move(body), seams, compression);
+    picture.set_base_sequence(sequence());
+    const wire::FootingView here = footing(tile);
+    return bytes = island_->encode(std::move(picture), wire::encode_delta(here, here.scene, 0), {}, compression);
 }
 
 TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace evod::network {
@@ -34,7 +35,8 @@ class IslandTiles {
     /// Fields 1 to 49 but for the tiles.
     const SharedBytes& about_bytes();
     /// One of the frame's `tiles`: all of TilePicture but what is not the same at every detail and rate is set here.
-    SharedBytes encode(v1::TilePicture tile, std::string body, const wire::Seams& seams, v1::Compression compression);
+    SharedBytes encode(v1::TilePicture tile, std::string_view body, const wire::Seams& seams,
+                       v1::Compression compression);
     /// A tile at DETAIL_DOTS or DETAIL_DENSITY.
     const SharedBytes& coarse(std::uint32_t tile, v1::Detail detail, v1::Compression compression);
 
