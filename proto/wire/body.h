@@ -5,6 +5,7 @@
 // Threads      none; nothing here is shared.
 #pragma once
 
+#include "proto/wire/column.h"
 #include "proto/wire/compression.h"
 #include "proto/wire/little_endian.h"
 #include "proto/wire/result.h"
@@ -14,16 +15,12 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace evod::wire {
-
-using Column = std::vector<std::uint32_t>; // of numbers with or without a sign; arithmetic is modulo 2^32
-using Numbers = std::span<const std::uint32_t>;
 
 constexpr std::uint8_t with_exceptions = 128; // in a column's width
 constexpr std::uint64_t exception_bytes = 8;
@@ -59,10 +56,30 @@ class BodyWriter {
         }
     }
 
+    /// The same of those at `indices`.
+    void planes(Numbers values, Numbers indices, std::uint32_t bytes) {
+        const std::size_t begin = body_.size(), count = indices.size();
+        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
+            seam();
+            grow(count);
+        }
+        const auto write = [&](auto constant_bytes) {
+            char* const to = body_.data() + begin;
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::uint32_t value = values[indices[i]];
+                for (std::uint32_t plane = 0; plane < constant_bytes; ++plane) {
+                    to[plane * count + i] = static_cast<char>(value >> (8 * plane));
+                }
+            }
+        };
+        bytes == 2 ? write(std::integral_constant<std::uint32_t, 2>{})
+                   : write(std::integral_constant<std::uint32_t, 4>{});
+    }
+
     /// Signed numbers, in the width that takes the fewest bytes.
     void column(Numbers values) {
         // How many need more than 0, 1, 2 bytes.
-        std::uint64_t not_zero = 0, above_8_bits = 0, above_16_bits = 0;
+        std::uint32_t not_zero = 0, above_8_bits = 0, above_16_bits = 0;
         for (const std::uint32_t value : values) {
             not_zero += value != 0;
             above_8_bits += value + 0x80U > 0xffU;
@@ -118,10 +135,20 @@ class BodyWriter {
         }
         number(static_cast<std::uint32_t>(count));
         Column indices, exceptional;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (is_exception(values[i])) {
-                indices.push_back(static_cast<std::uint32_t>(i));
-                exceptional.push_back(values[i]);
+        indices.reserve(count);
+        exceptional.reserve(count);
+        constexpr std::size_t block = 64; // of which mostly none is
+        for (std::size_t begin = 0; begin < values.size(); begin += block) {
+            const Numbers some = values.subspan(begin, std::min(block, values.size() - begin));
+            unsigned any = 0;
+            for (const std::uint32_t value : some) {
+                any |= unsigned{is_exception(value)};
+            }
+            for (std::size_t i = 0; any && i < some.size(); ++i) {
+                if (is_exception(some[i])) {
+                    indices.push_back(static_cast<std::uint32_t>(begin + i));
+                    exceptional.push_back(some[i]);
+                }
             }
         }
         plain<std::uint32_t>(indices);
@@ -175,7 +202,7 @@ class BodyReader {
         if (!take(count * bytes)) {
             return {};
         }
-        Column values(count);
+        Column values(count, 0);
         for (std::uint32_t plane = 0; plane < bytes; ++plane) {
             const char* const from = taken_ + plane * count;
             for (std::size_t i = 0; i < count; ++i) {
@@ -197,7 +224,7 @@ class BodyReader {
         Column result;
         switch (width & ~with_exceptions) {
         case 0:
-            result.resize(damage_ ? 0 : count);
+            result.assign(damage_ ? 0 : count, 0);
             break;
         case 1:
             result = numbers<std::uint8_t>(count, [](std::uint8_t value) { return widened(std::int8_t(value)); });

@@ -5,6 +5,7 @@
 #include "proto/wire/framing.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -39,7 +40,10 @@ const std::array<Kind, 5> kinds{{
 class Foretold {
   public:
     Foretold(std::uint16_t ticks, std::uint16_t base_ticks)
-        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {}
+        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {
+        constexpr std::int32_t surely_exact = 1 << 20;
+        small_ = std::min(surely_exact, std::numeric_limits<std::int32_t>::max() / std::max(ticks_, 1));
+    }
 
     std::uint32_t operator()(std::uint32_t displacement) const {
         if (ticks_ == base_ticks_) {
@@ -58,13 +62,32 @@ class Foretold {
             }
             return;
         }
+        unsigned all_small = 1;
+        for (const std::uint32_t displacement : displacements) {
+            all_small &= unsigned{displacement + static_cast<std::uint32_t>(small_) <= 2U * small_};
+        }
+        if (all_small) { // as at full speed, where no two pictures are equally far apart: vectors do this, too
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                to[i] = here[i] - there[i] - of_small(static_cast<std::int32_t>(displacements[i]));
+            }
+            return;
+        }
         for (std::size_t i = 0; i < here.size(); ++i) {
             to[i] = here[i] - there[i] - (*this)(displacements[i]);
         }
     }
 
   private:
-    std::int64_t ticks_, base_ticks_;
+    /// The same of one that is not beyond small_ either way. The quotient is below 2^31 and at least 2^-16 from the
+    /// next whole number, if it is none: a double tells them apart.
+    std::uint32_t of_small(std::int32_t displacement) const {
+        const std::int32_t way = displacement * ticks_;
+        const auto towards_0 = static_cast<std::int32_t>(double{1} * way / base_ticks_);
+        return static_cast<std::uint32_t>(towards_0 - (way < towards_0 * base_ticks_ ? 1 : 0));
+    }
+
+    std::int32_t ticks_, base_ticks_;
+    std::int32_t small_; // so that small_ times ticks_ is a std::int32_t
 };
 
 // ---- which entities of two pictures are the same ---------------------------------------------------------------
@@ -79,18 +102,19 @@ bool have_ids(const Kind& kind, bool of_tile) {
 }
 
 /// same  1 if those at two indices are the same, having equal ids; else 0. Many are looked at at once, for mostly they
-/// are.
+/// are; and where they are not, one by one without a branch, for which are is unpredictable.
 template <class Same>
 Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
-    Pairing pairing;
-    std::uint32_t i = 0, j = 0;
     const auto base_count = static_cast<std::uint32_t>(base.id.size());
     const auto next_count = static_cast<std::uint32_t>(next.id.size());
-    constexpr std::uint32_t block = 64;
-    while (i < base_count || j < next_count) {
+    // With room for one more: the index of one that stays is written there, and written over.
+    Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
+    std::uint32_t i = 0, j = 0, gone = 0, come = 0;
+    constexpr std::uint32_t block = 32;
+    while (i < base_count && j < next_count) {
         while (base_count - i >= block && next_count - j >= block) {
             unsigned all_same = 1;
-            for (std::uint32_t k = 0; k < block; ++k) { // without a branch, so that it is done with vectors
+            for (std::uint32_t k = 0; k < block; ++k) { // so that it is done with vectors
                 all_same &= unsigned{base.id[i + k] == next.id[j + k]} & same(i + k, j + k);
             }
             if (!all_same) {
@@ -99,21 +123,25 @@ Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Sam
             i += block;
             j += block;
         }
-        for (std::uint32_t steps = 0; steps < block && (i < base_count || j < next_count); ++steps) {
-            if (j == next_count || (i < base_count && base.id[i] < next.id[j])) {
-                pairing.gone.push_back(i++);
-            } else if (i == base_count || next.id[j] < base.id[i]) {
-                pairing.come.push_back(j++);
-            } else {
-                if (!same(i, j)) {
-                    pairing.gone.push_back(i);
-                    pairing.come.push_back(j);
-                }
-                ++i;
-                ++j;
-            }
+        for (std::uint32_t steps = 0; steps < block && i < base_count && j < next_count; ++steps) {
+            const std::uint32_t a = base.id[i], b = next.id[j];
+            const unsigned stays = unsigned{a == b} & same(i, j);
+            pairing.gone[gone] = i;
+            pairing.come[come] = j;
+            gone += unsigned{a <= b} & ~stays;
+            come += unsigned{b <= a} & ~stays;
+            i += a <= b;
+            j += b <= a;
         }
     }
+    while (i < base_count) {
+        pairing.gone[gone++] = i++;
+    }
+    while (j < next_count) {
+        pairing.come[come++] = j++;
+    }
+    pairing.gone.resize(gone);
+    pairing.come.resize(come);
     return pairing;
 }
 
@@ -190,14 +218,14 @@ void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entit
     if (!entities.id.empty()) {
         writer.rising_column(at(entities.id, come));
     }
-    writer.planes(at(entities.x, come), position_bytes);
-    writer.planes(at(entities.y, come), position_bytes);
+    writer.planes(entities.x, come, position_bytes);
+    writer.planes(entities.y, come, position_bytes);
     if (kind.sizes) {
-        writer.planes(at(entities.width, come), size_bytes);
-        writer.planes(at(entities.height, come), size_bytes);
+        writer.planes(entities.width, come, size_bytes);
+        writer.planes(entities.height, come, size_bytes);
     }
     if (kind.displacements) {
-        const Column still(displacements ? 0 : come.size());
+        const Column still(displacements ? 0 : come.size(), 0);
         writer.column(displacements ? at(displacements->x, come) : still);
         writer.column(displacements ? at(displacements->y, come) : still);
     }
@@ -361,7 +389,7 @@ Footing standing(std::shared_ptr<const Scene> scene) {
     for (const Kind& kind : kinds) {
         if (kind.displacements) {
             Footing::Displacements& displacements = footing.*kind.displacements;
-            displacements.x.resize(((*scene).*kind.entities).x.size());
+            displacements.x.assign(((*scene).*kind.entities).x.size(), 0);
             displacements.y = displacements.x;
         }
     }

@@ -29,7 +29,7 @@ namespace evod::wire {
 /// What the next picture of an island is foretold from.
 struct Footing {
     struct Displacements {
-        std::vector<std::uint32_t> x, y; // two's complement; one for each entity
+        Column x, y; // two's complement; one for each entity
         friend bool operator==(const Displacements&, const Displacements&) = default;
     };
     std::shared_ptr<const Scene> scene;

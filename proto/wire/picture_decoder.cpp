@@ -27,11 +27,15 @@ Result<std::string> content_of(std::string body, evod::v1::Compression compressi
     }
 }
 
-std::vector<float> in_px(const std::vector<std::uint32_t>& steps) {
+std::vector<float> in_px(Numbers steps) {
     std::vector<float> values(steps.size());
     std::transform(steps.begin(), steps.end(), values.begin(),
                    [](std::uint32_t step) { return static_cast<float>(step) * (1 / steps_per_px); });
     return values;
+}
+
+std::vector<std::uint32_t> kept(const Column& column) {
+    return {column.begin(), column.end()};
 }
 
 BoxPicture boxes_of(const Entities& entities) {
@@ -39,7 +43,7 @@ BoxPicture boxes_of(const Entities& entities) {
                      .y_px = in_px(entities.y),
                      .half_width_px = in_px(entities.width),
                      .half_height_px = in_px(entities.height),
-                     .id = entities.id};
+                     .id = kept(entities.id)};
     if (boxes.id.empty()) {
         boxes.id.resize(entities.x.size());
         std::iota(boxes.id.begin(), boxes.id.end(), 0U);
@@ -49,10 +53,10 @@ BoxPicture boxes_of(const Entities& entities) {
 
 Picture picture_of(const Scene& scene, evod::v1::SnapshotFrame about) {
     return {.about = std::move(about),
-            .organisms = {scene.organisms.id, in_px(scene.organisms.x), in_px(scene.organisms.y),
+            .organisms = {kept(scene.organisms.id), in_px(scene.organisms.x), in_px(scene.organisms.y),
                           in_px(scene.organisms.width), in_px(scene.organisms.height)},
-            .food = {scene.food.id, in_px(scene.food.x), in_px(scene.food.y)},
-            .poison = {scene.poison.id, in_px(scene.poison.x), in_px(scene.poison.y)},
+            .food = {kept(scene.food.id), in_px(scene.food.x), in_px(scene.food.y)},
+            .poison = {kept(scene.poison.id), in_px(scene.poison.x), in_px(scene.poison.y)},
             .crates = boxes_of(scene.crates),
             .obstacles = boxes_of(scene.obstacles),
             .tiles = {}};

@@ -2,20 +2,21 @@
 // codec tells these numbers, and no others.
 #pragma once
 
+#include "proto/wire/column.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 namespace evod::wire {
 
 /// Entities of one kind, by rising id or, of an island's boxes, in their order. All columns that a kind has are of one
 /// length; the others are empty.
 struct Entities {
-    std::vector<std::uint32_t> id; // organisms, food, poison; in a tile, boxes too: the index among the island's
-    std::vector<std::uint32_t> x, y;
-    std::vector<std::uint32_t> width;  // organisms: radius; boxes: half width
-    std::vector<std::uint32_t> height; // organisms: health; boxes: half height
+    Column id; // organisms, food, poison; in a tile, boxes too: the index among the island's
+    Column x, y;
+    Column width;  // organisms: radius; boxes: half width
+    Column height; // organisms: health; boxes: half height
     friend bool operator==(const Entities&, const Entities&) = default;
 };
 

@@ -287,12 +287,14 @@ Result<DensityPicture> decode_density(std::string_view body, const Counts& count
         reader.refuse("has " + std::to_string(density.cells_per_side) + " cells a side, not 1, 2, 4, 8 or 16");
         return *reader.damage();
     }
-    const std::array<Column*, counted_parts> parts{&density.organisms, &density.food, &density.poison};
+    const std::array<std::vector<std::uint32_t>*, counted_parts> parts{&density.organisms, &density.food,
+                                                                       &density.poison};
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        *parts[p] = reader.column(std::size_t{density.cells_per_side} * density.cells_per_side);
-        if (!reader.damage() && std::accumulate(parts[p]->begin(), parts[p]->end(), std::uint64_t{0}) != counts[p]) {
+        const Column cells = reader.column(std::size_t{density.cells_per_side} * density.cells_per_side);
+        if (!reader.damage() && std::accumulate(cells.begin(), cells.end(), std::uint64_t{0}) != counts[p]) {
             reader.refuse("counts others than it says there are");
         }
+        parts[p]->assign(cells.begin(), cells.end());
     }
     if (reader.rest_bytes() > 0) {
         reader.refuse("has bytes at its end that mean nothing");

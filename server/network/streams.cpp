@@ -1,6 +1,7 @@
 #include "server/network/streams.h"
 
 #include "proto/wire/snapshot_codec.h"
+#include "server/network/scene.h"
 #include "server/protocol/events.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"
@@ -128,8 +129,6 @@ void Streams::update_demand() {
         }
     }
     groups_ = std::move(groups);
-    if (watches.empty())
-        scene_maker_ = {}; // nobody needs that memory now
     for (auto& [world, watch] : watches) {
         std::sort(watch.islands.begin(), watch.islands.end());
         watch.islands.erase(std::unique(watch.islands.begin(), watch.islands.end()), watch.islands.end());
@@ -169,13 +168,8 @@ class Pace {
 /// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
 class EncodedIslands {
   public:
-    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, SceneMaker& scene_maker,
-                   wire::Compressor& compressor)
-        : snapshot_{snapshot}
-        , sequence_{sequence}
-        , scene_maker_{scene_maker}
-        , compressor_{compressor}
-        , islands_(snapshot.islands.size()) {}
+    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, wire::Compressor& compressor)
+        : snapshot_{snapshot}, sequence_{sequence}, compressor_{compressor}, islands_(snapshot.islands.size()) {}
 
     const std::shared_ptr<const v1::SnapshotFrame>& about(std::size_t i) {
         Island& island = islands_[i];
@@ -199,7 +193,7 @@ class EncodedIslands {
     const std::shared_ptr<const wire::Scene>& scene(std::size_t i) {
         Island& island = islands_[i];
         if (!island.scene)
-            island.scene = std::make_shared<const wire::Scene>(scene_maker_.scene_of(snapshot_.islands[i]));
+            island.scene = std::make_shared<const wire::Scene>(scene_of(snapshot_.islands[i]));
         return island.scene;
     }
     const std::shared_ptr<IslandTiles>& tiles(std::size_t i) {
@@ -218,7 +212,6 @@ class EncodedIslands {
     };
     const runtime::Snapshot& snapshot_;
     std::uint64_t& sequence_;
-    SceneMaker& scene_maker_;
     wire::Compressor& compressor_;
     std::vector<Island> islands_;
 };
@@ -227,7 +220,7 @@ class EncodedIslands {
 
 void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
     const runtime::Snapshot& snapshot = *picture.snapshot;
-    EncodedIslands encoded{snapshot, sequence_, scene_maker_, compressor_};
+    EncodedIslands encoded{snapshot, sequence_, compressor_};
     struct Shown {
         double rate_hz;
         bool in_tiles;

@@ -6,7 +6,6 @@
 // Owner        the server; on the network thread.
 #pragma once
 
-#include "server/network/scene_maker.h"
 #include "server/network/session.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
@@ -74,7 +73,6 @@ class Streams {
     runtime::Demand& demand_;
     runtime::Mailbox& mailbox_;
     std::uint64_t newcomers_ = 0, sequence_ = 0;
-    SceneMaker scene_maker_;
     wire::Compressor compressor_;
     std::map<GroupName, Group> groups_;
 };

@@ -16,7 +16,7 @@ void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
     const auto copy = [&](const auto& from, auto& column) {
         column.assign(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(bodies.size()));
     };
-    copy(bodies.id, to.id);
+    to.place_of.assign(island.bodies_by_id().begin(), island.bodies_by_id().end());
     copy(bodies.x, to.x);
     copy(bodies.y, to.y);
     copy(bodies.radius, to.radius_px);

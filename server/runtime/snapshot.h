@@ -20,9 +20,9 @@
 
 namespace evod::runtime {
 
-/// In any order; the dead among them may be left as void places, which are physics::elsewhere.
+/// By id where each is, and what is there, in any order: the dead may have left void places.
 struct OrganismsSnapshot {
-    base::Column<std::uint32_t> id; // each once
+    base::Column<std::uint32_t> place_of; // simulation::Island::no_body of the dead
     base::Column<physics::Coordinate> x, y;
     base::Column<float> radius_px, health;
     std::uint32_t alive_count = 0;

@@ -16,7 +16,6 @@ namespace {
 enum HashKind : std::uint32_t { FoodKind = 2, PoisonKind = 3, CrateKind = 4, ChromosomeKind = 5 };
 
 constexpr std::size_t organisms_per_block = 1024;
-constexpr std::uint32_t dead = ~0u; // in place of a body's index
 /// The most health that meals lead to: from here on a meal's, at most 10,000, is lost in the rounding of a float.
 constexpr float health_reachable = 0x1p38f;
 
@@ -349,7 +348,7 @@ void Island::bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfD
     fate_.cause[id] = cause;
     fate_.lived_ticks[id] = tick;
     block.hash -= hash_of_organism(bodies_, living_, body);
-    body_of_[id] = dead;
+    body_of_[id] = no_body;
     bodies_.remove(body);
     sight_.remove(body);
     stepper_.near().remove(body);
@@ -487,7 +486,7 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     }
     sight_.begin(bodies_, living_, food_, poison_);
     for (const std::uint32_t id : gone) {
-        body_of_[id] = dead;
+        body_of_[id] = no_body;
         bodies_.remove(id);
         sight_.remove(id);
         living_.health[id] = -std::numeric_limits<float>::infinity();
@@ -502,7 +501,7 @@ std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t 
     if (parameters.fitness == FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id)
-                fitness[id] = body_of_[id] == dead
+                fitness[id] = body_of_[id] == no_body
                                   ? fate_.lived_ticks[id] * parameters.tick_s
                                   : tick * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
         });
@@ -536,7 +535,7 @@ physics::MotionReport Island::motion_report(const Parameters& parameters) const 
 }
 
 std::optional<std::size_t> Island::body_of(std::uint32_t id) const {
-    if (id >= body_of_.size() || body_of_[id] == dead)
+    if (id >= body_of_.size() || body_of_[id] == no_body)
         return std::nullopt;
     return body_of_[id];
 }

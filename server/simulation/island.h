@@ -65,6 +65,9 @@ class Island {
 
     /// The index in bodies() of a living organism; nullopt if it is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
+    /// The same of all who were born in this generation, by id; no_body of the dead. Empty where there are no bodies.
+    std::span<const std::uint32_t> bodies_by_id() const { return body_of_; }
+    static constexpr std::uint32_t no_body = ~0U;
 
     /// How the living and the crates move and overlap; all zeros where there are no bodies.
     physics::MotionReport motion_report(const Parameters& parameters) const;
@@ -138,7 +141,7 @@ class Island {
     Fate fate_;
     IslandCounts counts_;
     std::uint32_t alive_count_ = 0;
-    base::Column<std::uint32_t> body_of_; // by id: its index, or a number that none has for the dead
+    base::Column<std::uint32_t> body_of_; // by id
     base::StateHash born_hash_;           // of the chromosomes, which do not change during a generation
     base::StateHash hash_;
 

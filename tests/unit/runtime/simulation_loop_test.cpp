@@ -374,15 +374,18 @@ TEST_F(Loop, APictureHasEverybodyWhoLivesAndEveryItem) {
         const simulation::Island& island = world().world.islands()[0];
         ASSERT_EQ(pictures.back()->hash, world().world.hash());
         std::size_t alive = 0;
-        for (std::size_t k = 0; k < picture.organisms.id.size(); ++k) {
-            if (picture.organisms.x[k] == physics::elsewhere)
+        ASSERT_EQ(picture.organisms.place_of.size(), 200);
+        for (std::uint32_t id = 0; id < 200; ++id) {
+            const std::uint32_t place = picture.organisms.place_of[id];
+            const auto body = island.body_of(id);
+            ASSERT_EQ(place != simulation::Island::no_body, body.has_value());
+            if (!body)
                 continue;
-            const auto body = island.body_of(picture.organisms.id[k]);
-            ASSERT_TRUE(body);
-            EXPECT_EQ(picture.organisms.x[k], island.bodies().x[*body]);
-            EXPECT_EQ(picture.organisms.y[k], island.bodies().y[*body]);
-            EXPECT_EQ(picture.organisms.radius_px[k], island.bodies().radius[*body]);
-            EXPECT_EQ(picture.organisms.health[k], island.living().health[*body]);
+            ASSERT_LT(place, picture.organisms.x.size());
+            EXPECT_EQ(picture.organisms.x[place], island.bodies().x[*body]);
+            EXPECT_EQ(picture.organisms.y[place], island.bodies().y[*body]);
+            EXPECT_EQ(picture.organisms.radius_px[place], island.bodies().radius[*body]);
+            EXPECT_EQ(picture.organisms.health[place], island.living().health[*body]);
             ++alive;
         }
         EXPECT_EQ(alive, island.alive_count());
@@ -392,7 +395,7 @@ TEST_F(Loop, APictureHasEverybodyWhoLivesAndEveryItem) {
                   std::ranges::count(picture.food.all, 0u, &simulation::Items::Item::due_tick));
         EXPECT_EQ(simulation::mean_health(picture.organisms.health, picture.organisms.alive_count),
                   island.live_statistics().health_mean);
-        seen_void += picture.organisms.id.size() - alive;
+        seen_void += picture.organisms.x.size() - alive;
         seen_away += 40 - picture.food.present_count;
     }
     EXPECT_GT(seen_void, 0);

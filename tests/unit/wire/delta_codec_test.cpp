@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numeric>
 
 namespace evod::wire {
 namespace {
@@ -100,6 +102,43 @@ RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, boo
         same(sometimes.decode(n % 7 == 0 ? sent.keyframe : sent.delta), sometimes);
         compress(sent.delta);
         same(compressed.decode(sent.delta), compressed);
+    }
+}
+
+RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (std::uint64_t seed)) {
+    Random random{seed};
+    const auto any = [&](std::uint64_t bits) {
+        const auto number = static_cast<std::uint32_t>(random());
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(number) >> (32 - bits));
+    };
+    constexpr std::size_t count = 300;
+    for (const std::uint32_t bits : {12U, 16U, 17U, 21U, 22U, 32U}) { // of displacements, with their sign
+        const auto ticks = static_cast<std::uint16_t>(any(1 + below(random, 17)));
+        Footing base;
+        base.ticks = static_cast<std::uint16_t>(any(1 + below(random, 17)));
+        auto there = std::make_shared<Scene>(), here = std::make_shared<Scene>();
+        for (Scene* scene : {there.get(), here.get()}) {
+            scene->position_bytes = 4;
+            scene->organisms.id.resize(count);
+            std::iota(scene->organisms.id.begin(), scene->organisms.id.end(), 0U);
+            for (Column* column : {&scene->organisms.x, &scene->organisms.y}) {
+                for (std::size_t i = 0; i < count; ++i) {
+                    column->push_back(any(32));
+                }
+            }
+            scene->organisms.width.assign(count, 5);
+            scene->organisms.height.assign(count, 6);
+        }
+        base.scene = there;
+        for (Column* column : {&base.organisms.x, &base.organisms.y}) {
+            for (std::size_t i = 0; i < count; ++i) {
+                column->push_back(any(bits));
+            }
+        }
+        const std::string body = encode_delta(base, *here, ticks);
+        const auto told = decode_body(body, {.counts = counts_of(*here), .position_bytes = 4}, &base);
+        RC_ASSERT(told.has_value());
+        RC_ASSERT(*told->scene == *here);
     }
 }
 

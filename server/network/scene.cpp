@@ -1,4 +1,4 @@
-#include "server/network/scene_maker.h"
+#include "server/network/scene.h"
 
 #include "proto/wire/steps.h"
 
@@ -9,7 +9,7 @@
 namespace evod::network {
 namespace {
 
-using Column = std::vector<std::uint32_t>;
+using wire::Column;
 
 /// From fixed point, as it was put there, in place: all at once, which vectors do.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
@@ -67,33 +67,33 @@ wire::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, 
             .height = sizes(boxes.half_height_px)};
 }
 
-} // namespace
-
-wire::Entities SceneMaker::organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
-    const std::uint32_t largest_id = organisms.id.empty() ? 0 : *std::ranges::max_element(organisms.id);
-    by_id_.assign(organisms.id.empty() ? 0 : std::size_t{largest_id} + 1, Organism{});
-    for (std::size_t i = 0; i < organisms.id.size(); ++i)
-        if (organisms.x[i] != physics::elsewhere)
-            by_id_[organisms.id[i]] = {organisms.x[i], organisms.y[i], organisms.radius_px[i], organisms.health[i]};
+wire::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
     wire::Entities to;
-    make_room(organisms.alive_count, to.id, to.x, to.y, to.width, to.height);
+    Column places;
+    make_room(organisms.alive_count, to.id, places);
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < by_id_.size(); ++i) { // without a branch, as above
-        const Organism& organism = by_id_[i];
-        to.id[kept] = static_cast<std::uint32_t>(i);
-        to.x[kept] = static_cast<std::uint32_t>(organism.x);
-        to.y[kept] = static_cast<std::uint32_t>(organism.y);
-        to.width[kept] = wire::size_in_steps(organism.radius_px);
-        to.height[kept] = wire::size_in_steps(organism.health);
-        kept += organism.x != physics::elsewhere;
+    for (std::size_t id = 0; id < organisms.place_of.size(); ++id) { // without a branch, as above
+        to.id[kept] = static_cast<std::uint32_t>(id);
+        places[kept] = organisms.place_of[id];
+        kept += organisms.place_of[id] != simulation::Island::no_body;
     }
-    keep_first(kept, to.id, to.x, to.y, to.width, to.height);
+    keep_first(kept, to.id, places, to.x, to.y, to.width, to.height);
+    const auto fetch = [&](const auto& from, const auto& converted, Column& column) {
+        std::ranges::transform(places, column.begin(), [&](std::uint32_t place) { return converted(from[place]); });
+    };
+    const auto as_it_is = [](physics::Coordinate position) { return static_cast<std::uint32_t>(position); };
+    fetch(organisms.x, as_it_is, to.x);
+    fetch(organisms.y, as_it_is, to.y);
+    fetch(organisms.radius_px, wire::size_in_steps, to.width);
+    fetch(organisms.health, wire::size_in_steps, to.height);
     to_steps(to.x, position_bytes);
     to_steps(to.y, position_bytes);
     return to;
 }
 
-wire::Scene SceneMaker::scene_of(const runtime::IslandSnapshot& island) {
+} // namespace
+
+wire::Scene scene_of(const runtime::IslandSnapshot& island) {
     const std::uint32_t position_bytes = wire::position_bytes_of(island.width_px, island.height_px);
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
     return {.position_bytes = position_bytes,

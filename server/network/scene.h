@@ -1,0 +1,14 @@
+// Scene: an island of a snapshot as encoders take it, in whole numbers, and entities by rising id.
+//
+// The simulation thread copies columns as they lie. What lies there is put in order here, on the network thread, where
+// it keeps nobody from simulating.
+#pragma once
+
+#include "proto/wire/scene.h"
+#include "server/runtime/snapshot.h"
+
+namespace evod::network {
+
+wire::Scene scene_of(const runtime::IslandSnapshot& island);
+
+} // namespace evod::network
