@@ -171,6 +171,30 @@ Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& nex
     return pair_by_id(base, next, same_place);
 }
 
+/// 0 to count - 1.
+Column indices(std::size_t count) {
+    Column all(count);
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+}
+
+/// Whether of many of a kind that does not move so few have stayed that to tell all anew takes about as many bytes, and
+/// far less time than to find out which. The first of them are looked at, for where things are does not follow from
+/// ids.
+bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
+    constexpr std::size_t many = 2048, looked_at = 256, stayed_max = looked_at / 4;
+    if (kind.displacements || base.id.size() < many) {
+        return false;
+    }
+    const auto first = [](const EntitiesView& of, std::size_t count) {
+        const auto part = [&](Numbers column) { return column.first(std::min(count, column.size())); };
+        return EntitiesView{part(of.id), part(of.x), part(of.y), part(of.width), part(of.height)};
+    };
+    const auto up_to_there = std::ranges::lower_bound(next.id, base.id[looked_at]) - next.id.begin();
+    const Pairing pairing = pair(kind, first(base, looked_at), first(next, up_to_there), of_tile);
+    return looked_at - pairing.gone.size() <= stayed_max;
+}
+
 /// Calls stayed(base index, next index, count) for those that are in both, in their order: so many beside each other.
 template <class Stayed>
 void each_that_stayed(const Pairing& pairing, std::size_t base_count, const Stayed& stayed) {
@@ -463,9 +487,7 @@ std::string encode_keyframe(const FootingView& footing, Seams* seams) {
     writer.number(footing.ticks);
     for (const Kind& kind : kinds) {
         const EntitiesView& entities = footing.scene.*kind.seen;
-        Pairing everyone;
-        everyone.come.resize(entities.x.size());
-        std::iota(everyone.come.begin(), everyone.come.end(), 0U);
+        const Pairing everyone{.gone = {}, .come = indices(entities.x.size())};
         write_parts(writer, kind, entities, footing.scene.position_bytes, everyone,
                     kind.seen_displacements ? &(footing.*kind.seen_displacements) : nullptr);
     }
@@ -482,7 +504,9 @@ std::string encode_delta(const FootingView& base, const SceneView& next, std::ui
     const Foretold foretold{ticks, base.ticks};
     for (const Kind& kind : kinds) {
         const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
-        const Pairing pairing = pair(kind, from, to, next.of_tile);
+        const Pairing pairing = mostly_others(kind, from, to, next.of_tile)
+                                    ? Pairing{.gone = indices(from.x.size()), .come = indices(to.x.size())}
+                                    : pair(kind, from, to, next.of_tile);
         write_parts(writer, kind, to, next.position_bytes, pairing, nullptr);
         const std::size_t stayed_count = from.x.size() - pairing.gone.size();
         if (stayed_count == 0 || !kind.seen_displacements) {

@@ -142,6 +142,39 @@ RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (
     }
 }
 
+TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
+    constexpr std::uint32_t id_end = 6000;
+    constexpr std::uint64_t all = 100;
+    Random random{7};
+    for (const std::uint64_t stays_percent : {0, 5, 20, 40, 90, 100}) {
+        auto there = std::make_shared<Scene>(), here = std::make_shared<Scene>();
+        const auto lie = [&](Scene& scene, std::uint32_t id, std::uint64_t place) {
+            scene.food.id.push_back(id);
+            scene.food.x.push_back(place & 0xffff);
+            scene.food.y.push_back(place >> 16 & 0xffff);
+        };
+        for (std::uint32_t id = 0; id < id_end; ++id) {
+            const bool stays = below(random, all) < stays_percent;
+            const std::uint64_t place = random();
+            if (stays || below(random, all) < 80) {
+                lie(*there, id, place);
+            }
+            if (stays || below(random, all) < 80) {
+                lie(*here, id, stays ? place : random());
+            }
+        }
+        const Footing base = standing(there);
+        const std::string delta = encode_delta(base, *here, 300), keyframe = encode_keyframe(standing(here));
+        const auto told = decode_body(delta, {.counts = counts_of(*here)}, &base);
+        ASSERT_TRUE(told.has_value()) << stays_percent;
+        EXPECT_TRUE(*told->scene == *here) << stays_percent;
+        EXPECT_LT(delta.size(), keyframe.size() + 100) << stays_percent;
+        if (stays_percent >= 40) {
+            EXPECT_LT(delta.size(), keyframe.size() * 9 / 10) << stays_percent;
+        }
+    }
+}
+
 TEST(DeltaCodec, ADeltaIsTheseBytes) {
     LivingIsland island;
     island.organisms = {{.id = 3, .x = 100 * px, .y = 50 * px, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F}};
