@@ -5,7 +5,7 @@
 #include "proto/wire/framing.h"
 
 #include <algorithm>
-#include <limits>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -40,10 +40,7 @@ const std::array<Kind, 5> kinds{{
 class Foretold {
   public:
     Foretold(std::uint16_t ticks, std::uint16_t base_ticks)
-        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {
-        constexpr std::int32_t surely_exact = 1 << 20;
-        small_ = std::min(surely_exact, std::numeric_limits<std::int32_t>::max() / std::max(ticks_, 1));
-    }
+        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {}
 
     std::uint32_t operator()(std::uint32_t displacement) const {
         if (ticks_ == base_ticks_) {
@@ -64,11 +61,12 @@ class Foretold {
         }
         unsigned all_small = 1;
         for (const std::uint32_t displacement : displacements) {
-            all_small &= unsigned{displacement + static_cast<std::uint32_t>(small_) <= 2U * small_};
+            all_small &= unsigned{displacement + small_ <= 2 * small_};
         }
         if (all_small) { // as at full speed, where no two pictures are equally far apart: vectors do this, too
+            const Foretold foretold = *this; // whose numbers `to` cannot be
             for (std::size_t i = 0; i < here.size(); ++i) {
-                to[i] = here[i] - there[i] - of_small(static_cast<std::int32_t>(displacements[i]));
+                to[i] = here[i] - there[i] - foretold.of_small(displacements[i]);
             }
             return;
         }
@@ -78,16 +76,21 @@ class Foretold {
     }
 
   private:
-    /// The same of one that is not beyond small_ either way. The quotient is below 2^31 and at least 2^-16 from the
-    /// next whole number, if it is none: a double tells them apart.
-    std::uint32_t of_small(std::int32_t displacement) const {
-        const std::int32_t way = displacement * ticks_;
-        const auto towards_0 = static_cast<std::int32_t>(double{1} * way / base_ticks_);
-        return static_cast<std::uint32_t>(towards_0 - (way < towards_0 * base_ticks_ ? 1 : 0));
+    /// The same of one that is not beyond small_ either way: as a multiplication, for of numbers below 2^31 the
+    /// quotient is exact so (Granlund and Montgomery, Division by Invariant Integers using Multiplication, 1994,
+    /// theorem 4.2).
+    std::uint32_t of_small(std::uint32_t displacement) const {
+        const std::uint32_t way = displacement * static_cast<std::uint32_t>(ticks_) + ahead_ * divisor_; // not below 0
+        return static_cast<std::uint32_t>(std::uint64_t{way} * reciprocal_ >> (31 + divisor_log2_)) - ahead_;
     }
 
-    std::int32_t ticks_, base_ticks_;
-    std::int32_t small_; // so that small_ times ticks_ is a std::int32_t
+    std::int64_t ticks_, base_ticks_;
+    std::uint32_t divisor_ = static_cast<std::uint32_t>(base_ticks_);
+    std::uint32_t longest_ = 1U << 29; // way of what is small
+    std::uint32_t small_ = longest_ / static_cast<std::uint32_t>(std::max<std::int64_t>(ticks_, 1));
+    std::uint32_t ahead_ = longest_ / divisor_ + 1;
+    unsigned divisor_log2_ = static_cast<unsigned>(std::bit_width(divisor_ - 1)); // rounded up
+    std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << (31 + divisor_log2_)) / divisor_ + 1);
 };
 
 // ---- which entities of two pictures are the same ---------------------------------------------------------------
