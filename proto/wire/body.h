@@ -45,18 +45,8 @@ class BodyWriter {
         }
     }
 
-    /// The lowest byte of each, then the next of each: those that are all but the same stand together.
-    void planes(Numbers values, std::uint32_t bytes) {
-        for (std::uint32_t plane = 0; plane < bytes; ++plane) {
-            seam();
-            char* const to = grow(values.size());
-            for (std::size_t i = 0; i < values.size(); ++i) {
-                to[i] = static_cast<char>(values[i] >> (8 * plane));
-            }
-        }
-    }
-
-    /// The same of those at `indices`.
+    /// Of those at `indices` the lowest byte of each, then the next of each: those that are all but the same stand
+    /// together. bytes: 2 or 4.
     void planes(Numbers values, Numbers indices, std::uint32_t bytes) {
         const std::size_t begin = body_.size(), count = indices.size();
         for (std::uint32_t plane = 0; plane < bytes; ++plane) {

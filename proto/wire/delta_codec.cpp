@@ -80,17 +80,16 @@ class Foretold {
     /// quotient is exact so (Granlund and Montgomery, Division by Invariant Integers using Multiplication, 1994,
     /// theorem 4.2).
     std::uint32_t of_small(std::uint32_t displacement) const {
-        const std::uint32_t way = displacement * static_cast<std::uint32_t>(ticks_) + ahead_ * divisor_; // not below 0
-        return static_cast<std::uint32_t>(std::uint64_t{way} * reciprocal_ >> (31 + divisor_log2_)) - ahead_;
+        const std::uint32_t way = displacement * ticks_ + ahead_ * base_ticks_; // not below 0
+        return static_cast<std::uint32_t>(std::uint64_t{way} * reciprocal_ >> shift_) - ahead_;
     }
 
-    std::int64_t ticks_, base_ticks_;
-    std::uint32_t divisor_ = static_cast<std::uint32_t>(base_ticks_);
-    std::uint32_t longest_ = 1U << 29; // way of what is small
-    std::uint32_t small_ = longest_ / static_cast<std::uint32_t>(std::max<std::int64_t>(ticks_, 1));
-    std::uint32_t ahead_ = longest_ / divisor_ + 1;
-    unsigned divisor_log2_ = static_cast<unsigned>(std::bit_width(divisor_ - 1)); // rounded up
-    std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << (31 + divisor_log2_)) / divisor_ + 1);
+    static constexpr std::uint32_t longest_way = 1U << 29; // of what is small
+    std::uint32_t ticks_, base_ticks_;
+    std::uint32_t small_ = longest_way / std::max(ticks_, 1U);
+    std::uint32_t ahead_ = longest_way / base_ticks_ + 1;
+    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1)); // 31 and log2, rounded up
+    std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
 };
 
 // ---- which entities of two pictures are the same ---------------------------------------------------------------

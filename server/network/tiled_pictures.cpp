@@ -82,19 +82,14 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
     v1::TilePicture picture;
     picture.set_tile(tile);
     picture.set_detail(detail);
-    switch (form) {
-    case Form::Keyframe: {
+    if (form == Form::Keyframe) {
         wire::Seams seams;
         const std::string body = wire::encode_keyframe(footing(tile), &seams);
         return bytes = island_->encode(std::move(picture), body, seams, compression);
     }
-    case Form::Delta:
-        picture.set_base_sequence(of.base_sequence);
+    picture.set_base_sequence(sent);
+    if (form == Form::Delta)
         return bytes = island_->encode(std::move(picture), of.delta, of.delta_seams, compression);
-    case Form::Again:
-        break;
-    }
-    picture.set_base_sequence(sequence());
     const wire::FootingView here = footing(tile);
     return bytes = island_->encode(std::move(picture), wire::encode_delta(here, here.scene, 0), {}, compression);
 }
