@@ -1,12 +1,10 @@
 // breeding: how a generation was bred.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
 
 namespace evod::ctl {
 
@@ -184,22 +182,22 @@ void breeding(const Common& common, const BreedingOptions& options) {
 
 } // namespace
 
-void add_breeding_command(CLI::App& app, const Common& common, Selected& selected) {
-    auto* command =
-        app.add_subcommand("breeding", "How a generation was bred: the picks, the pairs, what became of their genes")
-            ->group("Look");
-    auto options = std::make_shared<BreedingOptions>();
-    command->add_option("--generation", options->generation, "Of the parents; without it the last that was bred from")
-        ->check(at_least_one);
-    command->add_option("--island", options->island, "Island, from 0")->check(index_number);
-    command->add_option("--from", options->from, "Where each list begins")->check(index_number)->capture_default_str();
+void add_breeding_command(command_line::Command& app, const Common& common) {
+    auto& command =
+        app.add_command("breeding", "How a generation was bred: the picks, the pairs, what became of their genes")
+            .group("Look");
+    auto& options = command.keep(BreedingOptions{});
+    command.add_option("--generation", &options.generation, "Of the parents; without it the last that was bred from")
+        .check(at_least_one);
+    command.add_option("--island", &options.island, "Island, from 0").check(index_number);
+    command.add_option("--from", &options.from, "Where each list begins").check(index_number).show_default();
     command
-        ->add_option("--rows", options->rows, "How many of each list are printed, at most 1000; of JSON, all that come")
-        ->check(link::WholeNumber{1, 1000})
-        ->capture_default_str();
-    command->footer("Examples:\n  evoctl breeding\n  evoctl breeding --generation 3 --rows 50\n"
-                    "  evoctl breeding --json | jq '.descendants[] | select(.mutations)'");
-    command->callback([&, options] { selected = [&, options] { breeding(common, *options); }; });
+        .add_option("--rows", &options.rows, "How many of each list are printed, at most 1000; of JSON, all that come")
+        .check(command_line::WholeNumber{1, 1000})
+        .show_default();
+    command.footer("Examples:\n  evoctl breeding\n  evoctl breeding --generation 3 --rows 50\n"
+                   "  evoctl breeding --json | jq '.descendants[] | select(.mutations)'");
+    command.action([&] { breeding(common, options); });
 }
 
 } // namespace evod::ctl

@@ -5,19 +5,18 @@
 #include "client/ctl/stop.h"
 #include "client/link/connection.h"
 #include "client/link/credentials.h"
-#include "client/link/option_numbers.h"
+#include "proto/command_line/number.h"
 
 #include <google/protobuf/message.h>
 
 #include <chrono>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
-namespace CLI {
-class App;
+namespace evod::command_line {
+class Command;
 }
 
 namespace evod::ctl {
@@ -35,9 +34,6 @@ struct Common {
         return std::chrono::milliseconds{static_cast<std::int64_t>(timeout_s * 1000)};
     }
 };
-
-/// The subcommand that was given, to be run when the whole command line has been read.
-using Selected = std::function<void()>;
 
 class Caller {
   public:
@@ -97,22 +93,22 @@ bool interrupted();
 /// Whether people are looking at stdout.
 bool on_terminal();
 
-/// Checks for CLI11.
-inline constexpr link::WholeNumber whole_number{}, at_least_one{.min = 1},
+/// Checks of options.
+inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1},
     index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // of islands and organisms
 
-/// Each adds its subcommands to `app`; `selected` becomes the one that was given.
-void add_look_commands(CLI::App& app, const Common& common, Selected& selected);
-void add_parameter_commands(CLI::App& app, const Common& common, Selected& selected);
-void add_run_commands(CLI::App& app, const Common& common, Selected& selected);
-void add_breeding_command(CLI::App& app, const Common& common, Selected& selected);
-void add_export_command(CLI::App& app, const Common& common, Selected& selected);
-void add_watch_commands(CLI::App& app, const Common& common, Selected& selected);
-void add_top_command(CLI::App& app, const Common& common, Selected& selected);
-void add_complete_command(CLI::App& app, Selected& selected);
+/// Each adds its subcommands to `app`.
+void add_look_commands(command_line::Command& app, const Common& common);
+void add_parameter_commands(command_line::Command& app, const Common& common);
+void add_run_commands(command_line::Command& app, const Common& common);
+void add_breeding_command(command_line::Command& app, const Common& common);
+void add_export_command(command_line::Command& app, const Common& common);
+void add_watch_commands(command_line::Command& app, const Common& common);
+void add_top_command(command_line::Command& app, const Common& common);
+void add_complete_command(command_line::Command& app);
 
 /// Prints what may come next after `words`, the last of which is being typed; nothing where no server is needed and
 /// none is there.
-void complete(CLI::App& app, const std::vector<std::string>& words);
+void complete(const command_line::Command& app, const std::vector<std::string>& words);
 
 } // namespace evod::ctl

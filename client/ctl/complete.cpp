@@ -1,16 +1,16 @@
 // Completion: `evoctl complete bash` prints the script for bash; the script asks `evoctl complete -- words…`.
 #include "client/ctl/caller.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 
 namespace evod::ctl {
 
 namespace {
+
+using command_line::Command;
 
 // Bash cuts words at '=' and ':' in COMP_WORDS, so the line is cut here, at blanks; and readline puts in only what
 // comes after the last '=', so what stands before it is taken off the answers.
@@ -90,26 +90,23 @@ void complete_world(const Common& common, const std::string& word) {
     }
 }
 
-void complete_options(const CLI::App& app, const std::string& word) {
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-            Candidates{word}.add("--" + name);
-        }
+void complete_options(const Command& command, const std::string& word) {
+    for (const std::string& name : command.option_names()) {
+        Candidates{word}.add(name);
     }
 }
 
 } // namespace
 
-void complete(CLI::App& app, const std::vector<std::string>& words) {
+void complete(const Command& app, const std::vector<std::string>& words) {
     const std::string word = words.empty() ? "" : words.back();
     const std::vector<std::string> before{words.begin(), words.empty() ? words.end() : words.end() - 1};
-    const CLI::App* command = nullptr;
+    const Command* command = nullptr;
     for (std::size_t i = 0; i < before.size() && command == nullptr; ++i) {
         const bool value = i > 0 && (before[i - 1] == "--server" || before[i - 1] == "--world");
-        const auto all = app.get_subcommands([](const CLI::App*) { return true; });
-        const auto found = std::ranges::find_if(all, [&](const CLI::App* a) { return a->get_name() == before[i]; });
-        if (!value && found != all.end()) {
-            command = *found;
+        const auto found = std::ranges::find(app.commands(), before[i], &Command::name);
+        if (!value && found != app.commands().end()) {
+            command = &*found;
         }
     }
     const std::string last = before.empty() ? "" : before.back();
@@ -125,10 +122,10 @@ void complete(CLI::App& app, const std::vector<std::string>& words) {
                 complete_options(*command, word);
             }
         } else if (command == nullptr) {
-            for (const CLI::App* subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
-                Candidates{word}.add(subcommand->get_name());
+            for (const Command& subcommand : app.commands()) {
+                Candidates{word}.add(subcommand.name());
             }
-        } else if (const std::string& name = command->get_name();
+        } else if (const std::string name = command->name();
                    name == "set" || name == "get" || name == "params" ||
                    (name == "create" && std::ranges::find(before, "--set") != before.end())) {
             complete_parameter(Caller{common_of(before)}.registry(), word, name == "set" || name == "create");
@@ -144,12 +141,11 @@ void complete(CLI::App& app, const std::vector<std::string>& words) {
     }
 }
 
-void add_complete_command(CLI::App& app, Selected& selected) {
-    auto* command = app.add_subcommand("complete", "Completion for a shell: source <(evoctl complete bash)");
-    command->group("Shell");
-    auto shell = std::make_shared<std::string>();
-    command->add_option("SHELL", *shell, "bash")->required()->check(CLI::IsMember({"bash"}));
-    command->callback([&selected, shell] { selected = [] { std::cout << bash_script; }; });
+void add_complete_command(Command& app) {
+    auto& command = app.add_command("complete", "Completion for a shell: source <(evoctl complete bash)");
+    command.group("Shell");
+    command.add_option("SHELL", &command.keep(std::string{}), "bash").required().choices({"bash"});
+    command.action([] { std::cout << bash_script; });
 }
 
 } // namespace evod::ctl

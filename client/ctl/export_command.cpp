@@ -1,7 +1,6 @@
 // export: what the run file of a world holds, as text for other programs.
 #include "client/ctl/caller.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <cerrno>
 #include <charconv>
@@ -9,7 +8,6 @@
 #include <fstream>
 #include <iostream>
 #include <map>
-#include <memory>
 #include <optional>
 
 namespace evod::ctl {
@@ -109,30 +107,38 @@ void export_run(const Common& common, const ExportOptions& options) {
     }
 }
 
+template <class Value>
+std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) {
+        names.push_back(name);
+    }
+    return names;
+}
+
 } // namespace
 
-void add_export_command(CLI::App& app, const Common& common, Selected& selected) {
-    auto* command = app.add_subcommand("export", "Write what the run file of a world holds, up to now")->group("Look");
-    auto options = std::make_shared<ExportOptions>();
+void add_export_command(command_line::Command& app, const Common& common) {
+    auto& command = app.add_command("export", "Write what the run file of a world holds, up to now").group("Look");
+    auto& options = command.keep(ExportOptions{});
     command
-        ->add_option("--what", options->what,
-                     "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
-                     "whom; population: the genes of one generation, for `create --population`; events: the commands")
-        ->required()
-        ->check(CLI::IsMember(&tables));
-    command->add_option("--of", options->of, "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone");
-    command->add_option("--generation", options->generation, "Of the population; otherwise the last that has begun")
-        ->check(whole_number);
-    command->add_option("--format", options->format, "csv, or jsonl: an object of JSON a line")
-        ->check(CLI::IsMember(&formats))
-        ->capture_default_str();
-    command->add_option("--output", options->output, "File; without it, standard output");
-    command->footer(
-        "Examples:\n  evoctl export --what organisms --output organisms.csv\n"
-        "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
-        "A folder with all of it, to be given away, is made beside the run file: evod export RUN.evod --bundle "
-        "FOLDER");
-    command->callback([&, options] { selected = [&, options] { export_run(common, *options); }; });
+        .add_option("--what", &options.what,
+                    "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                    "whom; population: the genes of one generation, for `create --population`; events: the commands")
+        .required()
+        .choices(names_of(tables));
+    command.add_option("--of", &options.of, "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone");
+    command.add_option("--generation", &options.generation, "Of the population; otherwise the last that has begun")
+        .check(whole_number);
+    command.add_option("--format", &options.format, "csv, or jsonl: an object of JSON a line")
+        .choices(names_of(formats))
+        .show_default();
+    command.add_option("--output", &options.output, "File; without it, standard output");
+    command.footer("Examples:\n  evoctl export --what organisms --output organisms.csv\n"
+                   "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
+                   "A folder with all of it, to be given away, is made beside the run file: evod export RUN.evod "
+                   "--bundle FOLDER");
+    command.action([&] { export_run(common, options); });
 }
 
 } // namespace evod::ctl

@@ -2,12 +2,11 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
 #include "client/link/history_csv.h"
+#include "proto/command_line/command.h"
 
-#include <CLI/CLI.hpp>
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace evod::ctl {
 
@@ -113,11 +112,11 @@ struct MomentOptions {
     bool is_past() const { return generation || tick; }
 };
 
-void add_options(CLI::App& command, MomentOptions& options) {
-    command.add_option("--at-generation", options.generation, "As it was at its beginning, or at its tick --at-tick")
-        ->check(at_least_one);
-    command.add_option("--at-tick", options.tick, "As it was after this tick of the generation, or else of the run")
-        ->check(whole_number);
+void add_options(command_line::Command& command, MomentOptions& options) {
+    command.add_option("--at-generation", &options.generation, "As it was at its beginning, or at its tick --at-tick")
+        .check(at_least_one);
+    command.add_option("--at-tick", &options.tick, "As it was after this tick of the generation, or else of the run")
+        .check(whole_number);
 }
 
 /// The name of the world that is meant; or of one that shows that moment of it, as long as this call lasts.
@@ -328,42 +327,37 @@ void describe(const Common& common) {
 
 } // namespace
 
-void add_look_commands(CLI::App& app, const Common& common, Selected& selected) {
+void add_look_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Look";
-    app.add_subcommand("status", "The server and its worlds at a glance")->group(group)->callback([&] {
-        selected = [&] { status(common); };
-    });
-    app.add_subcommand("worlds", "The names of all worlds, a line each")->group(group)->callback([&] {
-        selected = [&] { list_worlds(common); };
-    });
-    auto* stats =
-        app.add_subcommand("stats", "How a world is doing: now, and in the last generation; or did once")->group(group);
-    auto moment = std::make_shared<MomentOptions>();
-    add_options(*stats, *moment);
-    stats->footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
-    stats->callback([&, moment] { selected = [&, moment] { statistics(common, *moment); }; });
+    app.add_command("status", "The server and its worlds at a glance").group(group).action([&] { status(common); });
+    app.add_command("worlds", "The names of all worlds, a line each").group(group).action([&] { list_worlds(common); });
 
-    auto* past = app.add_subcommand("history", "The statistics of ended generations")->group(group);
-    auto options = std::make_shared<HistoryOptions>();
-    past->add_flag("--csv", options->csv, "Comma-separated, with every column and the genes");
-    past->add_option("--from", options->from, "First generation; without it the oldest that is kept")
-        ->check(whole_number);
-    past->add_option("--to", options->to, "Last generation; without it the last that has ended")->check(whole_number);
-    past->add_option("--island", options->island, "One island only, from 0")->check(index_number);
-    past->footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
-    past->callback([&, options] { selected = [&, options] { history(common, *options); }; });
+    auto& stats =
+        app.add_command("stats", "How a world is doing: now, and in the last generation; or did once").group(group);
+    auto& moment = stats.keep(MomentOptions{});
+    add_options(stats, moment);
+    stats.footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
+    stats.action([&] { statistics(common, moment); });
 
-    auto* one = app.add_subcommand("organism", "One organism, its genes, life and parents")->group(group);
-    auto wanted = std::make_shared<OrganismOptions>();
-    one->add_option("ID", wanted->id, "Birth order within the generation, from 0")->required()->check(index_number);
-    one->add_option("--island", wanted->island, "Island, from 0")->check(index_number);
-    add_options(*one, wanted->moment);
-    one->footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
-    one->callback([&, wanted] { selected = [&, wanted] { organism(common, *wanted); }; });
+    auto& past = app.add_command("history", "The statistics of ended generations").group(group);
+    auto& options = past.keep(HistoryOptions{});
+    past.add_flag("--csv", &options.csv, "Comma-separated, with every column and the genes");
+    past.add_option("--from", &options.from, "First generation; without it the oldest that is kept")
+        .check(whole_number);
+    past.add_option("--to", &options.to, "Last generation; without it the last that has ended").check(whole_number);
+    past.add_option("--island", &options.island, "One island only, from 0").check(index_number);
+    past.footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
+    past.action([&] { history(common, options); });
 
-    app.add_subcommand("describe", "The server: version, features, limits")->group(group)->callback([&] {
-        selected = [&] { describe(common); };
-    });
+    auto& one = app.add_command("organism", "One organism, its genes, life and parents").group(group);
+    auto& wanted = one.keep(OrganismOptions{});
+    one.add_option("ID", &wanted.id, "Birth order within the generation, from 0").required().check(index_number);
+    one.add_option("--island", &wanted.island, "Island, from 0").check(index_number);
+    add_options(one, wanted.moment);
+    one.footer("Examples:\n  evoctl organism 12\n  evoctl organism 12 --at-generation 3 --at-tick 600");
+    one.action([&] { organism(common, wanted); });
+
+    app.add_command("describe", "The server: version, features, limits").group(group).action([&] { describe(common); });
 }
 
 } // namespace evod::ctl

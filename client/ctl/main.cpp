@@ -1,8 +1,7 @@
 // evoctl: one command a call, to a server of evod.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -16,10 +15,10 @@ using namespace evod::ctl;
 namespace {
 
 /// The first word that must be a command is looked at before the rest: a slip of the finger should be told as one.
-void require_known_command(const CLI::App& app, int argc, char** argv) {
+void require_known_command(const evod::command_line::Command& app, int argc, char** argv) {
     std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        names.push_back(command->get_name());
+    for (const auto& command : app.commands()) {
+        names.push_back(command.name());
     }
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
@@ -43,19 +42,17 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
 
 int main(int argc, char** argv) {
     Common common;
-    Selected selected;
-    CLI::App app{"evoctl: one command a call, to a server of evod", "evoctl"};
-    app.set_version_flag("--version", "evoctl " EVOD_VERSION);
-    app.add_option("--server", common.server, "HOST:PORT of the server")->envname("EVOD_SERVER")->capture_default_str();
+    evod::command_line::Command app{"evoctl", "evoctl: one command a call, to a server of evod",
+                                    "evoctl " EVOD_VERSION};
+    app.add_option("--server", &common.server, "HOST:PORT of the server").environment("EVOD_SERVER").show_default();
     add_options(app, common.credentials);
-    app.add_option("--world", common.world, "World; without it the only one, or 'default'")->envname("EVOD_WORLD");
-    app.add_option("--timeout", common.timeout_s, "Seconds to wait for an answer")
-        ->capture_default_str()
-        ->check(evod::link::RealNumber{0.001, 86400});
-    app.add_flag("--json", common.json, "Print the answer as JSON");
-    app.require_subcommand(1);
-    app.fallthrough();
-    app.get_formatter()->column_width(32);
+    app.add_option("--world", &common.world, "World; without it the only one, or 'default'").environment("EVOD_WORLD");
+    app.add_option("--timeout", &common.timeout_s, "Seconds to wait for an answer")
+        .show_default()
+        .check(evod::command_line::RealNumber{0.001, 86400});
+    app.add_flag("--json", &common.json, "Print the answer as JSON");
+    app.accept_options_after_commands();
+    app.help_column(32);
     app.footer("Examples:\n"
                "  evoctl run 50 --wait                  fifty generations\n"
                "  evoctl set selection=tournament       while it runs\n"
@@ -63,14 +60,14 @@ int main(int argc, char** argv) {
                "\n"
                "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer,\n"
                "4 the server wants a token that it knows");
-    add_run_commands(app, common, selected);
-    add_parameter_commands(app, common, selected);
-    add_look_commands(app, common, selected);
-    add_breeding_command(app, common, selected);
-    add_export_command(app, common, selected);
-    add_watch_commands(app, common, selected);
-    add_top_command(app, common, selected);
-    add_complete_command(app, selected);
+    add_run_commands(app, common);
+    add_parameter_commands(app, common);
+    add_look_commands(app, common);
+    add_breeding_command(app, common);
+    add_export_command(app, common);
+    add_watch_commands(app, common);
+    add_top_command(app, common);
+    add_complete_command(app);
 
     if (argc > 2 && std::strcmp(argv[1], "complete") == 0 && std::strcmp(argv[2], "--") == 0) {
         complete(app, {argv + 3, argv + argc});
@@ -78,13 +75,13 @@ int main(int argc, char** argv) {
     }
     try {
         require_known_command(app, argc, argv);
-        app.parse(argc, argv);
-        selected();
+        if (const auto ended = app.parse(argc, argv)) {
+            return *ended;
+        }
+        app.run();
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush()) {
             throw Stop{ExitCode::Refused, "standard output cannot be written: the disk may be full"};
         }
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? static_cast<int>(ExitCode::Ok) : static_cast<int>(ExitCode::Usage);
     } catch (const Stop& stop) {
         if (!stop.text.empty()) {
             std::cerr << "evoctl: " << stop.text << '\n';

@@ -1,10 +1,7 @@
 // Parameters: set, get, params.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-
-#include <CLI/CLI.hpp>
-
-#include <memory>
+#include "proto/command_line/command.h"
 
 namespace evod::ctl {
 
@@ -214,46 +211,46 @@ void params(const Common& common, const std::string& name) {
 
 } // namespace
 
-void add_parameter_commands(CLI::App& app, const Common& common, Selected& selected) {
+void add_parameter_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Parameters";
-    auto* set_command = app.add_subcommand("set", "Change parameters: all that are given, or none")->group(group);
-    auto options = std::make_shared<SetOptions>();
-    set_command->add_option("NAME=VALUE", options->words, "Parameters with their new values")->required();
-    set_command->add_flag("--dry-run", options->dry_run, "Only check; change nothing");
+    auto& set_command = app.add_command("set", "Change parameters: all that are given, or none").group(group);
+    auto& options = set_command.keep(SetOptions{});
+    set_command.add_option("NAME=VALUE", &options.words, "Parameters with their new values").required();
+    set_command.add_flag("--dry-run", &options.dry_run, "Only check; change nothing");
     set_command
-        ->add_option("--if-revision", options->expected_revision,
-                     "Refuse if anyone has changed a parameter since this revision")
-        ->check(whole_number);
-    auto* at_generation = set_command->add_option("--at-generation", options->at_generation,
-                                                  "Not now, but from the first tick of this generation on");
-    at_generation->check(whole_number);
-    set_command->add_option("--at-tick", options->at_tick, "Not now, but right after this tick since the run began")
-        ->check(whole_number)
-        ->excludes(at_generation);
-    set_command->footer("Examples:\n  evoctl set selection=tournament mutation_chance=0.05 mutate_survivors=true\n"
-                        "  evoctl set --dry-run food_count=1e6\n"
-                        "  evoctl set --at-generation 30 mutation_chance=0.01\n"
-                        "Names and ranges: evoctl params");
-    set_command->callback([&, options] { selected = [&, options] { set(common, *options); }; });
+        .add_option("--if-revision", &options.expected_revision,
+                    "Refuse if anyone has changed a parameter since this revision")
+        .check(whole_number);
+    const auto at_generation = set_command
+                                   .add_option("--at-generation", &options.at_generation,
+                                               "Not now, but from the first tick of this generation on")
+                                   .check(whole_number);
+    set_command.add_option("--at-tick", &options.at_tick, "Not now, but right after this tick since the run began")
+        .check(whole_number)
+        .excludes(at_generation);
+    set_command.footer("Examples:\n  evoctl set selection=tournament mutation_chance=0.05 mutate_survivors=true\n"
+                       "  evoctl set --dry-run food_count=1e6\n"
+                       "  evoctl set --at-generation 30 mutation_chance=0.01\n"
+                       "Names and ranges: evoctl params");
+    set_command.action([&] { set(common, options); });
 
-    auto* changes_command = app.add_subcommand("changes", "What is planned, and when")->group(group);
-    changes_command->callback([&] { selected = [&] { changes(common); }; });
+    app.add_command("changes", "What is planned, and when").group(group).action([&] { changes(common); });
 
-    auto* cancel_command = app.add_subcommand("cancel", "Take back a planned change")->group(group);
-    auto id = std::make_shared<std::uint64_t>();
-    cancel_command->add_option("ID", *id, "As evoctl changes tells it")->required()->check(whole_number);
-    cancel_command->callback([&, id] { selected = [&, id] { cancel(common, *id); }; });
+    auto& cancel_command = app.add_command("cancel", "Take back a planned change").group(group);
+    auto& id = cancel_command.keep(std::uint64_t{0});
+    cancel_command.add_option("ID", &id, "As evoctl changes tells it").required().check(whole_number);
+    cancel_command.action([&] { cancel(common, id); });
 
-    auto* get_command = app.add_subcommand("get", "The values of parameters, as `set` takes them")->group(group);
-    auto names = std::make_shared<std::vector<std::string>>();
-    get_command->add_option("NAME", *names, "Parameters; without any, all of them");
-    get_command->footer("Examples:\n  evoctl get selection mutation_chance\n  evoctl get --json | jq .revision");
-    get_command->callback([&, names] { selected = [&, names] { get(common, *names); }; });
+    auto& get_command = app.add_command("get", "The values of parameters, as `set` takes them").group(group);
+    auto& names = get_command.keep(std::vector<std::string>{});
+    get_command.add_option("NAME", &names, "Parameters; without any, all of them");
+    get_command.footer("Examples:\n  evoctl get selection mutation_chance\n  evoctl get --json | jq .revision");
+    get_command.action([&] { get(common, names); });
 
-    auto* params_command = app.add_subcommand("params", "Which parameters there are")->group(group);
-    auto name = std::make_shared<std::string>();
-    params_command->add_option("NAME", *name, "One parameter, with all that is known of it");
-    params_command->callback([&, name] { selected = [&, name] { params(common, *name); }; });
+    auto& params_command = app.add_command("params", "Which parameters there are").group(group);
+    auto& name = params_command.keep(std::string{});
+    params_command.add_option("NAME", &name, "One parameter, with all that is known of it");
+    params_command.action([&] { params(common, name); });
 }
 
 } // namespace evod::ctl

@@ -2,10 +2,9 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
 #include "client/ctl/text.h"
+#include "proto/command_line/command.h"
 #include "proto/wire/framing.h"
 #include "proto/wire/population_csv.h"
-
-#include <CLI/CLI.hpp>
 
 #include <unistd.h>
 
@@ -18,7 +17,6 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <memory>
 
 namespace evod::ctl {
 
@@ -384,116 +382,102 @@ void set_speed(const Common& common, const std::string& word) {
     print_world(common, caller.call(std::move(request)));
 }
 
-void add_world_commands(CLI::App& app, const Common& common, Selected& selected) {
+void add_world_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Worlds";
-    auto* create_command = app.add_subcommand("create", "Make a world; it waits to be run")->group(group);
-    auto options = std::make_shared<CreateOptions>();
-    create_command->add_option("NAME", options->name, "1 to 64 of a-z A-Z 0-9 _ -")->required();
-    create_command->add_option("--seed", options->seed, "Without it, and without one in the file, the server draws one")
-        ->check(whole_number);
-    create_command->add_option("--set", options->words, "Parameters as NAME=VALUE; the others have their defaults");
-    create_command->add_option("--experiment", options->experiment,
-                               "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
-    create_command->add_option("--population", options->population,
-                               "CSV file of `evod export --what population` to begin with");
-    create_command->footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
-                           "  evoctl create big --set population_size=10000 scale_with_population=true");
-    create_command->callback([&, options] { selected = [&, options] { create(common, *options); }; });
+    auto& create_command = app.add_command("create", "Make a world; it waits to be run").group(group);
+    auto& options = create_command.keep(CreateOptions{});
+    create_command.add_option("NAME", &options.name, "1 to 64 of a-z A-Z 0-9 _ -").required();
+    create_command.add_option("--seed", &options.seed, "Without it, and without one in the file, the server draws one")
+        .check(whole_number);
+    create_command.add_option("--set", &options.words, "Parameters as NAME=VALUE; the others have their defaults");
+    create_command.add_option("--experiment", &options.experiment,
+                              "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
+    create_command.add_option("--population", &options.population,
+                              "CSV file of `evod export --what population` to begin with");
+    create_command.footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
+                          "  evoctl create big --set population_size=10000 scale_with_population=true");
+    create_command.action([&] { create(common, options); });
 
-    auto* delete_command = app.add_subcommand("delete", "Remove a world and its history")->group(group);
-    auto name = std::make_shared<std::string>();
-    delete_command->add_option("NAME", *name, "The world")->required();
-    delete_command->callback([&, name] { selected = [&, name] { remove(common, *name); }; });
+    auto& delete_command = app.add_command("delete", "Remove a world and its history").group(group);
+    auto& name = delete_command.keep(std::string{});
+    delete_command.add_option("NAME", &name, "The world").required();
+    delete_command.action([&] { remove(common, name); });
 
-    auto* fork_command =
-        app.add_subcommand("fork", "Make a second world from a generation of one, or from where it is; it waits")
-            ->group(group);
-    auto fork_options = std::make_shared<ForkOptions>();
-    fork_command->add_option("WORLD", fork_options->origin,
-                             "The one to begin from; without it that of --world, if any");
-    fork_command->add_option("--name", fork_options->name, "Of the new world: 1 to 64 of a-z A-Z 0-9 _ -")->required();
+    auto& fork_command =
+        app.add_command("fork", "Make a second world from a generation of one, or from where it is; it waits")
+            .group(group);
+    auto& fork_options = fork_command.keep(ForkOptions{});
+    fork_command.add_option("WORLD", &fork_options.origin, "The one to begin from; without it that of --world, if any");
+    fork_command.add_option("--name", &fork_options.name, "Of the new world: 1 to 64 of a-z A-Z 0-9 _ -").required();
     fork_command
-        ->add_option("--at-generation", fork_options->at_generation, "Begins with its first tick; without it, from now")
-        ->check(at_least_one);
-    fork_command->footer(
+        .add_option("--at-generation", &fork_options.at_generation, "Begins with its first tick; without it, from now")
+        .check(at_least_one);
+    fork_command.footer(
         "Example, a paired experiment with the same chance:\n  evoctl fork lesson --at-generation 20 --name calm\n"
         "  evoctl --world calm set mutation_chance=0.01");
-    fork_command->callback([&, fork_options] { selected = [&, fork_options] { fork(common, *fork_options); }; });
-    auto* seek_command =
-        app.add_subcommand("seek", "Take a world that shows the past (evod replay) to another moment; else its last")
-            ->group(group);
-    auto seek_options = std::make_shared<SeekOptions>();
-    seek_command->add_option("--generation", seek_options->generation, "Its first moment, or its tick --tick")
-        ->check(whole_number);
-    seek_command->add_option("--tick", seek_options->tick, "Of the generation; without one, of the run")
-        ->check(whole_number);
-    seek_command->callback([&, seek_options] { selected = [&, seek_options] { seek(common, *seek_options); }; });
-    auto* reset_command =
-        app.add_subcommand("reset", "Begin again at generation 1, with the parameters last set")->group(group);
-    auto seed = std::make_shared<std::optional<std::uint64_t>>();
-    reset_command->add_option("--seed", *seed, "Without it the same seed again")->check(whole_number);
-    reset_command->callback([&, seed] { selected = [&, seed] { reset(common, *seed); }; });
+    fork_command.action([&] { fork(common, fork_options); });
+
+    auto& seek_command =
+        app.add_command("seek", "Take a world that shows the past (evod replay) to another moment; else its last")
+            .group(group);
+    auto& seek_options = seek_command.keep(SeekOptions{});
+    seek_command.add_option("--generation", &seek_options.generation, "Its first moment, or its tick --tick")
+        .check(whole_number);
+    seek_command.add_option("--tick", &seek_options.tick, "Of the generation; without one, of the run")
+        .check(whole_number);
+    seek_command.action([&] { seek(common, seek_options); });
+
+    auto& reset_command =
+        app.add_command("reset", "Begin again at generation 1, with the parameters last set").group(group);
+    auto& seed = reset_command.keep(std::optional<std::uint64_t>{});
+    reset_command.add_option("--seed", &seed, "Without it the same seed again").check(whole_number);
+    reset_command.action([&] { reset(common, seed); });
 }
 
 } // namespace
 
-void add_run_commands(CLI::App& app, const Common& common, Selected& selected) {
-    add_world_commands(app, common, selected);
+void add_run_commands(command_line::Command& app, const Common& common) {
+    add_world_commands(app, common);
     const char* const group = "Run";
-    app.add_subcommand("start", "Run one generation")->group(group)->callback([&] {
-        selected = [&] { run(common, 1, false); };
+    app.add_command("start", "Run one generation").group(group).action([&] { run(common, 1, false); });
+
+    auto& run_command = app.add_command("run", "Run N more generations, or until paused").group(group);
+    auto& generations = run_command.keep(std::optional<std::uint64_t>{});
+    auto& run_wait = run_command.keep(false);
+    run_command.add_option("N", &generations, "Generations; without it until paused or a termination criterion holds")
+        .check(at_least_one);
+    run_command.add_flag("--wait", &run_wait, "Return when they have ended; Ctrl-C ends the waiting, not the run");
+    run_command.footer("Examples:\n  evoctl run 100 --wait && evoctl history --csv > fitness.csv\n"
+                       "  evoctl run --world lesson");
+    run_command.action([&] { run(common, generations, run_wait); });
+
+    app.add_command("shutdown", "End the server, as SIGTERM does").group("Worlds").action([&] { shut_down(common); });
+    app.add_command("pause", "Stop a world where it is").group(group).action([&] { pause(common); });
+    app.add_command("resume", "Go on after a pause").group(group).action([&] { resume(common); });
+
+    auto& step_command = app.add_command("step", "Run N ticks, then pause; returns when they are over").group(group);
+    auto& ticks = step_command.keep(std::uint64_t{1});
+    auto& no_wait = step_command.keep(false);
+    step_command.add_option("N", &ticks, "Ticks; without it 1").check(at_least_one);
+    step_command.add_flag("--no-wait", &no_wait, "Return at once");
+    step_command.action([&] { step(common, ticks, !no_wait); });
+
+    auto& until_command = app.add_command("until", "Run until TICK ticks of the run are over, then pause").group(group);
+    auto& tick = until_command.keep(std::uint64_t{0});
+    auto& until_wait = until_command.keep(false);
+    until_command.add_option("TICK", &tick, "Ticks since the run began").required().check(whole_number);
+    until_command.add_flag("--wait", &until_wait, "Return when it is reached");
+    until_command.action([&] {
+        Caller caller{common};
+        stand(common, caller);
+        until(common, caller, tick, until_wait);
     });
 
-    auto* run_command = app.add_subcommand("run", "Run N more generations, or until paused")->group(group);
-    auto generations = std::make_shared<std::optional<std::uint64_t>>();
-    auto run_wait = std::make_shared<bool>(false);
-    run_command->add_option("N", *generations, "Generations; without it until paused or a termination criterion holds")
-        ->check(at_least_one);
-    run_command->add_flag("--wait", *run_wait, "Return when they have ended; Ctrl-C ends the waiting, not the run");
-    run_command->footer("Examples:\n  evoctl run 100 --wait && evoctl history --csv > fitness.csv\n"
-                        "  evoctl run --world lesson");
-    run_command->callback([&, generations, run_wait] {
-        selected = [&, generations, run_wait] { run(common, *generations, *run_wait); };
-    });
-
-    app.add_subcommand("shutdown", "End the server, as SIGTERM does")->group("Worlds")->callback([&] {
-        selected = [&] { shut_down(common); };
-    });
-    app.add_subcommand("pause", "Stop a world where it is")->group(group)->callback([&] {
-        selected = [&] { pause(common); };
-    });
-    app.add_subcommand("resume", "Go on after a pause")->group(group)->callback([&] {
-        selected = [&] { resume(common); };
-    });
-
-    auto* step_command =
-        app.add_subcommand("step", "Run N ticks, then pause; returns when they are over")->group(group);
-    auto ticks = std::make_shared<std::uint64_t>(1);
-    auto no_wait = std::make_shared<bool>(false);
-    step_command->add_option("N", *ticks, "Ticks; without it 1")->check(at_least_one);
-    step_command->add_flag("--no-wait", *no_wait, "Return at once");
-    step_command->callback(
-        [&, ticks, no_wait] { selected = [&, ticks, no_wait] { step(common, *ticks, !*no_wait); }; });
-
-    auto* until_command =
-        app.add_subcommand("until", "Run until TICK ticks of the run are over, then pause")->group(group);
-    auto tick = std::make_shared<std::uint64_t>(0);
-    auto until_wait = std::make_shared<bool>(false);
-    until_command->add_option("TICK", *tick, "Ticks since the run began")->required()->check(whole_number);
-    until_command->add_flag("--wait", *until_wait, "Return when it is reached");
-    until_command->callback([&, tick, until_wait] {
-        selected = [&, tick, until_wait] {
-            Caller caller{common};
-            stand(common, caller);
-            until(common, caller, *tick, *until_wait);
-        };
-    });
-
-    auto* speed_command = app.add_subcommand("speed", "How fast a world goes")->group(group);
-    auto word = std::make_shared<std::string>();
-    speed_command->add_option("SPEED", *word, "Simulated seconds per second, 0.001 to 10000, or max")->required();
-    speed_command->footer("Examples:\n  evoctl speed 2\n  evoctl speed max");
-    speed_command->callback([&, word] { selected = [&, word] { set_speed(common, *word); }; });
+    auto& speed_command = app.add_command("speed", "How fast a world goes").group(group);
+    auto& word = speed_command.keep(std::string{});
+    speed_command.add_option("SPEED", &word, "Simulated seconds per second, 0.001 to 10000, or max").required();
+    speed_command.footer("Examples:\n  evoctl speed 2\n  evoctl speed max");
+    speed_command.action([&] { set_speed(common, word); });
 }
 
 } // namespace evod::ctl

@@ -2,13 +2,11 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/top.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <algorithm>
 #include <chrono>
 #include <iostream>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -122,18 +120,18 @@ class Top {
 
 } // namespace
 
-void add_top_command(CLI::App& app, const Common& common, Selected& selected) {
-    auto* top = app.add_subcommand("top", "What the server counts and measures: ticks, clients, bytes, disk, memory")
-                    ->group("Follow");
-    auto options = std::make_shared<Options>();
-    top->add_option("--interval", options->interval_s, "Seconds between two looks")
-        ->check(link::RealNumber{0.1, 3600})
-        ->capture_default_str();
-    top->add_flag("--once", options->once, "Look twice, print that as one page, and end");
-    top->footer("Rates are those since the look before. With --json every look is a line; with --once as well, the\n"
-                "first look is printed at once.\n\n"
-                "Examples:\n  evoctl top\n  evoctl top --once\n  evoctl --json top --interval 60 >> metrics.jsonl");
-    top->callback([&, options] { selected = [&, options] { Top{common, *options}.run(); }; });
+void add_top_command(command_line::Command& app, const Common& common) {
+    auto& top = app.add_command("top", "What the server counts and measures: ticks, clients, bytes, disk, memory")
+                    .group("Follow");
+    auto& options = top.keep(Options{});
+    top.add_option("--interval", &options.interval_s, "Seconds between two looks")
+        .check(command_line::RealNumber{0.1, 3600})
+        .show_default();
+    top.add_flag("--once", &options.once, "Look twice, print that as one page, and end");
+    top.footer("Rates are those since the look before. With --json every look is a line; with --once as well, the\n"
+               "first look is printed at once.\n\n"
+               "Examples:\n  evoctl top\n  evoctl top --once\n  evoctl --json top --interval 60 >> metrics.jsonl");
+    top.action([&] { Top{common, options}.run(); });
 }
 
 } // namespace evod::ctl

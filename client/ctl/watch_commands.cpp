@@ -2,14 +2,12 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <deque>
 #include <iostream>
-#include <memory>
 #include <optional>
 
 namespace evod::ctl {
@@ -360,20 +358,19 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
 
 } // namespace
 
-void add_watch_commands(CLI::App& app, const Common& common, Selected& selected) {
+void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
-    auto* watch = app.add_subcommand("watch", "Live statistics; a line per generation when piped")->group(group);
-    auto generations = std::make_shared<std::optional<std::uint64_t>>();
-    watch->add_option("--generations", *generations, "End after so many; without it Ctrl-C ends")->check(at_least_one);
-    watch->footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
-    watch->callback([&, generations] { selected = [&, generations] { Watch{common, *generations}.run(); }; });
+    auto& watch = app.add_command("watch", "Live statistics; a line per generation when piped").group(group);
+    auto& generations = watch.keep(std::optional<std::uint64_t>{});
+    watch.add_option("--generations", &generations, "End after so many; without it Ctrl-C ends").check(at_least_one);
+    watch.footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
+    watch.action([&] { Watch{common, generations}.run(); });
 
-    auto* events =
-        app.add_subcommand("events", "Everything that happens, a line each, of one world or all")->group(group);
-    auto count = std::make_shared<std::optional<std::uint64_t>>();
-    events->add_option("--count", *count, "End after so many; without it Ctrl-C ends")->check(at_least_one);
-    events->footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
-    events->callback([&, count] { selected = [&, count] { follow_events(common, *count); }; });
+    auto& events = app.add_command("events", "Everything that happens, a line each, of one world or all").group(group);
+    auto& count = events.keep(std::optional<std::uint64_t>{});
+    events.add_option("--count", &count, "End after so many; without it Ctrl-C ends").check(at_least_one);
+    events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
+    events.action([&] { follow_events(common, count); });
 }
 
 } // namespace evod::ctl

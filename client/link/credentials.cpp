@@ -1,5 +1,7 @@
 #include "client/link/credentials.h"
 
+#include "proto/command_line/command.h"
+
 #include <sys/stat.h>
 
 #include <cerrno>
@@ -8,6 +10,18 @@
 #include <fstream>
 
 namespace evod::link {
+
+void add_options(command_line::Command& app, Credentials& credentials) {
+    app.add_option("--token-file", &credentials.token_file,
+                   "File with the token to come in with; without it the environment's EVOD_TOKEN");
+    app.add_option("--ca", &credentials.files.ca,
+                   "TLS; PEM file of who vouches for the server: its own evod.crt, perhaps")
+        .environment("EVOD_CA");
+    app.add_flag("--tls", &credentials.tls, "TLS with a server whose certificate this system trusts");
+    app.add_option("--cert", &credentials.files.certificate,
+                   "PEM file of a certificate of ours, if the server wants one");
+    app.add_option("--key", &credentials.files.key, "PEM file with its key, if that is not in the same file");
+}
 
 Result<void> apply(const Credentials& credentials, Options& options) {
     if (!credentials.files.key.empty() && credentials.files.certificate.empty()) {

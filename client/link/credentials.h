@@ -6,6 +6,10 @@
 
 #include <string>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::link {
 
 struct Credentials {
@@ -14,19 +18,8 @@ struct Credentials {
     Options::Tls files;
 };
 
-/// The options of a command line, of CLI11.
-template <class App>
-void add_options(App& app, Credentials& credentials) {
-    app.add_option("--token-file", credentials.token_file,
-                   "File with the token to come in with; without it the environment's EVOD_TOKEN");
-    app.add_option("--ca", credentials.files.ca,
-                   "TLS; PEM file of who vouches for the server: its own evod.crt, perhaps")
-        ->envname("EVOD_CA");
-    app.add_flag("--tls", credentials.tls, "TLS with a server whose certificate this system trusts");
-    app.add_option("--cert", credentials.files.certificate,
-                   "PEM file of a certificate of ours, if the server wants one");
-    app.add_option("--key", credentials.files.key, "PEM file with its key, if that is not in the same file");
-}
+/// Adds --token-file, --ca, --tls, --cert and --key.
+void add_options(command_line::Command& app, Credentials& credentials);
 
 /// Fills in the token and TLS. Refused where the token file cannot be read, or others can read it.
 Result<void> apply(const Credentials& credentials, Options& options);

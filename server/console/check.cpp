@@ -1,5 +1,6 @@
 #include "server/console/check.h"
 
+#include "proto/command_line/command.h"
 #include "server/console/experiment_file.h"
 
 #include <iostream>
@@ -22,6 +23,13 @@ int check(const std::string& path) {
     else
         std::cout << "\nParameters that differ from their defaults:\n" << changes;
     return 0;
+}
+
+void add_check_command(command_line::Command& app) {
+    auto& command = app.add_command("check", "Say what an experiment file changes, or what is wrong with it");
+    auto& path = command.keep(std::string{});
+    command.add_option("experiment", &path, "JSON file").required();
+    command.action([&] { return check(path); });
 }
 
 } // namespace evod::console

@@ -3,9 +3,15 @@
 
 #include <string>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 /// Prints what the file changes from the defaults, or what is wrong with it. Returns the exit status: 0, or 1 if wrong.
 int check(const std::string& path);
+
+void add_check_command(command_line::Command& app);
 
 } // namespace evod::console

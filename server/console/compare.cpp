@@ -1,5 +1,7 @@
 #include "server/console/compare.h"
 
+#include "proto/command_line/command.h"
+#include "server/console/common_options.h"
 #include "server/console/comparison.h"
 #include "server/console/controls.h"
 #include "server/console/curves_picture.h"
@@ -304,6 +306,38 @@ int compare(const CompareOptions& options) {
         written &=
             write_file("--picture", options.picture, [&](std::ostream& out) { out << picture_of(*plan, *courses); });
     return written ? 0 : RunError;
+}
+
+void add_compare_command(command_line::Command& app, std::size_t jobs, base::Seed drawn_seed) {
+    auto& command = app.add_command(
+        "compare", "Did evolution do it? A world beside its controls, or beside other worlds, with the same seeds");
+    auto& options = command.keep(CompareOptions{});
+    options.drawn_seed = drawn_seed;
+    options.jobs = jobs;
+    command
+        .add_option("experiments", &options.experiments,
+                    "JSON files: one with --controls, without it the default world; or the first against each other")
+        .count(0, compared_max);
+    command.add_flag("--controls", &options.controls,
+                     "Beside random selection, mutation off, harmless poison and shuffled fitness");
+    command.add_option("--replicates", &options.replicates, "Runs of each world, a seed each")
+        .range(2, 10'000)
+        .show_default();
+    command
+        .add_option("--generations", &options.generations,
+                    "Of each run; otherwise the first file's generation_limit, or " +
+                        std::to_string(default_generations) + ". No other criterion ends a run")
+        .range(2, 1'000'000);
+    command.add_option("--seed", &options.seed, "That the seeds follow from; otherwise the file's, or by chance")
+        .check(any_number);
+    command.add_option("--jobs", &options.jobs, "Runs at a time; nothing that is told depends on it")
+        .range(1, 1024)
+        .show_default();
+    command.add_option("--set", &options.changes, "name=value of a parameter, for all of them");
+    command.add_option("--csv", &options.csv, "File for the fitness of every run and generation");
+    command.add_option("--picture", &options.picture, "File for the curves, as SVG");
+    command.footer("Exit status: 0 compared, 130 interrupted, 1 error.");
+    command.action([&] { return compare(options); });
 }
 
 } // namespace evod::console

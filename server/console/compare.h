@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 struct CompareOptions {
@@ -31,5 +35,7 @@ constexpr int compared_max = 12;
 /// What they come to, to stdout; progress and errors to stderr. Exit status 0, 1 (error) or 130 (SIGINT or SIGTERM:
 /// then nothing is told or written).
 int compare(const CompareOptions& options);
+
+void add_compare_command(command_line::Command& app, std::size_t jobs, base::Seed drawn_seed);
 
 } // namespace evod::console

@@ -1,6 +1,8 @@
 #include "server/console/export.h"
 
+#include "proto/command_line/command.h"
 #include "server/console/bundle.h"
+#include "server/console/common_options.h"
 #include "server/runtime/worker_pool.h"
 #include "server/tables/run_tables.h"
 
@@ -135,6 +137,37 @@ int export_run(const ExportOptions& options) {
         return 1;
     }
     return 0;
+}
+
+void add_export_command(command_line::Command& app, std::size_t threads) {
+    auto& command = app.add_command("export", "Write what a run file holds as rows for other programs");
+    auto& options = command.keep(ExportOptions{});
+    options.threads = threads;
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    const auto what =
+        command
+            .add_option(
+                "--what", &options.what,
+                "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                "whom; population: the genes of one generation, for --population; events: the commands")
+            .choices({"generations", "organisms", "lineage", "population", "events"});
+    command.add_option("--of", &options.of,
+                       "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
+    command.add_option("--generation", &options.generation, "Of the population; otherwise the last that has begun")
+        .check(generation_number);
+    command.add_option("--format", &options.format, "csv, or jsonl: an object of JSON a line")
+        .choices({"csv", "jsonl"})
+        .show_default();
+    const auto output = command.add_option("--output", &options.output, "File; without it, standard output");
+    command.add_option("--threads", &options.threads, "Threads that simulate again what is not held any more")
+        .check(thread_count)
+        .show_default();
+    command
+        .add_option("--bundle", &options.bundle,
+                    "Folder to make, with a copy of the run file, all tables, checksums and how to repeat the run")
+        .excludes(what)
+        .excludes(output);
+    command.action([&] { return export_run(options); });
 }
 
 } // namespace evod::console

@@ -6,6 +6,10 @@
 #include <optional>
 #include <string>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 struct ExportOptions {
@@ -22,5 +26,7 @@ struct ExportOptions {
 /// Returns the exit status: 0, or 1 with a sentence on stderr if the file cannot be read or is damaged, or the output
 /// cannot be written; what was written until then stays.
 int export_run(const ExportOptions& options);
+
+void add_export_command(command_line::Command& app, std::size_t threads);
 
 } // namespace evod::console

@@ -1,6 +1,8 @@
 #include "server/console/fork.h"
 
+#include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
+#include "server/console/common_options.h"
 #include "server/simulation/world_name.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/fork.h"
@@ -40,6 +42,26 @@ int fork(const ForkOptions& options) {
               << "generation " << moment->generation << " of " << options.run_file << "; a server with --data "
               << options.data_folder << " finds it, and lets it wait\n";
     return 0;
+}
+
+void add_fork_command(command_line::Command& app, std::function<simulation::RunId()> draw_run_id) {
+    auto& command =
+        app.add_command("fork", "Make a second world from a past generation of a run file, or from where it ends");
+    auto& options = command.keep(ForkOptions{});
+    command.add_option("run", &options.run_file, "Run file, of a server that runs or not").required();
+    command
+        .add_option("--at-generation", &options.at_generation,
+                    "Begins with its first tick; otherwise with the last moment of the file")
+        .check(generation_number);
+    command.add_option("--name", &options.name, "Of the new world").required();
+    command.add_option("--data", &options.data_folder,
+                       "Folder to make it in, which no server may be using; otherwise where a server keeps its runs");
+    command.footer(
+        "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
+    command.action([&options, draw_run_id = std::move(draw_run_id)] {
+        options.run_id = draw_run_id();
+        return find_data_folder(options.data_folder) ? fork(options) : 1;
+    });
 }
 
 } // namespace evod::console

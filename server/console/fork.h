@@ -4,8 +4,13 @@
 #include "server/simulation/commands.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+
+namespace evod::command_line {
+class Command;
+}
 
 namespace evod::console {
 
@@ -19,5 +24,7 @@ struct ForkOptions {
 
 /// Says what it made, or why not; returns the exit status.
 int fork(const ForkOptions& options);
+
+void add_fork_command(command_line::Command& app, std::function<simulation::RunId()> draw_run_id);
 
 } // namespace evod::console

@@ -1,6 +1,9 @@
 #include "server/console/parameter_list.h"
 
+#include "proto/command_line/command.h"
 #include "server/simulation/parameters.h"
+
+#include <iostream>
 
 namespace evod::console {
 namespace {
@@ -17,8 +20,7 @@ const char* effect_text(base::Effect effect) {
     return "";
 }
 
-} // namespace
-
+/// Markdown, one row a parameter.
 std::string parameter_list() {
     std::string text =
         "# Parameters\n\n"
@@ -36,6 +38,14 @@ std::string parameter_list() {
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
                 effect_text(description.effect) + " | " + std::string{description.help} + " |\n";
     return text;
+}
+
+} // namespace
+
+void add_parameters_command(command_line::Command& app) {
+    app.add_command("parameters", "Print every parameter, as docs/PARAMETERS.md has it").action([] {
+        std::cout << parameter_list();
+    });
 }
 
 } // namespace evod::console

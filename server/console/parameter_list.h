@@ -1,11 +1,12 @@
-// The registry of parameters as a table: docs/PARAMETERS.md is what this prints.
+// `evod parameters`: the registry of parameters as a table; docs/PARAMETERS.md is what it prints.
 #pragma once
 
-#include <string>
+namespace evod::command_line {
+class Command;
+}
 
 namespace evod::console {
 
-/// Markdown, one row a parameter.
-std::string parameter_list();
+void add_parameters_command(command_line::Command& app);
 
 } // namespace evod::console

@@ -1,5 +1,7 @@
 #include "server/console/run.h"
 
+#include "proto/command_line/command.h"
+#include "server/console/common_options.h"
 #include "server/console/experiment_file.h"
 #include "server/console/interrupt.h"
 #include "server/console/interview.h"
@@ -174,6 +176,27 @@ int run(const RunOptions& options) {
     const int status = status_of(world.outcome());
     print_summary(world, cost);
     return status;
+}
+
+void add_run_command(command_line::Command& app, std::size_t threads, base::Seed drawn_seed) {
+    auto& command = app.add_command("run", "Run an experiment without a network");
+    auto& options = command.keep(RunOptions{});
+    options.drawn_seed = drawn_seed;
+    options.threads = threads;
+    command.add_option("experiment", &options.experiment, "JSON file; without one, the default world");
+    command.add_option("--seed", &options.seed, "Otherwise the file's, or one drawn by chance").check(any_number);
+    command.add_option("--population", &options.population,
+                       "CSV file of `evod export --what population`: begin with these organisms instead of drawn ones");
+    command
+        .add_option("--generations", &options.generations,
+                    "How many; takes the place of generation_limit, 0 is no limit")
+        .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
+    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.add_option("--set", &options.changes, "name=value of a parameter; see evod parameters");
+    command.add_option("--csv", &options.csv, "File for the statistics of every generation");
+    command.add_flag("--ask", &options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
+    command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error.");
+    command.action([&] { return run(options); });
 }
 
 } // namespace evod::console

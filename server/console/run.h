@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 struct RunOptions {
@@ -33,5 +37,7 @@ enum RunStatus : int {
 
 /// Runs until a termination criterion holds or a signal comes; statistics to stdout, progress and errors to stderr.
 int run(const RunOptions& options);
+
+void add_run_command(command_line::Command& app, std::size_t threads, base::Seed drawn_seed);
 
 } // namespace evod::console

@@ -1,6 +1,8 @@
 #include "server/console/sweep.h"
 
+#include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
+#include "server/console/common_options.h"
 #include "server/console/interrupt.h"
 #include "server/console/new_file.h"
 #include "server/console/progress_line.h"
@@ -359,6 +361,42 @@ int sweep(const SweepOptions& options) {
         return *status;
     std::cerr << "evod sweep: " << to_text(status.error()) << '\n';
     return SweepError;
+}
+
+void add_sweep_command(command_line::Command& app, std::size_t jobs, std::function<simulation::RunId()> draw_run_id) {
+    auto& command = app.add_command("sweep", "Run an experiment many times, with other parameters and seeds");
+    auto& options = command.keep(SweepOptions{});
+    options.jobs = jobs;
+    options.draw_run_id = std::move(draw_run_id);
+    command
+        .add_option("sweep", &options.file,
+                    "JSON file: an experiment, and a grid, a list or a Latin hypercube of parameters")
+        .required();
+    command.add_option("--out", &options.out,
+                       "Folder for the results, which the same command goes on with; otherwise called like the file, "
+                       "without its ending");
+    const auto with_jobs =
+        command.add_option("--jobs", &options.jobs, "Runs at a time, each on one thread").range(1, 1024).show_default();
+    const auto with_run_files =
+        command.add_flag("--run-files", &options.run_files, "Make a run file of each run, too: FOLDER/run-files");
+    const auto with_array_index = command
+                                      .add_option("--array-index", &options.array_index,
+                                                  "Make the runs of this cell alone, counted from 0: one task of a "
+                                                  "job array; then, once: --gather")
+                                      .check(any_number);
+    const auto with_gather =
+        command.add_flag("--gather", &options.gather, "Run nothing: write FOLDER/runs.csv, or say what is missing")
+            .excludes(with_jobs)
+            .excludes(with_run_files)
+            .excludes(with_array_index);
+    command.add_flag("--dry-run", &options.dry_run, "Write nothing: print cells and seeds")
+        .excludes(with_gather)
+        .excludes(with_jobs)
+        .excludes(with_run_files)
+        .excludes(with_array_index);
+    command.footer("Sweep files and job arrays: docs/CLUSTER.md. Exit status: 0 all is there, 1 error, or --gather "
+                   "found runs missing, 130 interrupted: the same command goes on.");
+    command.action([&] { return sweep(options); });
 }
 
 } // namespace evod::console

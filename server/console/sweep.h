@@ -8,6 +8,10 @@
 #include <optional>
 #include <string>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 struct SweepOptions {
@@ -30,5 +34,7 @@ enum SweepStatus : int {
 
 /// What is done to stdout, progress and errors to stderr.
 int sweep(const SweepOptions& options);
+
+void add_sweep_command(command_line::Command& app, std::size_t jobs, std::function<simulation::RunId()> draw_run_id);
 
 } // namespace evod::console

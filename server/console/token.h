@@ -5,6 +5,10 @@
 
 #include <string>
 
+namespace evod::command_line {
+class Command;
+}
+
 namespace evod::console {
 
 // Each returns the exit status: 0, or 1 with a sentence on stderr. folder: that of the token file.
@@ -13,5 +17,7 @@ namespace evod::console {
 int add_token(const std::string& folder, const std::string& name, access::Role role);
 int list_tokens(const std::string& folder);
 int revoke_token(const std::string& folder, const std::string& name);
+
+void add_token_command(command_line::Command& app);
 
 } // namespace evod::console

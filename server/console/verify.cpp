@@ -1,5 +1,7 @@
 #include "server/console/verify.h"
 
+#include "proto/command_line/command.h"
+#include "server/console/common_options.h"
 #include "server/console/progress_line.h"
 #include "server/runtime/worker_pool.h"
 #include "server/storage/verify.h"
@@ -82,6 +84,16 @@ int verify(const VerifyOptions& options) {
                 static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
                 static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
     return 0;
+}
+
+void add_verify_command(command_line::Command& app, std::size_t threads) {
+    auto& command = app.add_command("verify", "Simulate the run of a run file again and compare everything");
+    auto& options = command.keep(VerifyOptions{});
+    options.threads = threads;
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
+    command.action([&] { return verify(options); });
 }
 
 } // namespace evod::console

@@ -9,7 +9,7 @@ namespace evod::evolution {
 namespace {
 
 constexpr std::size_t organisms_per_block = 8192;
-constexpr std::uint32_t prefetched_ahead = 16;
+constexpr std::uint32_t parents_prefetched = 16;
 
 /// A number for each gene, two in a vector: compilers left to themselves take them one by one, at twice the cost.
 class Numbers {
@@ -111,9 +111,9 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
     // The descendants; their parents, each as often as it has descendants; and by how much the ones differ from the
     // others.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
-        if (i + prefetched_ahead < parents.size()) {
-            prefetch(bred_from, parents[i + prefetched_ahead].first);
-            prefetch(bred_from, parents[i + prefetched_ahead].second);
+        if (i + parents_prefetched < parents.size()) {
+            prefetch(bred_from, parents[i + parents_prefetched].first);
+            prefetch(bred_from, parents[i + parents_prefetched].second);
         }
         const Numbers z{column(born, i)};
         const Numbers of_parents =

@@ -1,11 +1,10 @@
 #include "server/network/http.h"
 
 #include "server/network/limits.h"
+#include "server/network/no_throw.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
@@ -28,7 +27,6 @@ using asio::ip::tcp;
 
 namespace {
 
-constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 using Parser = http::request_parser<http::empty_body>;
 
 bool is_too_long(boost::system::error_code error) {

@@ -1,9 +1,8 @@
 #include "server/network/line.h"
 
 #include "server/base/assert.h"
+#include "server/network/no_throw.h"
 
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 
 #include <linux/sockios.h>
@@ -19,7 +18,6 @@
 namespace evod::network {
 namespace {
 
-constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 constexpr unsigned char tls_handshake = 22; // the type of TLS's first record, RFC 8446 §5.1
 
 } // namespace

@@ -2,11 +2,10 @@
 
 #include "server/log/log.h"
 #include "server/network/limits.h"
+#include "server/network/no_throw.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include <sys/resource.h>
 
@@ -71,7 +70,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
     asio::steady_timer pause{acceptor_.get_executor()};
     bool told = false;
     while (acceptor_.is_open()) {
-        auto [error, socket] = co_await acceptor_.async_accept(asio::as_tuple(asio::use_awaitable));
+        auto [error, socket] = co_await acceptor_.async_accept(no_throw);
         if (!error && is_among_the_last(socket.native_handle())) {
             boost::system::error_code ignored; // closed is closed
             socket.close(ignored);
@@ -89,7 +88,7 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
                                     " file descriptors is free: allow evod more (ulimit -n, or systemd's LimitNOFILE)"
                               : "");
             pause.expires_after(accept_pause);
-            co_await pause.async_wait(asio::as_tuple(asio::use_awaitable));
+            co_await pause.async_wait(no_throw);
         }
     }
 }

@@ -1,8 +1,8 @@
 #include "server/network/pulse.h"
 
-#include <boost/asio/as_tuple.hpp>
+#include "server/network/no_throw.h"
+
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/use_awaitable.hpp>
 
 #include <utility>
 
@@ -19,7 +19,7 @@ asio::awaitable<bool> Pulse::beats(std::chrono::milliseconds patience) {
     if (!std::exchange(asked_, true))
         mailbox_.push(
             runtime::QueryMail{[this](const simulation::Laboratory&) { outbox_.answer([this] { answered(); }); }});
-    const auto [cancelled] = co_await timer.async_wait(asio::as_tuple(asio::use_awaitable));
+    const auto [cancelled] = co_await timer.async_wait(no_throw);
     waiting_.erase(&timer);
     co_return cancelled && !stopped_;
 }

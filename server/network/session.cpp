@@ -1,14 +1,13 @@
 #include "server/network/session.h"
 
 #include "server/log/log.h"
+#include "server/network/no_throw.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <google/protobuf/wire_format_lite.h>
 
 #include <netinet/tcp.h>
@@ -22,7 +21,6 @@
 namespace evod::network {
 namespace {
 
-constexpr auto no_throw = asio::as_tuple(asio::use_awaitable);
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::size_t batch_frames_max = 64;
 // Many parts of a picture, or a few that are short, are put together before they are handed to the system.

@@ -233,9 +233,9 @@ void World::turn_over(base::Executor& executor) {
     const auto key_of = [&](std::size_t island) -> evolution::BreedingKey {
         return {.seed = seed_, .island = static_cast<std::uint32_t>(island), .generation = moment_.generation};
     };
-    if (p.shuffle_fitness)
-        for (std::size_t i = 0; i < islands_.size(); ++i)
-            evolution::shuffle_fitness(fitness_[i], key_of(i), executor);
+    evolution::apply_shuffle(
+        p, islands_.size(), [&](std::size_t island) -> std::span<double> { return fitness_[island]; }, seed_,
+        moment_.generation, executor);
 
     std::vector<evolution::GeneMatrix> migrated;
     const std::vector<const evolution::GeneMatrix*> genes = parents(migrated);

@@ -23,6 +23,7 @@ Other blocks are not run. Comments before a block, which nobody sees who reads t
 import collections
 import contextlib
 import dataclasses
+import math
 import os
 import pathlib
 import re
@@ -33,7 +34,10 @@ import sys
 import tempfile
 import time
 
-SKIPPED, PATIENCE_S = 77, 180
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "system"))
+import namespaces  # noqa: E402
+import waiting  # noqa: E402
+
 LANGUAGES = {"sh", "python", "sql", "text"}
 VERSION = r"(?<=evod )\d+\.\d+\.\d+"
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -148,15 +152,11 @@ class Reader:
         self.before = self.in_background()
         self.bash.stdin.write(f"{how} >{said} 2>&1 </dev/null; echo $? >{ended}.part; set +e; mv {ended}.part {ended}\n")
         self.bash.stdin.flush()
-        until = time.monotonic() + PATIENCE_S
-        while not ended.exists() and self.bash.poll() is None and time.monotonic() < until:
-            time.sleep(0.005)
-        if ended.exists():
-            got = int(ended.read_text())
-        elif self.bash.poll() is not None:
-            got = self.bash.returncode
-        else:
-            raise Wrong(f"did not end within {PATIENCE_S} s; it said\n{said.read_text(errors='replace')}")
+        try:
+            waiting.until(lambda: ended.exists() or self.bash.poll() is not None, "the end of the block", longest_s=math.inf)
+        except AssertionError as wrong:
+            raise Wrong(f"{wrong}; it said\n{said.read_text(errors='replace')}") from None
+        got = int(ended.read_text()) if ended.exists() else self.bash.returncode
         if got != status:
             raise Wrong(f"ended with status {got}, not {status}; it said\n{said.read_text(errors='replace')}")
         return said
@@ -165,15 +165,18 @@ class Reader:
 def compare(block, said, more_may_come):
     """Waits until the output is what the document shows: what runs in the background may be slower than who started it."""
     expected = pattern(block.text, block.marks.get("varies"))
-    until = time.monotonic() + PATIENCE_S
-    while True:
-        final = not more_may_come() or time.monotonic() > until
+    matched, text = None, ""
+
+    def settled():
+        nonlocal matched, text
+        final = not more_may_come()
         text = said.read_text(errors="replace")
-        if expected.fullmatch(text):
-            return
-        if final:
-            raise Wrong(f"shown is\n{block.text}\nsaid was\n{text}")
-        time.sleep(0.02)
+        matched = expected.fullmatch(text)
+        return matched or final
+    with contextlib.suppress(AssertionError):
+        waiting.until(settled, "the output", pause_s=0.02)
+    if not matched:
+        raise Wrong(f"shown is\n{block.text}\nsaid was\n{text}")
 
 
 def read(path, reader, verbose):
@@ -205,12 +208,8 @@ def read(path, reader, verbose):
 
 
 def main():
-    if "NETWORK" not in os.environ:
-        unshare = ["unshare", "--user", "--map-root-user", "--net", "--mount"]
-        if not shutil.which("ip") or subprocess.run([*unshare, "true"], capture_output=True).returncode != 0:
-            print("skipped: no network of its own may be made here, or there is no ip (Debian's package iproute2)")
-            sys.exit(SKIPPED)
-        os.execvpe(unshare[0], [*unshare, sys.executable, *sys.argv], {**os.environ, "NETWORK": "own"})
+    namespaces.enter(["--net", "--mount"], ["ip", "link", "set", "lo", "up"],
+                     "no network of its own may be made here, or there is no ip (Debian's package iproute2)")
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
     path = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:

@@ -31,7 +31,7 @@ class Retries(unittest.TestCase):
         relay.port = self.server.port
 
     def connect(self, relay, **options):
-        lab = evod.connect(relay.address, timeout_s=60, **options)
+        lab = evod.connect(relay.address, timeout_s=600, **options)
         self.addCleanup(lab.close)
         self.addCleanup(relay.close)
         return lab
@@ -150,8 +150,9 @@ class Retries(unittest.TestCase):
 
     def test_a_server_that_stays_away_is_told_of(self):
         relay = Relay(self.server.port)
-        lab = evod.connect(relay.address, timeout_s=0.5)
+        lab = evod.connect(relay.address)
         self.addCleanup(lab.close)
+        lab._link.timeout_s = 0.5
         relay.close()
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1"):
             lab.worlds()

@@ -6,19 +6,13 @@ import socket
 import subprocess
 import tempfile
 import threading
-import time
+
+import waiting
+from evod import reach
+from waiting import until
 
 PROGRAM = os.environ["EVOD"]
-PATIENCE_S = 60
-
-
-def until(condition, what):
-    end = time.monotonic() + PATIENCE_S
-    while time.monotonic() < end:
-        if value := condition():
-            return value
-        time.sleep(0.002)
-    raise AssertionError(f"did not happen within {PATIENCE_S} s: {what}")
+reach.CONNECT_TIMEOUT_S = 600.0  # as the machine may stand still
 
 
 class Server:
@@ -37,12 +31,12 @@ class Server:
 
     def kill(self):
         self.process.kill()
-        self.process.wait(PATIENCE_S)
+        waiting.ended(self.process)
         self.log.close()
 
     def end(self):
         self.process.send_signal(signal.SIGTERM)
-        assert self.process.wait(PATIENCE_S) == 0, self.output()
+        assert waiting.ended(self.process) == 0, self.output()
         self.log.close()
 
 

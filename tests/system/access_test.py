@@ -13,6 +13,7 @@ import time
 import unittest
 
 import past_test as past
+import waiting
 from past_test import EVOD, EVOCTL, c, plain
 
 from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
@@ -36,7 +37,7 @@ NAMES = {VIEWER: "viewer", CONTROLLER: "controller", ADMIN: "admin"}
 
 
 def token_command(*words, data, status=0):
-    done = subprocess.run([EVOD, "token", *words, "--data", data], capture_output=True, text=True)
+    done = waiting.run([EVOD, "token", *words, "--data", data], capture_output=True, text=True)
     assert done.returncode == status, done
     return done.stdout if status == 0 else done.stderr
 
@@ -45,8 +46,7 @@ class Client(past.Client):
     """token: sent in the hello. come_from: an address of this machine. tls: a context, instead of in the clear."""
 
     def __init__(self, server, token="", come_from="127.0.0.1", tls=None, host="localhost"):
-        over = socket.create_connection(("127.0.0.1", server.port), source_address=(come_from, 0))
-        over.settimeout(plain.patience_s)
+        over = self.connected(server, come_from)
         if tls:
             over = tls.wrap_socket(over, server_hostname=host)
         super().__init__(server, hello=False, over=over)
@@ -76,8 +76,8 @@ class Access(past.Case):
         return client
 
     def evoctl(self, *words, server, status=0, environment=None, **options):
-        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", *words], capture_output=True, text=True,
-                              env={**os.environ, **(environment or {})}, **options)
+        done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, *words],
+                           capture_output=True, text=True, env={**os.environ, **(environment or {})}, **options)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout + done.stderr
 
@@ -104,7 +104,7 @@ class Roles(Access):
                     self.assertIn(f"needs the role {NAMES[LEAST[request]]}", status.message)
         admin = self.come(server, self.secrets["admin"])
         admin.call(shut_down=c.ShutDown())
-        self.assertEqual(server.process.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(server.process), 0)
 
     def test_a_viewer_changes_nothing(self):
         secret = self.token("anna", VIEWER)
@@ -154,8 +154,7 @@ class Tokens(Access):
         self.assertEqual(self.come(server, "evod_nonsense").refusal.code, UNAUTHENTICATED)
 
     def test_elsewhere_it_is_refused_without_tokens_and_says_what_to_do(self):
-        done = subprocess.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True,
-                              text=True, timeout=plain.patience_s)
+        done = waiting.run([EVOD, "--bind", "0.0.0.0", "--port", "0", "--data", self.folder], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"evod token add NAME --role admin --data {self.folder}", done.stderr)
 
@@ -171,10 +170,14 @@ class Tokens(Access):
     def test_failed_logins_make_their_address_wait_and_no_other(self):
         secret = self.token("anna", VIEWER)
         server = self.serve("--require-token")
-        self.assertEqual(self.come(server, "wrong", come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
-        waits = self.come(server, secret, come_from="127.0.0.2").refusal
-        self.assertEqual(waits.code, RESOURCE_EXHAUSTED)
-        self.assertRegex(waits.message, r"try again in \d+ s")
+
+        def fail(_):
+            self.assertEqual(self.come(server, "wrong", come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
+            waits = self.come(server, secret, come_from="127.0.0.2").refusal
+            self.assertIsNotNone(waits, "the wait is over")
+            self.assertEqual(waits.code, RESOURCE_EXHAUSTED)
+            self.assertRegex(waits.message, r"try again in \d+ s")
+        waiting.quicker_than(0.5, fail)  # for which a first failure makes its address wait
         self.assertIsNotNone(self.come(server, secret).welcome)
 
         def let_in():
@@ -183,15 +186,22 @@ class Tokens(Access):
         plain.until(let_in, "the wait is over")
 
     def test_a_revoked_token_ends_its_sessions(self):
-        anna, karl = self.token("anna", VIEWER), self.token("karl", CONTROLLER)
+        karl = self.token("karl", CONTROLLER)
         server = self.serve("--require-token")
-        stays, goes = self.come(server, karl), self.come(server, anna)
-        token_command("revoke", "anna", data=self.folder)
-        revoked = time.monotonic()
-        message = goes.control()
-        self.assertEqual((message.response.request_id, message.response.status.code), (0, UNAUTHENTICATED))
-        goes.assert_closed()
-        self.assertLess(time.monotonic() - revoked, 2)
+        stays = self.come(server, karl)
+
+        def revoke(lap):
+            anna = self.token("anna", VIEWER)
+            goes = plain.until(lambda: (lambda came: came if came.welcome else None)(self.come(server, anna)), "admission")
+            token_command("revoke", "anna", data=self.folder)
+            lap()
+            revoked = time.monotonic()
+            message = goes.control()
+            self.assertEqual((message.response.request_id, message.response.status.code), (0, UNAUTHENTICATED))
+            goes.assert_closed()
+            self.assertLess(time.monotonic() - revoked, 2)
+            return anna
+        anna = waiting.quicker_than(2, revoke)
         stays.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.come(server, anna, come_from="127.0.0.2").refusal.code, UNAUTHENTICATED)
 
@@ -221,8 +231,7 @@ class Tokens(Access):
         for change, words in ((lambda: None, "chmod 600"),
                               (lambda: (path.chmod(0o600), path.write_text(path.read_text()[:-20])), "tokens is damaged: line 2")):
             change()
-            done = subprocess.run([EVOD, "--port", "0", "--data", self.folder], capture_output=True, text=True,
-                                  timeout=plain.patience_s)
+            done = waiting.run([EVOD, "--port", "0", "--data", self.folder], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.stderr)
 
@@ -281,7 +290,7 @@ class Tokens(Access):
                 shown += os.read(terminal, 1000)
             os.write(terminal, secret.encode() + b"\n")
             self.assertEqual(asking.stdout.read(), "default\n")
-            self.assertEqual(asking.wait(plain.patience_s), 0)
+            self.assertEqual(waiting.ended(asking), 0)
             self.assertNotIn(secret[5:].encode(), shown)
         os.close(terminal)
 
@@ -306,7 +315,7 @@ class Tls(Access):
     def pair(self, folder, *hosts):
         path = pathlib.Path(self.folder) / folder
         path.mkdir()
-        subprocess.run([EVOD, "certificate", *(hosts or ("localhost", "127.0.0.1")), "--folder", path], check=True)
+        waiting.run([EVOD, "certificate", *(hosts or ("localhost", "127.0.0.1")), "--folder", path], check=True)
         self.assertEqual(stat.S_IMODE((path / "evod.key").stat().st_mode), 0o600)
         return path
 
@@ -343,7 +352,7 @@ class Tls(Access):
         for one in (client, other):
             one.next_event("server_going_away")
             one.assert_closed()
-        self.assertEqual(server.process.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(server.process), 0)
 
     def test_older_tls_other_authorities_and_other_hosts_are_not_believed(self):
         server = self.serve(*self.files())
@@ -365,9 +374,8 @@ class Tls(Access):
         self.assertIn("speaks TLS only", self.come(server).refusal.message)
         self.assertIn("speaks TLS only", self.evoctl("worlds", server=server, status=3))
         with socket.create_connection(("127.0.0.1", server.port)) as silent:
-            silent.settimeout(plain.patience_s)
-            self.assertEqual(silent.recv(1), b"")  # nothing can be told before TLS has begun
-        self.assertIn("no hello came within 5 s", server.output())
+            self.assertEqual(waiting.receive(silent, 1), b"")  # nothing can be told before TLS has begun
+        plain.until(lambda: "no hello came within 5 s" in server.output(), "it is logged")
         self.assertNotIn("Operation canceled", server.output())
         for hello in (b"\x16", b"\x16\x03\x01\x00\x05nonsense", b"\x00" * 100):
             with socket.create_connection(("127.0.0.1", server.port)) as rude:
@@ -427,14 +435,14 @@ class Tls(Access):
                                (["--tls-cert", path / "evod.crt", "--tls-key", path / "gone"], "--tls-key: .*gone.*No such"),
                                (["--tls-cert", path / "evod.crt", "--tls-key", path / "none.pem"], "--tls-key: .*none.pem"),
                                (["--tls-cert", path / "evod.crt", "--tls-key", other / "evod.key"], "--tls-key: .*")):
-            done = subprocess.run([EVOD, "--port", "0", "--data", self.folder, *map(str, options)], capture_output=True,
-                                  text=True, timeout=plain.patience_s)
+            done = waiting.run([EVOD, "--port", "0", "--data", self.folder, *map(str, options)], capture_output=True,
+                               text=True)
             self.assertEqual(done.returncode, 1)
             self.assertTrue(re.search(words, done.stderr), done.stderr)
         (path / "evod.key").chmod(0o644)
-        done = subprocess.run([EVOD, "--port", "0", "--data", self.folder, *self.files()], capture_output=True, text=True)
+        done = waiting.run([EVOD, "--port", "0", "--data", self.folder, *self.files()], capture_output=True, text=True)
         self.assertIn("chmod 600", done.stderr)
-        again = subprocess.run([EVOD, "certificate", "localhost", "--folder", path], capture_output=True, text=True)
+        again = waiting.run([EVOD, "certificate", "localhost", "--folder", path], capture_output=True, text=True)
         self.assertEqual(again.returncode, 1)
         self.assertIn("is there already", again.stderr)
 

@@ -4,14 +4,31 @@ import pathlib
 import subprocess
 import sys
 
+import waiting
+
 
 class Attack:
+    """Also a context that ends with the attack."""
+
     def __init__(self, messages, port, kind, number):
         self.process = subprocess.Popen(
             [sys.executable, str(pathlib.Path(__file__).with_name("attacker.py")), messages, str(port), kind, str(number)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         assert self.process.stdout.readline() == "ready\n"
 
-    def end(self, patience_s=None):
-        """What became of it."""
-        return json.loads(self.process.communicate("enough\n", patience_s)[0])
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        waiting.communicate(self.process)
+
+    def counts(self):
+        """What has become of it so far."""
+        self.process.stdin.write("counts\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())
+
+    def end(self):
+        """Ends it. Returns what has become of it."""
+        return json.loads(waiting.communicate(self.process, "enough\n")[0])

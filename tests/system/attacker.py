@@ -2,8 +2,9 @@
 
     attacker.py MESSAGES PORT ATTACK NUMBER [SECONDS]
 
-Prints "ready" once all of it is under way, and ends when its standard input does, or after SECONDS; then it prints what
-became of it, as JSON. It never has more than NUMBER connections, and makes no more than 1,000 a second.
+Prints "ready" once all of it is under way. Answers the line "counts" on its standard input with what has become of it so
+far, as JSON, and prints that once more at its end, which comes with any other line, the end of the input, or after SECONDS.
+It never has more than NUMBER connections, and makes no more than 1,000 a second.
 
     idle N       N sessions that log in and say nothing more
     slow N       N connections that send a frame a byte at a time; those that are closed come again
@@ -19,6 +20,7 @@ became of it, as JSON. It never has more than NUMBER connections, and makes no m
     watch N      N viewers of the whole world w; pictures are read away
 """
 import json
+import os
 import random
 import select
 import socket
@@ -34,6 +36,7 @@ from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2  # noqa: E402
 begun = time.monotonic()
 counts = {"connected": 0, "closed": 0, "bytes": 0, "frames": 0}
 closed_after_s = []
+enough = False
 buffer = bytearray(1 << 20)
 
 
@@ -74,8 +77,20 @@ def connect(i, *sent, receive_bytes=None):
     return connection
 
 
+def print_counts():
+    print(json.dumps({**counts, "seconds": time.monotonic() - begun,
+                      "closed_after_s": [min(closed_after_s), max(closed_after_s)] if closed_after_s else []}), flush=True)
+
+
 def over():
-    return time.monotonic() - begun > seconds or bool(select.select([sys.stdin], [], [], 0)[0])
+    """Whether it has to end. Also answers "counts"."""
+    global enough
+    if select.select([0], [], [], 0)[0]:
+        if os.read(0, 100) == b"counts\n":
+            print_counts()
+        else:
+            enough = True
+    return enough or time.monotonic() - begun > seconds
 
 
 def take(connection):
@@ -115,17 +130,20 @@ def hold(make, reads=True, again=False, each_round=None, pause_s=0.2):
         connections[connection.fileno()] = connection
         poller.register(connection.fileno(), select.EPOLLRDHUP | select.EPOLLHUP | (select.EPOLLIN if reads else 0))
 
-    for _ in range(number):
-        add()
-    ready()
-    while not over():
-        for descriptor, event in poller.poll(pause_s):
+    def look(wait_s):
+        for descriptor, event in poller.poll(wait_s):
             gone = event & (select.EPOLLRDHUP | select.EPOLLHUP | select.EPOLLERR)
             if not gone and take(connections[descriptor]):
                 continue
             close(connections, poller, descriptor)
             if again:
                 add()
+
+    for _ in range(number):
+        add()
+    ready()
+    while not over():
+        look(pause_s)
         if each_round:
             for descriptor in [d for d, connection in connections.items() if not each_round(connection)]:
                 close(connections, poller, descriptor)
@@ -227,7 +245,9 @@ def pauses():
                 counts["bytes"] = 0
                 viewer = connect(0, hello, subscribing(), receive_bytes=4096)
         counts["paused"] = counts.get("paused", 0) + 1
-        select.select([sys.stdin], [], [], number)
+        reads_again = time.monotonic() + number
+        while not over() and time.monotonic() < reads_again:
+            select.select([0], [], [], max(0.0, reads_again - time.monotonic()))
 
 
 def view(i):
@@ -245,5 +265,4 @@ attacks = {"idle": lambda: hold(lambda i: connect(i, hello)),
            "views": lambda: hold(lambda i: connect(i, hello, subscribing(view(i)))),
            "watch": lambda: hold(lambda i: connect(i, hello, subscribing()))}
 attacks[attack]()
-print(json.dumps({**counts, "seconds": time.monotonic() - begun,
-                  "closed_after_s": [min(closed_after_s), max(closed_after_s)] if closed_after_s else []}))
+print_counts()

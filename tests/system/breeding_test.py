@@ -3,11 +3,11 @@ the programs, MESSAGES the folder of the message classes."""
 import csv
 import io
 import json
-import subprocess
 import sys
 import unittest
 
 import export_test
+import waiting
 from past_test import CREATE, EVOCTL, EVOD, c, plain, w
 
 NOT_FOUND, FAILED_PRECONDITION = 5, 9
@@ -117,8 +117,8 @@ class Breeding(export_test.Runs):
                                  sorted(contender.own_fitness for contender in bred.contenders))
             self.assertNotEqual([contender.fitness for contender in bred.contenders],
                                 [contender.own_fitness for contender in bred.contenders])
-        text = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", "breeding"],
-                              capture_output=True, text=True).stdout
+        text = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w", "breeding"],
+                           capture_output=True, text=True).stdout
         self.assertRegex(text, r"ORGANISM +OWN FITNESS +SHUFFLED +RANK")
         self.assertIn("shuffle_fitness=true", text)
         # Killed, it goes on as if nothing had been; a fork of its third generation goes the same way.
@@ -132,7 +132,7 @@ class Breeding(export_test.Runs):
         self.assertEqual(client.world("w").state_hash, client.world("f").state_hash)
         server.end()
         for name in "wf":
-            done = subprocess.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
+            done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
             self.assertIn("all agrees", done.stdout, done.stderr)
 
     def test_every_method_of_selection_tells_its_picks(self):
@@ -232,8 +232,8 @@ class Breeding(export_test.Runs):
         self.run_world(client, 3, selection="tournament")
 
         def evoctl(*words, status=0):
-            done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", *words],
-                                  capture_output=True, text=True)
+            done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w", *words],
+                               capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stdout + done.stderr)
             return done.stderr if status else done.stdout
 

@@ -10,6 +10,7 @@ import subprocess
 import unittest
 import xml.etree.ElementTree
 
+import waiting
 from console_test import EVOD, Folder, evod
 
 SMALL = ["--set", "generation_s=2", "--set", "population_size=12", "--set", "food_count=60"]
@@ -189,7 +190,7 @@ class Compare(Folder):
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertIn("1000 replicates", process.stdout.readline())
         process.send_signal(signal.SIGINT)
-        output, _ = process.communicate(timeout=60)
+        output, _ = waiting.communicate(process)
         self.assertEqual(process.returncode, 130)
         self.assertIn("interrupted: nothing is told of what was done", output)
         self.assertFalse(pathlib.Path(table).exists())

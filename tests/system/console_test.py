@@ -10,12 +10,14 @@ import subprocess
 import tempfile
 import unittest
 
+import waiting
+
 EVOD = os.environ["EVOD"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def evod(*arguments, stdin="", status=0):
-    done = subprocess.run([EVOD, *arguments], input=stdin, capture_output=True, text=True, timeout=100)
+    done = waiting.run([EVOD, *arguments], input=stdin, capture_output=True, text=True)
     assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
     return done
 
@@ -77,7 +79,7 @@ class Run(Folder):
             lines.append(process.stdout.readline())
             self.assertTrue(lines[-1], "ended by itself")
         process.send_signal(signal.SIGINT)
-        rest = process.communicate(timeout=60)[0]
+        rest = waiting.communicate(process)[0]
         self.assertEqual(process.returncode, 130)
         self.assertIn("ended: interrupted", rest)
         self.assertRegex(rest, "state [0-9a-f]{32}")
@@ -162,7 +164,7 @@ class Output(Folder):
         for words in ("parameters",), ("limits",), ("token", "list", "--data", self.folder.name), ("run", *Run.short, "--seed",
                                                                                                    "1", "--generations", "1"):
             with open("/dev/full", "w") as full:
-                done = subprocess.run([EVOD, *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=100)
+                done = waiting.run([EVOD, *words], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 1, words)
             self.assertIn("evod: standard output cannot be written", done.stderr)
 

@@ -13,8 +13,9 @@ import struct
 import subprocess
 import tempfile
 import termios
-import time
 import unittest
+
+import waiting
 
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
 
@@ -40,10 +41,10 @@ class WithServer(unittest.TestCase):
         self.server.terminate()
         self.server.stdout.read()
         self.server.stdout.close()
-        self.assertEqual(self.server.wait(timeout=30), 0)
+        self.assertEqual(waiting.ended(self.server), 0)
 
     def evoctl(self, *words, status=0):
-        done = subprocess.run([EVOCTL, "--server", self.address, *words], capture_output=True, text=True, timeout=100)
+        done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, status, f"{words}\n{done.stdout}\n{done.stderr}")
         return done.stdout if status == 0 else done.stderr
 
@@ -102,9 +103,7 @@ class Commands(WithServer):
     def test_a_world_that_cannot_keep_its_pace_is_said_to_be_slower(self):
         self.evoctl("speed", "10000")
         self.evoctl("run")
-        end = time.monotonic() + 60
-        while "10000x (slower)" not in self.evoctl("status"):
-            self.assertLess(time.monotonic(), end, "it is measured")
+        waiting.until(lambda: "10000x (slower)" in self.evoctl("status"), "it is measured")
 
     def test_parameters_are_set_all_or_none(self):
         self.evoctl("set", "selection=tournament", "mutation_chance=0.05", "mutate_survivors=true", "tournament_size=4")
@@ -195,7 +194,7 @@ class Commands(WithServer):
                         while os.read(own, 1 << 16):
                             pass
                     os.close(own)
-                    self.assertEqual(process.wait(timeout=30), 0)
+                    self.assertEqual(waiting.ended(process), 0)
                     pages = said.decode().split("\x1b[J")[1:4]
                     for page in pages:
                         drawn = re.sub(r"\x1b\[\d*[AH]|\r", "", page).split("\n")
@@ -213,7 +212,8 @@ class Commands(WithServer):
                       self.evoctl("--key", "mine.key", "status", status=2))
         with open("/dev/full", "w") as full:
             for words in (["params"], ["--json", "describe"], ["worlds"]):
-                done = subprocess.run([EVOCTL, "--server", self.address, *words], stdout=full, stderr=subprocess.PIPE, text=True)
+                done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], stdout=full,
+                                   stderr=subprocess.PIPE, text=True)
                 self.assertEqual(done.returncode, 1)
                 self.assertIn("evoctl: standard output cannot be written", done.stderr)
 
@@ -229,26 +229,25 @@ class Commands(WithServer):
         script = f'source <("{EVOCTL}" complete bash); COMP_WORDS=(evoctl --server {self.address} set mutation_ch);' \
                  'COMP_CWORD=4; COMP_LINE="${COMP_WORDS[*]}"; COMP_POINT=${#COMP_LINE}; _evoctl; echo "${COMPREPLY[@]}"'
         path = os.path.dirname(EVOCTL) + ":" + os.environ["PATH"]
-        done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, timeout=30,
-                              env={**os.environ, "PATH": path})
+        done = waiting.run(["bash", "-c", script], capture_output=True, text=True, env={**os.environ, "PATH": path})
         self.assertIn("mutation_chance", done.stdout, done.stderr)
 
 
 class WithoutServer(unittest.TestCase):
     def test_it_says_that_no_server_runs_and_how_to_start_one(self):
-        done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", "status"], capture_output=True, text=True, timeout=30)
+        done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", "status"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
         self.assertIn("127.0.0.1:1", done.stderr)
         self.assertIn("evod", done.stderr)
 
     def test_wrong_usage_is_said_before_any_connection(self):
         for words in (["dance"], ["run", "-1"], ["step", "many"], ["create"], []):
-            done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
+            done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, words)
 
     def test_a_token_on_the_command_line_is_refused_and_not_repeated(self):
         for words in (["--token", "evod_secret", "worlds"], ["--token=evod_secret", "worlds"]):
-            done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True, timeout=30)
+            done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn("EVOD_TOKEN", done.stderr)
             self.assertNotIn("secret", done.stderr)
@@ -265,11 +264,11 @@ class WithoutServer(unittest.TestCase):
             for given in ("1e99", "abc", "1.5", str(2**64), *(["-1"] if words[-1].startswith("--") else []),
                           *(["0"] if least > 0 else [])):
                 with self.subTest(words=words, given=given):
-                    done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True, text=True)
+                    done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words, given], capture_output=True, text=True)
                     self.assertEqual(done.returncode, 2)
                     self.assertIn(f"{name}: must be a whole number, {least} to {greatest}, not {given}", done.stderr)
         for given in ("0", "-1", "nan", "soon"):
-            done = subprocess.run([EVOCTL, "--timeout", given, "status"], capture_output=True, text=True)
+            done = waiting.run([EVOCTL, "--timeout", given, "status"], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)
             self.assertIn(f"--timeout: must be a number, 0.001 to 86400, not {given}", done.stderr)
 

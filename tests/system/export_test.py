@@ -3,11 +3,11 @@ MESSAGES the folder of the message classes."""
 import contextlib
 import pathlib
 import sqlite3
-import subprocess
 import sys
 import unittest
 
 import past_test as past
+import waiting
 from past_test import CREATE, EVOD, EVOCTL, c, plain, w
 
 WHATS = {"generations": c.RUN_TABLE_GENERATIONS, "organisms": c.RUN_TABLE_ORGANISMS, "lineage": c.RUN_TABLE_LINEAGE,
@@ -39,7 +39,7 @@ class Runs(past.Case):
         return text.decode(), parts
 
     def evod_export(self, *words):
-        done = subprocess.run([EVOD, "export", f"{self.folder}/w.evod", *words], capture_output=True, text=True)
+        done = waiting.run([EVOD, "export", f"{self.folder}/w.evod", *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout
 
@@ -55,7 +55,7 @@ class Damaged(Runs):
             run.execute("DELETE FROM statistics WHERE generation = 3")
         for words, written in ((["--what", "events"], sound), (["--bundle", f"{self.folder}/bundle"], "")):
             with self.subTest(words):
-                done = subprocess.run([EVOD, "export", path, *words], capture_output=True, text=True)
+                done = waiting.run([EVOD, "export", path, *words], capture_output=True, text=True)
                 self.assertEqual((done.returncode, done.stdout), (1, written))
                 self.assertIn("is damaged: ", done.stderr)
         self.assertFalse(pathlib.Path(self.folder, "bundle").exists())
@@ -63,8 +63,8 @@ class Damaged(Runs):
 
 class Export(Runs):
     def evoctl(self, server, *words, status=0):
-        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "--world", "w", "export", *words],
-                              capture_output=True, text=True)
+        done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "--world", "w", "export",
+                            *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stderr if status else done.stdout
 
@@ -103,8 +103,8 @@ class Export(Runs):
         plate = f"{self.folder}/plate.csv"
         self.evoctl(server, "--what", "population", "--output", plate)
         words = [word for name, value in CREATE.items() for word in ("--set", f"{name}={value}")]
-        done = subprocess.run([EVOCTL, "--server", f"localhost:{server.port}", "create", "copy", "--population", plate,
-                               *words], capture_output=True, text=True)
+        done = waiting.run([EVOCTL, "--server", f"localhost:{server.port}", *waiting.PATIENT, "create", "copy",
+                            "--population", plate, *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         copied, _ = self.table(client, world="copy", table=c.RUN_TABLE_POPULATION)
         self.assertEqual(copied, pathlib.Path(plate).read_text())

@@ -8,6 +8,7 @@ import sys
 import unittest
 
 import access_test as access
+import waiting
 from access_test import c, plain
 
 from google.protobuf import descriptor_pb2, descriptor_pool  # noqa: E402
@@ -122,7 +123,7 @@ class Walk(access.Access):
             hashes.add(plain.until(lambda: (lambda w: w.tick == 200 and w.state_hash)(self.client.world(world)), "ticks"))
         self.assertEqual(len(hashes), 1)
         self.server_.process.terminate()
-        self.assertEqual(self.server_.process.wait(plain.patience_s), 0, self.server_.output())
+        self.assertEqual(waiting.ended(self.server_.process), 0, self.server_.output())
         folder = pathlib.Path(self.folder)
         self.assertLessEqual({path.suffix for path in folder.iterdir()} - {""}, {".evod", ".evod-wal", ".evod-shm"})
         for elsewhere in (folder.parent / "x", folder.parent / "x.evod", pathlib.Path("/tmp/x"),

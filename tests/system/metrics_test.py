@@ -21,8 +21,10 @@ import unittest
 
 import access_test as access
 import past_test as past
+import waiting
 from past_test import EVOD, EVOCTL, c, plain
 
+SIMULATION_S = 3  # within which the simulation has to answer; else /healthz says that the server is ill
 OPERATIONS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "OPERATIONS.md"
 NAME, UNESCAPED = r"[a-zA-Z_:][a-zA-Z0-9_:]*", {r"\\": "\\", r"\"": '"', r"\n": "\n"}
 LABEL = rf'({NAME})="((?:[^"\\\n]|\\[\\"n])*)"'
@@ -63,7 +65,7 @@ class Case(past.Case):
     def http(self, server):
         if not hasattr(server, "http_port"):
             server.http_port = int(re.search(r"http://127\.0\.0\.1:(\d+)/metrics", server.output())[1])
-        return http.client.HTTPConnection("127.0.0.1", server.http_port, timeout=plain.patience_s)
+        return http.client.HTTPConnection("127.0.0.1", server.http_port, timeout=waiting.LONGEST_S)
 
     def get(self, server, path="/metrics", method="GET", **arguments):
         with contextlib.closing(self.http(server)) as connection:
@@ -78,6 +80,10 @@ class Case(past.Case):
                          (200, "text/plain; version=0.0.4; charset=utf-8"))
         return Metrics(answer.text)
 
+    def wait_well(self, server):
+        """Healthy, which a server is not for a moment where the machine stood still for SIMULATION_S."""
+        plain.until(lambda: self.get(server, "/healthz").status == 200, "health")
+
     def wait(self, server, condition, what):
         def look():
             metrics = self.metrics(server)
@@ -89,13 +95,13 @@ class Case(past.Case):
         self.http(server)
         connection = socket.create_connection(("127.0.0.1", server.http_port))
         self.addCleanup(connection.close)
-        connection.settimeout(plain.patience_s)
+        connection.settimeout(waiting.LONGEST_S)
         connection.sendall(data)
         return connection
 
     def evoctl(self, server, *words, status=0):
-        done = subprocess.run([EVOCTL, "--server", f"127.0.0.1:{server.port}", *words], capture_output=True, text=True,
-                              timeout=plain.patience_s)
+        done = waiting.run([EVOCTL, "--server", f"127.0.0.1:{server.port}", *waiting.PATIENT, *words],
+                           capture_output=True, text=True)
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done.stdout
 
@@ -104,7 +110,7 @@ def read_all(connection):
     """Until the server closes its end, be it in the middle of what it was sent."""
     data = b""
     with contextlib.suppress(ConnectionResetError):
-        while more := connection.recv(65536):
+        while more := waiting.receive(connection, 65536):
             data += more
     return data
 
@@ -241,7 +247,7 @@ class Counts(Case):
         threads = [value for (name, _), value in metrics.samples.items() if name == "evod_thread_cpu_seconds_total"]
         self.assertEqual(len(threads), 4)
         self.assertLessEqual(max(threads), metrics("process_cpu_seconds_total") + 1)
-        version = subprocess.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
+        version = waiting.run([EVOD, "--version"], capture_output=True, text=True).stdout.split()[1]
         self.assertEqual(metrics("evod_build_info", version=version), 1)
 
     def test_a_replay_tells_them_too(self):
@@ -251,7 +257,7 @@ class Counts(Case):
             plain.until(lambda: client.world().tick == 100, "ticks")
         server.end()
         replay = self.server("replay", f"{self.folder}/default.evod", "--http-port", "0")
-        self.assertEqual(self.get(replay, "/healthz").text, "ok\n")
+        self.wait_well(replay)
         with self.client(replay) as client:
             client.call(run_until_tick=c.RunUntilTick(tick=50))
             self.wait(replay, lambda m: m("evod_ticks_total", world="default") == 50, "ticks of the replay")
@@ -265,11 +271,12 @@ class Clients(Case, access.Access):
     def test_sessions_by_role_and_failed_logins(self):
         secrets = {name: self.token(name, role) for role, name in access.NAMES.items()}
         server = self.serve("--require-token")
-        for name in ("viewer", "viewer", "controller", "admin"):
-            self.come(server, secrets[name])
-        silent = socket.create_connection(("127.0.0.1", server.port))
-        self.addCleanup(silent.close)
-        metrics = self.wait(server, lambda m: m("evod_sessions", role="none") == 1, "one who says nothing")
+        came = [self.come(server, secrets[name]) for name in ("viewer", "viewer", "controller", "admin")]
+
+        def stay_silent(_):
+            with socket.create_connection(("127.0.0.1", server.port)):
+                return self.wait(server, lambda m: m("evod_sessions", role="none") == 1, "one who says nothing")
+        metrics = waiting.quicker_than(came[0].welcome.limits.hello_timeout_s, stay_silent)
         self.assertEqual({role: metrics("evod_sessions", role=role) for role in secrets},
                          {"viewer": 2, "controller": 1, "admin": 1})
         self.assertEqual(metrics("evod_logins_failed_total"), 0)
@@ -296,7 +303,7 @@ class Health(Case):
     def test_it_is_ill_while_its_disk_fails_and_well_again_afterwards(self):
         # A file that may not grow is a disk that fails; the signal that would come with it is ignored.
         server = self.serve(restore_signals=False, preexec_fn=lambda: signal.signal(signal.SIGXFSZ, signal.SIG_IGN))
-        self.assertEqual((self.get(server, "/healthz").status, self.get(server, "/healthz").text), (200, "ok\n"))
+        self.wait_well(server)
         _, hard = resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE)
         resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (1, hard))
         with self.client(server) as client:
@@ -310,20 +317,20 @@ class Health(Case):
             self.assertGreater(metrics("evod_journal_waiting_bytes"), 0)
             self.assertIn("failing", self.evoctl(server, "top", "--once", "--interval", "0.1"))
             resource.prlimit(server.process.pid, resource.RLIMIT_FSIZE, (hard, hard))
-            plain.until(lambda: self.get(server, "/healthz").status == 200, "health")
+            self.wait_well(server)
             self.wait(server, lambda m: m("evod_journal_waiting_bytes") == 0 and
                       m("evod_storage_state", state="keeps_up") == 1, "all is written")
 
     def test_it_is_ill_while_its_simulation_does_not_answer(self):
         server = self.serve()
-        self.assertEqual(self.get(server, "/healthz").text, "ok\n")
+        waiting.quicker_than(SIMULATION_S, lambda _: self.assertEqual(self.get(server, "/healthz").text, "ok\n"))
         threads = {pathlib.Path(task, "comm").read_text().strip(): int(task.name)
                    for task in pathlib.Path(f"/proc/{server.process.pid}/task").iterdir()}
         with stopped(threads["simulation"]):
             answer = self.get(server, "/healthz")
-            self.assertEqual((answer.status, answer.text), (503, "the simulation has not answered for 3 s\n"))
+            self.assertEqual((answer.status, answer.text), (503, f"the simulation has not answered for {SIMULATION_S} s\n"))
             self.assertEqual(self.get(server).status, 200)
-        plain.until(lambda: self.get(server, "/healthz").status == 200, "health")
+        self.wait_well(server)
 
 
 class Http(Case):
@@ -335,7 +342,7 @@ class Http(Case):
             refused = self.get(server, method=method, body=b"x" * 100_000 if method in ("POST", "PUT") else None)
             self.assertEqual((refused.status, refused.headers["Allow"]), (405, "GET, HEAD"), method)
             self.assertIn("use GET or HEAD", refused.text)
-        self.assertEqual(self.get(server, "/healthz?full=1").status, 200)
+        plain.until(lambda: self.get(server, "/healthz?full=1").status == 200, "health")
         self.assertEqual(self.get(server, "/healthz", body=b"hello").status, 400)
         head, get = self.get(server, "/healthz", method="HEAD"), self.get(server, "/healthz")
         self.assertEqual((head.status, head.text, head.headers["Content-Length"]), (200, "", get.headers["Content-Length"]))
@@ -353,10 +360,13 @@ class Http(Case):
 
     def test_requests_that_come_together_are_answered_in_their_order(self):
         server = self.serve()
-        pipeline = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n" * 20 +
-                            b"GET /nowhere HTTP/1.0\r\n\r\n" + b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n")
-        text = read_all(pipeline)
-        self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", text, re.M), [b"200"] * 20 + [b"404"])
+
+        def ask(_):
+            pipeline = self.raw(server, b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n" * 20 +
+                                b"GET /nowhere HTTP/1.0\r\n\r\n" + b"GET /healthz HTTP/1.1\r\nHost: a\r\n\r\n")
+            text = read_all(pipeline)
+            self.assertEqual(re.findall(rb"^HTTP/1\.[01] (\d+)", text, re.M), [b"200"] * 20 + [b"404"])
+        waiting.quicker_than(SIMULATION_S, ask)
 
     def test_what_is_no_request_is_answered_and_closed(self):
         server = self.serve()
@@ -370,13 +380,13 @@ class Http(Case):
             answer = read_all(self.raw(server, data))
             self.assertRegex(answer, rb"^HTTP/1\.1 " + status, data[:40])
             self.assertTrue(answer.endswith(b"\n") and b"\r\n\r\n" in answer)
-            self.assertEqual(self.get(server, "/healthz").status, 200)
+            self.wait_well(server)
 
     @contextlib.contextmanager
     def meets(self, server, limit, at_least=1):
         """What is done within meets this limit so often; it is given what the limit is."""
         before = self.metrics(server)("evod_limit_reached_total", limit=limit)
-        yield int(re.search(rf"^\| `{limit}` \| (\d+) \|", OPERATIONS.read_text(), re.M)[1])
+        yield plain.limit(limit)
         self.wait(server, lambda m: m("evod_limit_reached_total", limit=limit) >= before + at_least, limit)
 
     def test_a_header_is_as_long_as_it_may_be(self):
@@ -387,7 +397,8 @@ class Http(Case):
             answer = read_all(self.raw(server, begin + b"y" * (size - len(begin) - 4) + b"\r\n\r\n"))
             return int(re.match(rb"HTTP/1\.1 (\d+) ", answer)[1])
         with self.meets(server, "http_header_bytes_max") as limit:
-            self.assertEqual((status_of(limit), status_of(limit + 1)), (200, 431))
+            plain.until(lambda: status_of(limit) == 200, "health")
+            self.assertEqual(status_of(limit + 1), 431)
 
     def test_whoever_sends_no_whole_request_is_closed(self):
         server = self.serve()
@@ -400,22 +411,28 @@ class Http(Case):
 
     def test_a_crowd_is_told_to_come_back(self):
         server = self.serve()
+
         def is_well():
             with contextlib.suppress(ConnectionError):  # closed at once, perhaps before it was read
                 return self.get(server, "/healthz").status == 200
-        with self.meets(server, "http_connections_max") as limit:
-            crowd = [self.raw(server, b"") for _ in range(limit - 1)]
-            plain.until(is_well, "the last place")
-            crowd.append(self.raw(server, b""))
-            told = self.get(server, "/healthz")
-            self.assertEqual(told.status, 503)
-            self.assertIn(f"{limit} connections are open already", told.text)
-            crowd += [self.raw(server, b"") for _ in range(limit)]
-            plain.until(lambda: crowd.append(self.raw(server, b"")) or
-                        read_all(self.raw(server, b"GET /healthz HTTP/1.1\r\n\r\n")) == b"", "one is closed at once")
-            for connection in crowd:
-                connection.close()
-            plain.until(is_well, "room")
+
+        def crowd(_):
+            with self.meets(server, "http_connections_max") as limit, contextlib.ExitStack() as stack:
+                def come(count):
+                    for _ in range(count):
+                        stack.enter_context(contextlib.closing(self.raw(server, b"")))
+                come(limit - 1)
+                plain.until(is_well, "the last place")
+                come(1)
+                told = self.get(server, "/healthz")
+                self.assertEqual(told.status, 503)
+                self.assertIn(f"{limit} connections are open already", told.text)
+                come(limit)
+                plain.until(lambda: come(1) or read_all(self.raw(server, b"GET /healthz HTTP/1.1\r\n\r\n")) == b"",
+                            "one is closed at once")
+                stack.close()
+                plain.until(is_well, "room")
+        waiting.quicker_than(plain.limit("http_request_timeout_s"), crowd)  # after which the silent ones are closed
 
     def test_it_is_closed_with_the_server(self):
         server = self.serve()
@@ -431,8 +448,7 @@ class Http(Case):
         for words, status, why in ((["--http-bind", "127.0.0.1"], 2, "--http-port"), (["--http-port", "70000"], 2, "70000"),
                                    (["--http-port", "0", "--http-bind", "here"], 1, "give --http-bind the address"),
                                    (["--http-port", str(server.port)], 1, "choose another with --http-port")):
-            done = subprocess.run([EVOD, "--keep-nothing", "--port", "0", *words], capture_output=True, text=True,
-                                  timeout=plain.patience_s)
+            done = waiting.run([EVOD, "--keep-nothing", "--port", "0", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, status, done.stderr)
             self.assertIn(why, done.stderr + done.stdout)
 
@@ -440,12 +456,12 @@ class Http(Case):
 class Top(Case):
     def test_once_is_one_page(self):
         server = self.serve("--speed", "max", "--start")
-        self.wait(server, lambda m: m("evod_ticks_per_second", world="default") > 0, "a figure")
-        page = self.evoctl(server, "top", "--once", "--interval", "0.2")
+        world = r"(?m)^default +[1-9]\d* +\S+ (µs|ms)"  # unless it stood still in these 0.2 s
+        page = plain.until(lambda: (lambda one: one if re.search(world, one) else None)(
+            self.evoctl(server, "top", "--once", "--interval", "0.2")), "ticks")
         self.assertRegex(page, rf"^evod \d\S* at 127\.0\.0\.1:{server.port}, up ")
         for line in (r"memory +\d+ MiB", r"processor +\d+ %: network \d+ %, simulation \d+ %, storage \d+ %", r"clients +1: 1 admin",
-                     r"logins +0 failed", r"requests +\d+/s; 0 of 1024 wait", r"disk +keeps up; ",
-                     r"default +[1-9]\d* +\S+ (µs|ms)"):
+                     r"logins +0 failed", r"requests +\d+/s; 0 of 1024 wait", r"disk +keeps up; "):
             self.assertRegex(page, f"(?m)^{line}")
         self.assertNotIn("\x1b", page)
 
@@ -462,7 +478,7 @@ class Top(Case):
         for _ in range(3):
             self.assertIn("families", json.loads(top.stdout.readline()))
         top.send_signal(signal.SIGINT)
-        self.assertEqual(top.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(top), 0)
         top.stdout.close()
 
     def test_on_a_terminal_it_is_drawn_over_itself_and_fits(self):
@@ -480,7 +496,7 @@ class Top(Case):
         while drawn.count(b"\x1b[J") < 4:
             drawn += os.read(terminal, 65536)
         top.send_signal(signal.SIGINT)
-        self.assertEqual(top.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(top), 0)
         first, second = drawn.split(b"\x1b[J")[1:3]
         lines = second.decode().replace("\r", "").split("\n")
         # What comes before the next drawing goes up over all of this one.
@@ -491,7 +507,7 @@ class Top(Case):
         self.assertTrue(any(re.match(r"and \d+ more", line) for line in lines), lines)
 
     def test_a_server_that_does_not_answer_is_told(self):
-        done = subprocess.run([EVOCTL, "--server", "127.0.0.1:1", "top", "--once"], capture_output=True, text=True)
+        done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", "top", "--once"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
 
 
@@ -533,7 +549,7 @@ class Log(Case):
             self.addCleanup(process.kill)
             plain.until(lambda: catches(process.pid, signal.SIGTERM), "it minds signals")
             process.terminate()
-            self.assertEqual("listening on" in process.communicate(timeout=plain.patience_s)[0], tells, level)
+            self.assertEqual("listening on" in waiting.communicate(process)[0], tells, level)
 
     def test_every_refusal_is_in_the_log_of_level_debug(self):
         server = self.serve("--log-level", "debug")

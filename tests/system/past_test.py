@@ -13,6 +13,7 @@ EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
 sys.argv[1:1] = [EVOD, os.environ["MESSAGES"], "-"]  # as plain_client reads them
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import plain_client as plain  # noqa: E402
+import waiting  # noqa: E402
 
 c, w = plain.c, plain.w
 CREATE = {"population_size": 12, "generation_s": 2.0, "island_count": 2, "migration": "ring", "migration_epoch": 2}
@@ -34,7 +35,7 @@ class Server(plain.Server):
 
     def kill(self):
         self.process.kill()
-        self.process.wait(plain.patience_s)
+        waiting.ended(self.process)
 
 
 class Client(plain.Client):
@@ -249,7 +250,7 @@ class Fork(Case):
                 self.assertEqual(known(client), known_before)
         finally:
             again.end()
-        verified = subprocess.run([EVOD, "verify", f"{self.folder}/f.evod"], capture_output=True, text=True)
+        verified = waiting.run([EVOD, "verify", f"{self.folder}/f.evod"], capture_output=True, text=True)
         self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
     def test_from_now(self):
@@ -276,7 +277,7 @@ class Fork(Case):
         self.assertEqual((past.tick, past.recording.first_tick), (310, 310))
         again.end()
         for tick in (0, 77, 120, 310):
-            verified = subprocess.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
+            verified = waiting.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
             self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
     def test_everybody_is_told_of_a_new_world(self):
@@ -345,8 +346,8 @@ class Replay(Case):
 
     def test_evoctl_takes_it_to_another_moment(self):
         served = self.server("replay", self.run_file)
-        run = lambda *words: subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *words],
-                                            capture_output=True, text=True, timeout=100)
+        run = lambda *words: waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, *words],
+                                         capture_output=True, text=True)
         done = run("seek", "--generation", "3", "--tick", "10")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.client(served).world().state_hash, self.hashes[250])
@@ -354,8 +355,8 @@ class Replay(Case):
 
     def test_evoctl_waits_no_longer_than_there_is_something_to_see(self):
         served = self.server("replay", self.run_file, "--generation", "2")
-        run = lambda *words: subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *words],
-                                            capture_output=True, text=True, timeout=100)
+        run = lambda *words: waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, *words],
+                                         capture_output=True, text=True)
         self.assertEqual(run("speed", "max").returncode, 0)
         done = run("run", "1", "--wait")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -373,9 +374,8 @@ class Replay(Case):
 
     def test_evoctl_says_that_its_forks_are_not_kept(self):
         served = self.server("replay", self.run_file)
-        done = subprocess.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", "fork", "w", "--at-generation", "2",
-                               "--name", "mine"],
-                              capture_output=True, text=True, timeout=100)
+        done = waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, "fork", "w",
+                            "--at-generation", "2", "--name", "mine"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("forked mine", done.stdout)
         self.assertIn("it is not kept", done.stdout)
@@ -383,15 +383,14 @@ class Replay(Case):
 
     def test_what_is_no_run_file_is_named(self):
         for path, words in ((f"{self.folder}/nothing.evod", "no such file"), (__file__, "not"), (self.folder, "folder")):
-            done = subprocess.run([EVOD, "replay", path], capture_output=True, text=True, timeout=100)
+            done = waiting.run([EVOD, "replay", path], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.stderr)
-        done = subprocess.run([EVOD, "replay", self.run_file, "--generation", "9"], capture_output=True, text=True,
-                              timeout=100)
+        done = waiting.run([EVOD, "replay", self.run_file, "--generation", "9"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("--generation: got 9, allowed 1 to 4", done.stderr)
-        done = subprocess.run([EVOD, "fork", self.run_file, "--at-generation", "9", "--name", "x", "--data",
-                               f"{self.folder}/other"], capture_output=True, text=True, timeout=100)
+        done = waiting.run([EVOD, "fork", self.run_file, "--at-generation", "9", "--name", "x", "--data",
+                            f"{self.folder}/other"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("--at-generation: got 9, allowed 1 to 4", done.stderr)
 

@@ -22,18 +22,10 @@ import unittest
 
 sys.path.insert(0, os.environ["MESSAGES"])
 from evod.v1 import commands_pb2 as c, session_pb2, world_pb2 as w  # noqa: E402
+import waiting  # noqa: E402
+from waiting import until  # noqa: E402
 
 evod, kills = os.environ["EVOD"], int(os.environ.get("KILLS", "25"))
-patience_s = 60
-
-
-def until(condition, what):
-    end = time.monotonic() + patience_s
-    while time.monotonic() < end:
-        if value := condition():
-            return value
-        time.sleep(0.002)
-    raise AssertionError(f"did not happen within {patience_s} s: {what}")
 
 
 class Server:
@@ -52,23 +44,33 @@ class Server:
 
     def kill(self):
         self.process.kill()
-        self.process.wait(patience_s)
+        waiting.ended(self.process)
 
     def end(self):
         self.process.send_signal(signal.SIGTERM)
-        assert self.process.wait(patience_s) == 0, self.output()
+        assert waiting.ended(self.process) == 0, self.output()
 
 
 class Client:
     """Asks one thing after another; EOFError when the server has gone."""
 
     def __init__(self, server, key):
-        self.key, self.socket = key, socket.create_connection(("127.0.0.1", server.port))
-        self.socket.settimeout(patience_s)
-        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="kills")))
-        greeting = self.receive()
+        self.key = key
+        greeting = self.greeted(server)
+        while waiting.LATE_HELLO in greeting.response.status.message:
+            self.socket.close()
+            greeting = self.greeted(server)
         assert greeting.HasField("welcome")
         self.welcome = greeting.welcome
+
+    def greeted(self, server):
+        try:
+            self.socket = socket.create_connection(("127.0.0.1", server.port))
+        except ConnectionRefusedError as gone:
+            raise EOFError from gone
+        self.socket.settimeout(waiting.LONGEST_S)
+        self.send(session_pb2.ClientMessage(hello=session_pb2.Hello(protocol_version=1, client_name="kills")))
+        return self.receive()
 
     def __enter__(self):
         return self
@@ -87,7 +89,7 @@ class Client:
         data = b""
         while len(data) < count:
             try:
-                more = self.socket.recv(count - len(data))
+                more = waiting.receive(self.socket, count - len(data))
             except ConnectionResetError:
                 more = b""
             if not more:
@@ -144,17 +146,21 @@ def kill_by_its_checkpoint(server, data, answered, after_s, parts, whole):
                 with contextlib.suppress(sqlite3.OperationalError):  # it was stopped while it held a lock
                     return half_written(run), run.execute("SELECT max(tick) FROM checkpoint").fetchone()
                 return {}, None
-            (left, newest), answers, end = look(), None, time.monotonic() + patience_s / 2
-            server.process.send_signal(signal.SIGCONT)
-            while server.process.poll() is None and time.monotonic() < end:
+            (left, newest), answers = look(), None
+
+            def is_time():
+                nonlocal answers
+                if server.process.poll() is not None:
+                    return True
                 present, whole_one = look()
-                if whole and answers is None and whole_one not in (None, newest):
+                if not whole:
+                    return any(count >= parts for tick, count in present.items() if tick not in left)
+                if answers is None and whole_one not in (None, newest):
                     answers = len(answered)
-                if whole and answers is not None and len(answered) > answers:
-                    break
-                if not whole and any(count >= parts for tick, count in present.items() if tick not in left):
-                    break
-                time.sleep(0.0002)
+                return answers is not None and len(answered) > answers
+            server.process.send_signal(signal.SIGCONT)
+            with contextlib.suppress(AssertionError):  # it never comes
+                until(is_time, "the checkpoint", pause_s=0.0002, longest_s=30)
             server.process.kill()
     threading.Thread(target=watch, daemon=True).start()
 
@@ -233,7 +239,7 @@ class Recovery(unittest.TestCase):
                     answered[request_id] = (response.applied_tick, value)
         except EOFError:
             pass
-        server.process.wait(patience_s)
+        waiting.ended(server.process)
         look()
         # Sent again to the next server, the last one is done now if it was not.
         if request_id in answered and answered[request_id][0] is None:
@@ -300,8 +306,7 @@ class Recovery(unittest.TestCase):
                 run.execute("UPDATE checkpoint SET state = zeroblob(length(state)) WHERE tick = ?", (self.left_checkpoint,))
             run.close()
             if self.left_checkpoint is not None:  # whether the next server begins with it: it would know that it is none
-                refused = subprocess.run([evod, "--port", "0", "--data", copy], capture_output=True, text=True,
-                                         timeout=patience_s)
+                refused = waiting.run([evod, "--port", "0", "--data", copy], capture_output=True, text=True)
                 self.assertEqual(refused.returncode, 1)
                 self.assertIn(f"the row {self.left_checkpoint} of its table checkpoint", refused.stderr)
 
@@ -327,11 +332,17 @@ class Recovery(unittest.TestCase):
             server = self.serve("--threads", str(1 + life))
             takes_s = time.monotonic() - began
             server.kill()
-            for _ in range(max(4, kills // 6)):
+            kills_left, wanted = max(4, kills // 6), killed_before_ready + 2
+            while kills_left > 0 or killed_before_ready < wanted:
+                kills_left -= 1
                 self.servers.append(Server("--data", self.data, ready=False))
-                time.sleep(chance.uniform(0, takes_s))
+                lives_s = chance.uniform(0, takes_s)
+                time.sleep(lives_s)
                 self.servers[-1].kill()
-                killed_before_ready += "listening on" not in self.servers[-1].output()
+                if "listening on" in self.servers[-1].output():
+                    takes_s = lives_s  # the machine was slower when this was measured
+                else:
+                    killed_before_ready += 1
             server = self.serve("--threads", str(3 - life))
             with Client(server, key) as client:
                 for i in first, first + 1:
@@ -341,7 +352,6 @@ class Recovery(unittest.TestCase):
                         self.assertEqual(response.applied_tick, answered[i][0])
                     answered[i] = (response.applied_tick, i)
         server.kill()
-        self.assertGreater(killed_before_ready, 3)
         self.assert_as_if_never_stopped(answered, key, *options)
 
     def test_a_closed_server_goes_on_where_it_stood_and_as_it_was_told(self):
@@ -422,8 +432,8 @@ class Recovery(unittest.TestCase):
         for options, why in ((["--seed", "5"], "seed"), ([], "parameters")):
             if not options:
                 path.write_text('{"population_size": 21, "seed": 4}')
-            refused = subprocess.run([evod, "--port", "0", "--data", self.data, "--experiment", str(path), *options],
-                                     capture_output=True, text=True, timeout=patience_s)
+            refused = waiting.run([evod, "--port", "0", "--data", self.data, "--experiment", str(path), *options],
+                                  capture_output=True, text=True)
             self.assertEqual(refused.returncode, 1)
             self.assertIn(f'a world "plate" that began with other {why}', refused.stderr)
             self.assertIn("--data", refused.stderr)
@@ -444,8 +454,7 @@ class Recovery(unittest.TestCase):
             self.assertTrue(client.world("a").speed.max)
         change(server, {"pause": c.Pause(world="a")}, {"create_world": c.CreateWorld(name="b")})
         for option in (["--start"], ["--speed", "2"]):
-            refused = subprocess.run([evod, "--port", "0", "--data", self.data, *option], capture_output=True, text=True,
-                                     timeout=patience_s)
+            refused = waiting.run([evod, "--port", "0", "--data", self.data, *option], capture_output=True, text=True)
             self.assertEqual(refused.returncode, 1)
             self.assertIn(f"--speed and --start are for one world, and {self.data} holds a, b: start without them",
                           refused.stderr)
@@ -464,7 +473,7 @@ class Recovery(unittest.TestCase):
             server.end()
             self.assertIn(f"runs are kept in {folder}", server.output())
             self.assertTrue(os.path.exists(f"{folder}/default.evod"))
-        refused = subprocess.run([evod, "--port", "0"], env={}, capture_output=True, text=True, timeout=patience_s)
+        refused = waiting.run([evod, "--port", "0"], env={}, capture_output=True, text=True)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("--data", refused.stderr)
         before = set(pathlib.Path(self.data).rglob("*"))
@@ -475,15 +484,13 @@ class Recovery(unittest.TestCase):
 
     def test_a_second_server_and_a_damaged_file_are_refused_by_name(self):
         server = self.serve("--seed", "5")
-        refused = subprocess.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True,
-                                 timeout=patience_s)
+        refused = waiting.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("another server is using it", refused.stderr)
         server.end()
         with sqlite3.connect(f"{self.data}/default.evod") as run:
             run.execute("UPDATE population SET chromosomes = zeroblob(1200)")
-        refused = subprocess.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True,
-                                 timeout=patience_s)
+        refused = waiting.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
 

@@ -13,6 +13,8 @@ import subprocess
 import tempfile
 import unittest
 
+import waiting
+
 EVOD, EVOCTL = os.environ["EVOD"], os.environ["EVOCTL"]
 EXPERIMENT = {"population_size": 12, "generation_s": 2, "island_count": 2, "migration": "ring", "migration_epoch": 2,
               "migrant_count": 4}
@@ -20,7 +22,7 @@ GENES = ["normal_speed", "impulse", "body_size", "base_health", "food_radius", "
 
 
 def evod(*arguments, status=0):
-    done = subprocess.run([EVOD, *map(str, arguments)], capture_output=True, text=True, timeout=100)
+    done = waiting.run([EVOD, *map(str, arguments)], capture_output=True, text=True)
     assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
     return done.stdout if status == 0 else done.stderr
 
@@ -50,11 +52,11 @@ class Server:
 
     def end(self, how, status):
         self.process.send_signal(how)
-        self.process.communicate(timeout=60)
+        waiting.communicate(self.process)
         assert self.process.returncode == status, self.process.returncode
 
     def evoctl(self, *words):
-        done = subprocess.run([EVOCTL, "--server", self.address, *words], capture_output=True, text=True, timeout=100)
+        done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], capture_output=True, text=True)
         assert done.returncode == 0, f"{words}\n{done.stdout}\n{done.stderr}"
 
 
@@ -213,7 +215,7 @@ class Verify(Case):
         os.chmod(self.folder, 0o755)
         os.chmod(path, 0o644)
         try:
-            done = subprocess.run([EVOD, "verify", path], capture_output=True, text=True, user=65534, group=65534)
+            done = waiting.run([EVOD, "verify", path], capture_output=True, text=True, user=65534, group=65534)
         except PermissionError:
             self.skipTest("the program itself is where nobody else may look")
         self.assertEqual(done.returncode, 0, done.stderr)

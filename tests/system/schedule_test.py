@@ -3,11 +3,11 @@ folder of the message classes."""
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import unittest
 
 import access_test as access
+import waiting
 from access_test import EVOD, c, plain
 
 SCHEDULED = {"population_size": {"1": 12, "4": 20}, "generation_s": 0.5, "mutation_chance": {"1": 0.5, "3": 0.05},
@@ -16,7 +16,7 @@ INVALID, PRECONDITION = 3, 9
 
 
 def evod(*words, status=0):
-    done = subprocess.run([EVOD, *words], capture_output=True, text=True, timeout=100)
+    done = waiting.run([EVOD, *words], capture_output=True, text=True)
     assert done.returncode == status, f"{words}\n{done.stdout}\n{done.stderr}"
     return done.stdout if status == 0 else done.stderr
 
@@ -57,7 +57,7 @@ class Schedules(access.Access):
         self.assertEqual((changed.by, [x.name for x in changed.changed], changed.revision), ("the schedule", ["food_health"], 2))
         self.ended(client, world, 3)
         server.process.kill()
-        server.process.wait(plain.patience_s)
+        waiting.ended(server.process)
 
         server = self.serve("--experiment", self.file, "--speed", "max")
         client = self.come(server)
@@ -68,7 +68,7 @@ class Schedules(access.Access):
         self.assertEqual(self.ended(client, world, 7).state_hash, alone)
         self.assertEqual(len(self.parameters(client, world).schedule), 0)
         server.process.terminate()
-        self.assertEqual(server.process.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(server.process), 0)
         run_file = f"{self.folder}/{world}.evod"
         evod("verify", run_file)
         bundle = f"{self.folder}/bundle"
@@ -76,7 +76,8 @@ class Schedules(access.Access):
         self.assertEqual(alone, state_of(evod("run", f"{bundle}/experiment.json", "--generations", "7")))
 
         other = self.write("annealed.json", {**SCHEDULED, "food_health": {"2": 60, "5": 6}})
-        refused = subprocess.run([EVOD, "--port", "0", "--data", self.folder, "--experiment", other], capture_output=True, text=True)
+        refused = waiting.run([EVOD, "--port", "0", "--data", self.folder, "--experiment", other], capture_output=True,
+                              text=True)
         self.assertEqual(refused.returncode, 1)
         self.assertIn("other schedule of parameters", refused.stdout + refused.stderr)
 
@@ -167,7 +168,7 @@ class Planned(access.Access):
         self.assertEqual(cancelled.generation, 5)
         self.assertEqual(client.next_event("change_cancelled").change_cancelled.change.id, 3)
         server.process.kill()
-        server.process.wait(plain.patience_s)
+        waiting.ended(server.process)
 
         server = self.serve("--speed", "max")
         client = self.come(server)
@@ -181,7 +182,7 @@ class Planned(access.Access):
         self.assertEqual((self.value(client, "food_health"), self.value(client, "mutation_chance")), (9, 0.5))
         client.call(delete_world=c.DeleteWorld(world="fork"))
         server.process.terminate()
-        self.assertEqual(server.process.wait(plain.patience_s), 0)
+        self.assertEqual(waiting.ended(server.process), 0)
         evod("verify", f"{self.folder}/default.evod")
 
     def test_wrong_moments_and_ids_are_named(self):

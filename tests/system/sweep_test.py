@@ -10,12 +10,12 @@ import signal
 import sqlite3
 import subprocess
 import tempfile
-import time
 import unittest
+
+import waiting
 
 EVOD = os.environ["EVOD"]
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PATIENCE_S = 120
 SMALL = {
     "experiment": {"population_size": 12, "generation_s": 2, "food_count": 10},
     "grid": {"selection": ["roulette", "tournament"], "mutation_chance": [0.05, 0.5]},
@@ -26,7 +26,7 @@ SMALL = {
 
 
 def evod(*arguments, status=0, cwd=None):
-    done = subprocess.run([EVOD, *map(str, arguments)], capture_output=True, text=True, timeout=PATIENCE_S, cwd=cwd)
+    done = waiting.run([EVOD, *map(str, arguments)], capture_output=True, text=True, cwd=cwd)
     assert done.returncode == status, f"status {done.returncode}, wanted {status}\n{done.stdout}\n{done.stderr}"
     return done
 
@@ -123,7 +123,7 @@ class Sweep(Folder):
         sweep, out = self.file(SMALL), self.folder / "array"
         tasks = [subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--array-index", str(cell % 4)],
                                   stdout=subprocess.DEVNULL) for cell in range(8)]  # each of them twice
-        self.assertEqual([task.wait(PATIENCE_S) for task in tasks], [0] * 8)
+        self.assertEqual([waiting.ended(task) for task in tasks], [0] * 8)
         evod("sweep", sweep, "--out", out, "--gather")
         self.assertEqual((out / "runs.csv").read_bytes(), self.swept(sweep))
 
@@ -155,13 +155,13 @@ class Interrupted(Folder):
         """Ends a sweep once so many of its runs are there, and others are under way; returns how many there are then."""
         process = subprocess.Popen([EVOD, "sweep", sweep, "--out", out, "--jobs", "2", *options], stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True)
-        there, until = [], time.monotonic() + PATIENCE_S
-        while len(there) < parts:
+
+        def enough():
             self.assertIsNone(process.poll(), "it ended before it could be ended")
-            self.assertLess(time.monotonic(), until)
-            there = list((out / "parts").glob("*.csv")) if (out / "parts").exists() else []
+            return len(list((out / "parts").glob("*.csv"))) >= parts
+        waiting.until(enough, "some runs", pause_s=0.001)
         process.send_signal(how)
-        said = process.communicate(timeout=PATIENCE_S)[0]
+        said = waiting.communicate(process)[0]
         self.assertEqual(process.returncode, 130 if how != signal.SIGKILL else -how)
         self.assertFalse((out / "runs.csv").exists())
         there = list((out / "parts").glob("*.csv"))

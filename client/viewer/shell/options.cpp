@@ -1,10 +1,9 @@
 #include "client/viewer/shell/options.h"
 
 #include "client/link/credentials.h"
-#include "client/link/option_numbers.h"
 #include "client/viewer/drawing/gui.h"
-
-#include <CLI/CLI.hpp>
+#include "proto/command_line/command.h"
+#include "proto/command_line/number.h"
 
 #include <cerrno>
 #include <charconv>
@@ -18,7 +17,9 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr int exit_usage = 2;
+using command_line::Command;
+using command_line::RealNumber;
+using command_line::WholeNumber;
 
 constexpr const char* footer = R"(Keys: H in the window lists them. The window closes with Q; the worlds run on.
 
@@ -55,7 +56,10 @@ std::string parse_size(const std::string& text, Options::Size& size) {
            std::to_string(pixels_max);
 }
 
-Script read_script(const std::string& path) {
+link::Result<Script> read_script(const std::string& path) {
+    const auto wrong = [&](const std::string& why) {
+        return link::Error{.kind = link::Error::Kind::Usage, .what = "--script: " + path + ":" + why};
+    };
     std::error_code ignored;
     std::ifstream file;
     if (std::filesystem::is_directory(path, ignored)) {
@@ -64,14 +68,14 @@ Script read_script(const std::string& path) {
         file.open(path);
     }
     if (!file.is_open()) {
-        throw CLI::ValidationError{"--script", path + ": " + std::strerror(errno)};
+        return wrong(std::string{" "} + std::strerror(errno));
     }
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     auto script = Script::parse(text);
     if (!script) {
-        throw CLI::ValidationError{"--script", path + ":" + script.error().what};
+        return wrong(script.error().what);
     }
-    return *std::move(script);
+    return script;
 }
 
 } // namespace
@@ -95,83 +99,86 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     Options::Screenshot screenshot;
     Options::Record record;
     std::string server = "localhost", size;
-    CLI::App app{"evoview: a window into an evolution laboratory.", "evoview"};
+    Command app{"evoview", "evoview: a window into an evolution laboratory.", "evoview " EVOD_VERSION};
     app.footer(footer + std::string{"\n\nA script has these actions, one a line:\n"} + Script::reference());
-    app.set_version_flag("--version", "evoview " EVOD_VERSION);
-    auto* where = app.add_option("server,--server", server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
-                      ->envname("EVOD_SERVER")
-                      ->capture_default_str();
+    const auto where = app.add_option("server,--server", &server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
+                           .environment("EVOD_SERVER")
+                           .show_default();
     link::Credentials credentials;
     add_options(app, credentials);
-    app.add_option("--world", options.world, "the world to look at; else the only one, or \"default\"")
-        ->envname("EVOD_WORLD");
-    app.add_option("--island", options.island, "its island, from 0")
-        ->capture_default_str()
-        ->check(link::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
-    app.add_flag("--all-islands", options.all_islands, "all islands at once, as tiles");
-    app.add_option("--beside", options.beside, "a second world, in the right half");
-    app.add_option("--past", options.past_generation, "look at the past of the world, from this generation on")
-        ->check(link::WholeNumber{.min = 1});
-    app.add_option("--size", size, "of the window or the pictures, in pixels; else 1280x720 times the scale");
-    app.add_option("--scale", options.scale, "of text and widgets; else as the screen needs it, 1 for pictures")
-        ->check(link::RealNumber{Gui::scale_min, Gui::scale_max});
-    auto* start = app.add_flag("--start", options.start, "begin with the start screen");
-    auto* script = app.add_option("--script", options.script_path, "file with actions to be carried out in the window");
-    auto* shot = app.add_option("--screenshot", screenshot.path, "save one picture as this PNG file, open no window")
-                     ->excludes(start)
-                     ->excludes(script);
-    app.add_option("--at-tick", screenshot.tick, "of the first tick from this one on that the server shows")
-        ->needs(shot)
-        ->check(link::WholeNumber{});
-    auto* film = app.add_option("--record", record.path,
-                                "save picture after picture, open no window: PNG files in this folder, or a film by\n"
-                                "ffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
-                     ->excludes(shot)
-                     ->excludes(start)
-                     ->excludes(script);
-    app.add_option("--record-ticks", record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
-        ->needs(film)
-        ->check(link::WholeNumber{});
-    app.add_option("--record-generations", record.generations, "end when so many more generations have ended")
-        ->needs(film)
-        ->check(link::WholeNumber{.min = 1});
-    app.add_option("--every", record.every_ticks, "ticks from one picture to the next")
-        ->needs(film)
-        ->capture_default_str()
-        ->check(link::WholeNumber{1, 1'000'000});
-    app.add_option("--fps", record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
-        ->needs(film)
-        ->capture_default_str()
-        ->check(link::RealNumber{0.1, 1000});
-    app.add_option("--timeout", screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
-        ->capture_default_str()
-        ->check(link::RealNumber{0, 1e6});
-    app.final_callback([&] {
-        if (const auto endpoint = link::parse_endpoint(server)) {
-            options.connection.server = *endpoint;
-        } else {
-            throw CLI::ValidationError{"--server", endpoint.error().what};
+    app.add_option("--world", &options.world, "the world to look at; else the only one, or \"default\"")
+        .environment("EVOD_WORLD");
+    app.add_option("--island", &options.island, "its island, from 0")
+        .show_default()
+        .check(WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
+    app.add_flag("--all-islands", &options.all_islands, "all islands at once, as tiles");
+    app.add_option("--beside", &options.beside, "a second world, in the right half");
+    app.add_option("--past", &options.past_generation, "look at the past of the world, from this generation on")
+        .check(WholeNumber{.min = 1});
+    app.add_option("--size", &size, "of the window or the pictures, in pixels; else 1280x720 times the scale");
+    app.add_option("--scale", &options.scale, "of text and widgets; else as the screen needs it, 1 for pictures")
+        .check(RealNumber{Gui::scale_min, Gui::scale_max});
+    const auto start = app.add_flag("--start", &options.start, "begin with the start screen");
+    const auto script =
+        app.add_option("--script", &options.script_path, "file with actions to be carried out in the window");
+    const auto shot =
+        app.add_option("--screenshot", &screenshot.path, "save one picture as this PNG file, open no window")
+            .excludes(start)
+            .excludes(script);
+    app.add_option("--at-tick", &screenshot.tick, "of the first tick from this one on that the server shows")
+        .needs(shot)
+        .check(WholeNumber{});
+    const auto film = app.add_option("--record", &record.path,
+                                     "save picture after picture, open no window: PNG files in this folder, or a film "
+                                     "by\nffmpeg, if it ends in .mp4, .mkv, .webm, .mov, .avi or .gif")
+                          .excludes(shot)
+                          .excludes(start)
+                          .excludes(script);
+    app.add_option("--record-ticks", &record.ticks, "end after so many ticks; else with the run, or Ctrl+C")
+        .needs(film)
+        .check(WholeNumber{});
+    app.add_option("--record-generations", &record.generations, "end when so many more generations have ended")
+        .needs(film)
+        .check(WholeNumber{.min = 1});
+    app.add_option("--every", &record.every_ticks, "ticks from one picture to the next")
+        .needs(film)
+        .show_default()
+        .check(WholeNumber{1, 1'000'000});
+    app.add_option("--fps", &record.fps, "pictures a second of a film; ticks are 1/60 s unless set otherwise")
+        .needs(film)
+        .show_default()
+        .check(RealNumber{0.1, 1000});
+    const auto timeout =
+        app.add_option("--timeout", &screenshot.timeout_s, "seconds to wait for a screenshot, or a recorded picture")
+            .show_default()
+            .check(RealNumber{0, 1e6});
+    if (const auto ended = app.parse(argc, argv)) {
+        return *ended;
+    }
+
+    const auto endpoint = link::parse_endpoint(server);
+    if (!endpoint) {
+        return app.reject("--server: " + endpoint.error().what);
+    }
+    options.connection.server = *endpoint;
+    options.server_given = where.is_given();
+    if (const auto known = link::apply(credentials, options.connection); !known) {
+        return app.reject(known.error().what);
+    }
+    if (timeout.is_given() && screenshot.path.empty() && record.path.empty()) {
+        return app.reject("--timeout: is of --screenshot and --record");
+    }
+    if (!size.empty()) {
+        if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {
+            return app.reject("--size: " + error);
         }
-        if (const auto known = link::apply(credentials, options.connection); !known) {
-            throw CLI::ValidationError{known.error().what};
+    }
+    if (!options.script_path.empty()) {
+        auto read = read_script(options.script_path);
+        if (!read) {
+            return app.reject(read.error().what);
         }
-        if (app.count("--timeout") > 0 && screenshot.path.empty() && record.path.empty()) {
-            throw CLI::ValidationError{"--timeout", "is of --screenshot and --record"};
-        }
-        options.server_given = where->count() > 0;
-        if (!size.empty()) {
-            if (const std::string error = parse_size(size, options.size.emplace()); !error.empty()) {
-                throw CLI::ValidationError{"--size", error};
-            }
-        }
-        if (!options.script_path.empty()) {
-            options.script = read_script(options.script_path);
-        }
-    });
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : exit_usage;
+        options.script = *std::move(read);
     }
     if (!screenshot.path.empty()) {
         options.screenshot = screenshot;

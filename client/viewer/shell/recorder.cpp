@@ -24,7 +24,7 @@ namespace {
 
 using Clock = link::WorldView::Clock;
 
-constexpr double rate_hz = 60; // of pictures that come by themselves; the end of a step is shown at once
+constexpr double film_rate_hz = 60; // of pictures that come by themselves; the end of a step is shown at once
 constexpr std::chrono::seconds give_back_max{2};
 
 volatile std::sig_atomic_t interrupted = 0;
@@ -40,7 +40,7 @@ class Recorder {
         , scale_{options.scale.value_or(1)} // a film is on no screen
         , size_{size_of(options, scale_)}
         , film_{begin_film(wanted.path, size_.width, size_.height, wanted.fps)}
-        , panes_{wanted_of(options, rate_hz), options.beside} {}
+        , panes_{wanted_of(options, film_rate_hz), options.beside} {}
 
     void run() {
         if (wait_until([&] { return all_have_pictures(panes_); }, true)) {

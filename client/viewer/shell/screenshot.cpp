@@ -19,7 +19,7 @@ namespace evod::viewer {
 
 namespace {
 
-constexpr double rate_hz = 60; // of pictures: a later tick than was asked for is shown as little as possible
+constexpr double screenshot_rate_hz = 60; // of pictures: a later tick than was asked for is shown as little as possible
 
 /// Throws if the picture will never come.
 void check_hope(const Watch& watch, std::uint64_t tick) {
@@ -38,7 +38,7 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
     sf::Context context{context_settings(), 1, 1};
     const double scale = options.scale.value_or(1); // a file is on no screen
     Stage stage{scale};
-    Panes panes{wanted_of(options, rate_hz), options.beside};
+    Panes panes{wanted_of(options, screenshot_rate_hz), options.beside};
     bool told = false;
     const auto late = [&]() -> const Watch* { // a world that is not there yet
         const bool all = all_have_pictures(panes);

@@ -24,7 +24,7 @@ link::Error usage(std::string what) {
     return {.kind = link::Error::Kind::Usage, .what = std::move(what)};
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     return "\"" + std::string{text} + "\"";
 }
 
@@ -294,14 +294,14 @@ std::string condition_names() {
 
 // ---- verbs -----------------------------------------------------------------------------------------------------
 
-struct Line {
+struct ScriptLine {
     std::vector<std::string> words; // the verb is the first
     double patience_s;              // from here on; a verb may change it
 };
 
 /// What is wrong with a word of a line, counted from 1.
-link::Error bad_word(const Line& line, std::size_t number, const std::string& allowed) {
-    return usage("word " + std::to_string(number) + ": " + quoted(line.words[number - 1]) + "; allowed: " + allowed);
+link::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
+    return usage("word " + std::to_string(number) + ": " + in_quotes(line.words[number - 1]) + "; allowed: " + allowed);
 }
 
 struct Verb {
@@ -309,13 +309,13 @@ struct Verb {
     std::string_view words; // after it, in capitals
     std::string_view meaning;
     std::size_t words_min, words_max; // the verb not counted
-    link::Result<Acts> (*parse)(Line& line);
+    link::Result<Acts> (*parse)(ScriptLine& line);
 };
 
 const Verb verbs[] = {
     {"key", "NAME", "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, …, a sign; with Ctrl+, Shift+, Alt+",
      1, 1,
-     [](Line& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> link::Result<Acts> {
          const auto chord = parse_chord(line.words[1]);
          if (!chord) {
              return bad_word(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
@@ -323,11 +323,11 @@ const Verb verbs[] = {
          return Acts{press_act(*chord)};
      }},
     {"type", "TEXT", "types into the field that has the keyboard", 1, 1,
-     [](Line& line) -> link::Result<Acts> { return Acts{type_act(line.words[1])}; }},
+     [](ScriptLine& line) -> link::Result<Acts> { return Acts{type_act(line.words[1])}; }},
     {"click", "NAME", "clicks on a widget, by what stands on it or beside it", 1, 1,
-     [](Line& line) -> link::Result<Acts> { return click_acts(line.words[1], false); }},
+     [](ScriptLine& line) -> link::Result<Acts> { return click_acts(line.words[1], false); }},
     {"set", "NAME TEXT", "types a value into a field or slider, in place of what it says, and Enter", 2, 2,
-     [](Line& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> link::Result<Acts> {
          Acts acts = click_acts(line.words[1], true);
          acts.push_back(press_act({.key = Key::A, .control = true}));
          acts.push_back(type_act(line.words[2]));
@@ -335,7 +335,7 @@ const Verb verbs[] = {
          return acts;
      }},
     {"wait", "CONDITION", "waits until that holds", 1, 2,
-     [](Line& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> link::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
          if (condition == std::end(conditions)) {
              return bad_word(line, 2, condition_names());
@@ -354,7 +354,7 @@ const Verb verbs[] = {
          return Acts{[condition, word](Host& host) -> link::Result<bool> { return condition->holds(host, word); }};
      }},
     {"timeout", "SECONDS", "how long each of the next lines may take; 60 at first", 1, 1,
-     [](Line& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> link::Result<Acts> {
          const auto seconds = number_in<double>(line.words[1]);
          if (!seconds || !(*seconds > 0 && *seconds <= patience_s_max)) {
              return bad_word(line, 2, "more than 0, to 86400");
@@ -363,7 +363,7 @@ const Verb verbs[] = {
          return Acts{};
      }},
     {"screenshot", "FILE", "saves the window as PNG", 1, 1,
-     [](Line& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> link::Result<Acts> {
          return Acts{[path = line.words[1]](Host& host) -> link::Result<bool> {
              if (std::string trouble = host.save(path); !trouble.empty()) {
                  return usage(std::move(trouble));
@@ -372,7 +372,7 @@ const Verb verbs[] = {
          }};
      }},
     {"quit", "", "closes the window", 0, 0,
-     [](Line&) -> link::Result<Acts> {
+     [](ScriptLine&) -> link::Result<Acts> {
          return Acts{[](Host& host) -> link::Result<bool> {
              host.close();
              return true;
@@ -388,7 +388,7 @@ std::string verb_names() {
     return names;
 }
 
-link::Result<Acts> acts_of(Line& line) {
+link::Result<Acts> acts_of(ScriptLine& line) {
     const auto* verb = std::ranges::find(verbs, line.words[0], &Verb::name);
     if (verb == std::end(verbs)) {
         return bad_word(line, 1, verb_names());
@@ -419,7 +419,7 @@ link::Result<Script> Script::parse(std::string_view text) {
         if (words && words->empty()) {
             continue;
         }
-        Line line{.words = words ? *std::move(words) : std::vector<std::string>{}, .patience_s = patience_s};
+        ScriptLine line{.words = words ? *std::move(words) : std::vector<std::string>{}, .patience_s = patience_s};
         auto acts = words ? acts_of(line) : link::Result<Acts>{words.error()};
         if (!acts) {
             return usage(std::to_string(number) + ": " + acts.error().what);

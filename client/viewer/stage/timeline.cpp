@@ -17,7 +17,7 @@ namespace {
 
 // In pixels at scale 1.
 constexpr float line_height = 26, label_height = 13;
-constexpr float edge = 12, line_edge = 6; // from the window to the widgets, and on to the ends of the line
+constexpr float timeline_edge = 12, line_edge = 6; // from the window to the widgets, and on to the ends of the line
 constexpr float mark_room = 70;           // from mark to mark, at least
 
 evod::v1::RunMoment beginning_of(std::uint64_t generation) {
@@ -47,7 +47,7 @@ void Timeline::build(Watch& watch, const Gui& gui, Rectangle place, int number) 
     ImGui::SetNextWindowPos({static_cast<float>(place.left), static_cast<float>(place.top)});
     ImGui::SetNextWindowSize({static_cast<float>(place.width), static_cast<float>(place.height)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {edge * pixel, 4 * pixel});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {timeline_edge * pixel, 4 * pixel});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * pixel, 3 * pixel});
     ImGui::PushFont(&gui.label());
     const std::string name = "##timeline " + std::to_string(number);
@@ -94,7 +94,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
     const evod::v1::Recording recording = *watch.recording(); // a seek that is answered changes it
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float pixel = gui.scale(), label_size = label_height * pixel;
-    const float width = std::max(static_cast<float>(place.width) - 2 * edge * pixel, 1.f);
+    const float width = std::max(static_cast<float>(place.width) - 2 * timeline_edge * pixel, 1.f);
     ImGui::InvisibleButton("line", {width, line_height * pixel});
     widgets::mark("time line");
     const TimeScale scale{recording.first_tick(), std::max(recording.last_tick(), recording.first_tick()),

@@ -32,7 +32,7 @@ BreedingRecord breed(RealServer& server, const std::string& name,
         while (const auto wanted = record.wanted(moment)) {
             evod::v1::Request request;
             *request.mutable_get_breeding() = *wanted;
-            const auto response = server.connection->request(request).value();
+            const auto response = server.connection->request(request, hang).value();
             EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
             record.add(response.breeding());
             if (!record.known()) {

@@ -100,7 +100,7 @@ struct TimelineTest : PanesTest {
 
     bool shows(const wire::Picture& picture, Rectangle place) {
         const ExpectedPicture expected{picture, camera_in(place, picture.about)};
-        return wait_until([&] {
+        return Person::looks_until([&] {
             const sf::Image seen = person.looks();
             return seen.getSize() == sf::Vector2u{800, 500} && expected.compare(seen).count == 0;
         });
@@ -136,7 +136,7 @@ TEST_F(TimelineTest, TheLineIsDraggedToAnyTick) {
     const TimeScale line{.first_tick = 0, .last_tick = 421, .left = 18, .width = 764};
     const int y = 500 - static_cast<int>(Timeline::height_pixels) + 18;
     const int from = 700, to = 300;
-    ASSERT_TRUE(wait_until([&] {
+    ASSERT_TRUE(Person::looks_until([&] {
         person.move_mouse(from, y);
         return shows_now(palette::focus);
     })) << "it is under the mouse";
@@ -148,7 +148,7 @@ TEST_F(TimelineTest, TheLineIsDraggedToAnyTick) {
     EXPECT_TRUE(shows(*past_picture_of(server, "one", at_tick(line.tick_at(to))), viewport()));
     person.release_mouse(to, y);
     person.move_mouse(400, 5); // keys are for the line as long as it is held
-    EXPECT_TRUE(wait_until([&] { return !shows_now(palette::focus); }));
+    EXPECT_TRUE(Person::looks_until([&] { return !shows_now(palette::focus); }));
     person.press(XK_q);
     EXPECT_EQ(evoview->wait(), 0);
 }

@@ -75,7 +75,7 @@ TEST(RealServer, NothingIsSaidToRunOnceItIsGone) {
     ASSERT_TRUE(person.finds_window());
     ASSERT_TRUE(person.sees(palette::organism));
     const auto says_that_it_runs = [&](bool it_does) {
-        return wait_until([&] {
+        return Person::looks_until([&] {
             const sf::Image seen = person.looks();
             return seen.getSize().x > 0 && (count(seen, palette::running) > 0) == it_does;
         });

@@ -17,7 +17,7 @@
 namespace evod::viewer {
 namespace {
 
-constexpr unsigned width = 1280, height = 720;
+constexpr unsigned window_width = 1280, window_height = 720;
 
 struct SightTest : testing::Test {
     SightTest() {
@@ -28,7 +28,7 @@ struct SightTest : testing::Test {
     }
 
     sf::Image draw() {
-        return stage.capture(*panes, {.width_pixels = width, .height_pixels = height, .now = Clock::now()});
+        return stage.capture(*panes, {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now()});
     }
     /// Draws until the condition holds, and once more.
     template <class Condition>
@@ -53,7 +53,7 @@ struct SightTest : testing::Test {
     }
     /// The picture with organisms in these colours, and room for a legend.
     void expect_colours(const sf::Image& image, const std::vector<Colour>& colours) {
-        ExpectedPicture expected{picture, camera_of(picture.about, width, height), colours};
+        ExpectedPicture expected{picture, camera_of(picture.about, window_width, window_height), colours};
         expected.leave_open({0, 480, 260, 240});
         for (const Colour colour : colours) {
             EXPECT_GT(expected.count(colour), 10u);
@@ -72,7 +72,7 @@ struct SightTest : testing::Test {
 
 TEST_F(SightTest, WithoutAnySwitchNothingIsAdded) {
     const sf::Image image = draw_when([&] { return watch().picture() != nullptr; });
-    const auto mismatch = ExpectedPicture{picture, camera_of(picture.about, width, height)}.compare(image);
+    const auto mismatch = ExpectedPicture{picture, camera_of(picture.about, window_width, window_height)}.compare(image);
     EXPECT_EQ(mismatch.count, 0u) << mismatch.first;
 }
 

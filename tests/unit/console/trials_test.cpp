@@ -61,7 +61,7 @@ TEST(Trials, NoneIsBegunOnceTheyAreStopped) {
     for_each_trial(
         1000, 2,
         [&](std::size_t) {
-            if (++begun == 10)
+            if (++begun >= 10)
                 stopped = true;
         },
         [&] { return stopped.load(); });

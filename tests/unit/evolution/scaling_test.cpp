@@ -15,7 +15,7 @@ std::vector<double> scaled(std::span<const double> fitness, FitnessScaling scali
     return scaled_fitness(ranking, parameters);
 }
 
-const std::vector<double> ten_to_one = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
+const std::vector<double> falling_fitness = {10, 9, 8, 7, 6, 5, 4, 3, 2, 1};
 
 TEST(Scaling, NoneGivesTheFitness) {
     const std::vector fitness = {3.0, -1.0, 2.0};
@@ -36,7 +36,7 @@ TEST(Scaling, LinearRankingGivesTheBestThePressureAndTheMeanOne) {
     for (const double pressure : {1.0, 1.5, 2.0}) {
         Parameters parameters;
         parameters.ranking_pressure = pressure;
-        const auto weights = scaled(ten_to_one, FitnessScaling::LinearRanking, parameters);
+        const auto weights = scaled(falling_fitness, FitnessScaling::LinearRanking, parameters);
         EXPECT_DOUBLE_EQ(weights.front(), pressure);
         EXPECT_DOUBLE_EQ(weights.back(), 2 - pressure);
         EXPECT_NEAR(std::accumulate(weights.begin(), weights.end(), 0.0), 10, 1e-12);
@@ -58,7 +58,7 @@ TEST(Scaling, RankingGoesByRankAndTheLowerIndexOfEqualsIsBetter) {
 TEST(Scaling, ExponentialRankingDecaysByAFactorPerRank) {
     Parameters parameters;
     parameters.ranking_decay = 0.9;
-    const auto weights = scaled(ten_to_one, FitnessScaling::ExponentialRanking, parameters);
+    const auto weights = scaled(falling_fitness, FitnessScaling::ExponentialRanking, parameters);
     for (int rank = 0; rank < 10; ++rank)
         EXPECT_NEAR(weights[rank], std::pow(0.9, rank), 1e-15);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/link/connection.h"
+#include "tests/support/waiting.h"
 
 #include <boost/asio.hpp>
 #include <gtest/gtest.h>
@@ -91,7 +92,10 @@ class FakeServer {
   public:
     Endpoint endpoint() const { return {.host = "127.0.0.1", .port = acceptor_.local_endpoint().port()}; }
     Options options() const {
-        return {.server = endpoint(), .client_name = "a test", .backoff_min = std::chrono::milliseconds{1}};
+        return {.server = endpoint(),
+                .client_name = "a test",
+                .connect_timeout = hang,
+                .backoff_min = std::chrono::milliseconds{1}};
     }
     FakeSession accept() { return FakeSession{acceptor_.accept()}; }
     FakeSession accept_and_welcome(std::uint32_t requests_in_flight_max = 0, v1::Role role = v1::ROLE_UNSPECIFIED) {

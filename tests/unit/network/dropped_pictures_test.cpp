@@ -5,11 +5,11 @@
 #include "server/network/chains.h"
 
 #include "proto/wire/picture_decoder.h"
+#include "tests/support/everyday.h"
 #include "tests/unit/wire/living_island.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -20,11 +20,6 @@ using namespace std::chrono_literals;
 using runtime::Clock;
 using wire::below;
 using wire::Random;
-
-std::uint64_t wanted_frames() {
-    const char* asked = std::getenv("FRAMES");
-    return asked ? std::stoull(asked) : 4000;
-}
 
 /// The server's end: an island that lives, dies out, is born again, stands still; and its chain.
 class Server {
@@ -84,9 +79,9 @@ struct Habits {
     v1::Compression compression = v1::COMPRESSION_NONE;
 };
 
-class Viewer {
+class DroppingViewer {
   public:
-    Viewer(const Habits& habits, std::uint64_t seed) : habits_{habits}, random_{seed} {}
+    DroppingViewer(const Habits& habits, std::uint64_t seed) : habits_{habits}, random_{seed} {}
 
     /// Returns whether a picture came to be compared.
     bool take(ChainPicture& picture, const wire::Scene& scene) {
@@ -157,16 +152,16 @@ TEST(DroppedPictures, WhatIsDecodedIsWhatTheServerHad) {
         {.slow = 20, .lost = 20, .damaged = 20, .asks = 20, .compression = v1::COMPRESSION_ZSTD},
         {.slow = 700, .lost = 200, .damaged = 100, .asks = 100},
     };
-    const std::uint64_t wanted = wanted_frames();
+    const std::uint64_t wanted = everyday_size("FRAMES", 4000);
     std::uint64_t compared = 0, refusals = 0;
     for (std::uint64_t seed = 1; compared < wanted; ++seed) {
         Server server{seed, seed % 2 == 0 ? 4000.0 : 200'000.0};
-        std::vector<Viewer> viewers;
+        std::vector<DroppingViewer> viewers;
         for (const Habits& habits : all_habits)
             viewers.emplace_back(habits, 1000 * seed + viewers.size());
         for (int n = 0; n < 250; ++n) {
             const ChainPicturePtr picture = server.next();
-            for (Viewer& viewer : viewers)
+            for (DroppingViewer& viewer : viewers)
                 compared += viewer.take(*picture, server.scene());
             ASSERT_FALSE(HasFailure()) << "seed " << seed << ", after picture " << n;
         }

@@ -19,9 +19,9 @@ using wire::LivingIsland;
 using wire::Random;
 
 /// A viewer at the other end of a line.
-class Viewer {
+class TileViewer {
   public:
-    explicit Viewer(v1::Compression compression = v1::COMPRESSION_NONE) : compression_{compression} {}
+    explicit TileViewer(v1::Compression compression = v1::COMPRESSION_NONE) : compression_{compression} {}
 
     /// The frame that it is sent.
     v1::SnapshotFrame send(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
@@ -117,7 +117,7 @@ int deltas_in(const v1::SnapshotFrame& frame) {
 RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIsThere, (std::uint64_t seed)) {
     Random random{seed};
     Pictures pictures{seed, std::array{700.0, 2000.0, 6000.0}[below(random, 3)]};
-    std::vector<Viewer> viewers;
+    std::vector<TileViewer> viewers;
     viewers.emplace_back(); // sees everything always
     for (int i = 0; i < 4; ++i)
         viewers.emplace_back(i % 2 == 0 ? v1::COMPRESSION_NONE : v1::COMPRESSION_ZSTD);
@@ -152,7 +152,7 @@ RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIs
 
 TEST(TiledPictures, EveryTileIsToldFromThePictureBefore) {
     Pictures pictures{1};
-    Viewer viewer;
+    TileViewer viewer;
     viewer.send(*pictures.next(), pictures.everything());
     for (int n = 1; n < 30; ++n) {
         const auto frame = viewer.send(*pictures.next(), pictures.everything());
@@ -162,7 +162,7 @@ TEST(TiledPictures, EveryTileIsToldFromThePictureBefore) {
 
 TEST(TiledPictures, EveryTileTakesAKeyframeAtLeastEveryTwoSeconds) {
     Pictures pictures{2};
-    Viewer viewer;
+    TileViewer viewer;
     std::vector<int> age(16);
     for (int n = 0; n < 200; ++n) {
         const auto frame = viewer.send(*pictures.next(), pictures.everything());
@@ -191,7 +191,7 @@ TEST(TiledPictures, ATileIsEncodedOnceForAll) {
 
 TEST(TiledPictures, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
     Pictures pictures{4};
-    Viewer viewer;
+    TileViewer viewer;
     const auto picture = pictures.next();
     const wire::TileRange left{.column_begin = 0, .column_end = 2, .row_begin = 0, .row_end = 1};
     const wire::TileRange right{.column_begin = 1, .column_end = 3, .row_begin = 0, .row_end = 1};
@@ -206,7 +206,7 @@ TEST(TiledPictures, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
 
 TEST(TiledPictures, AnotherIslandSizeBeginsAnew) {
     Pictures pictures{5};
-    Viewer viewer;
+    TileViewer viewer;
     ASSERT_TRUE(viewer.watch(*pictures.next(), pictures.everything()));
     pictures.island().side_px = 1500;
     const auto picture = pictures.next();

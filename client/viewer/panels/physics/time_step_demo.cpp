@@ -19,10 +19,10 @@ TimeStepDemo::State TimeStepDemo::exact(double t) const {
     return {fading * (x0 * c + b * s), fading * (b * c - square * x0 * s) - h * fading * (x0 * c + b * s)};
 }
 
-TimeStepDemo::State TimeStepDemo::step(State from, double dt, Method method) const {
+TimeStepDemo::State TimeStepDemo::step(State from, double dt, EulerMethod method) const {
     const double omega = system_.omega_per_s;
     const double v = from.v_px_s + (-omega * omega * from.x_px - system_.damping_per_s * from.v_px_s) * dt;
-    return {from.x_px + (method == Method::SymplecticEuler ? v : from.v_px_s) * dt, v};
+    return {from.x_px + (method == EulerMethod::SymplecticEuler ? v : from.v_px_s) * dt, v};
 }
 
 double TimeStepDemo::energy(const State& state) const {
@@ -35,8 +35,8 @@ std::vector<TimeStepDemo::Row> TimeStepDemo::rows(double dt, std::size_t step_co
     for (std::size_t n = 1; n <= step_count; ++n) {
         const Row& last = rows.back();
         const double t = static_cast<double>(n) * dt;
-        rows.push_back({t, exact(t), step(last.symplectic_euler, dt, Method::SymplecticEuler),
-                        step(last.explicit_euler, dt, Method::ExplicitEuler)});
+        rows.push_back({t, exact(t), step(last.symplectic_euler, dt, EulerMethod::SymplecticEuler),
+                        step(last.explicit_euler, dt, EulerMethod::ExplicitEuler)});
     }
     return rows;
 }

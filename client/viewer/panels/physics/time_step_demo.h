@@ -16,7 +16,7 @@
 
 namespace evod::viewer {
 
-enum class Method { SymplecticEuler, ExplicitEuler };
+enum class EulerMethod { SymplecticEuler, ExplicitEuler };
 
 class TimeStepDemo {
   public:
@@ -38,7 +38,7 @@ class TimeStepDemo {
 
     /// The exact solution at t >= 0.
     State exact(double t_s) const;
-    State step(State from, double dt_s, Method method) const;
+    State step(State from, double dt_s, EulerMethod method) const;
     /// Of a kilogram, kg px²/s².
     double energy(const State& state) const;
 

@@ -29,7 +29,7 @@ class Person {
     ~Person() { XCloseDisplay(display_); }
 
     bool finds_window() {
-        return wait_until([this] {
+        return looks_until([this] {
             ::Window root, parent, *children = nullptr;
             unsigned count = 0;
             XQueryTree(display_, DefaultRootWindow(display_), &root, &parent, &children, &count);
@@ -51,7 +51,13 @@ class Person {
     }
 
     bool sees(Colour colour) {
-        return wait_until([&] { return count(looks(), colour) > 50; });
+        return looks_until([&] { return count(looks(), colour) > 50; });
+    }
+
+    /// Looks again and again until the condition holds, and leaves time to draw in between; false if it does not.
+    template <class Condition>
+    static bool looks_until(Condition condition) {
+        return wait_until(condition, [] { std::this_thread::sleep_for(std::chrono::milliseconds{20}); });
     }
 
     /// What the window shows; of no size if it cannot be looked at just now.

@@ -146,7 +146,7 @@ class RealServer {
 
     const std::string& address() const { return address_; }
     evod::v1::WorldInfo ask(const evod::v1::Request& request) {
-        const auto response = connection->request(request).value();
+        const auto response = connection->request(request, hang).value();
         EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
         return response.has_statistics() ? response.statistics().world() : response.world();
     }
@@ -196,7 +196,7 @@ class RealServer {
     evod::v1::ParameterSet parameters() {
         evod::v1::Request request;
         request.mutable_get_parameters();
-        return connection->request(request).value().parameters();
+        return connection->request(request, hang).value().parameters();
     }
     /// Ends it; everything that it has said since it began to listen.
     std::string end() {

@@ -77,7 +77,7 @@ struct SightTest : testing::Test {
         camera.set_viewport({0, 0, 1000, 1000});
         camera.set_island(1000, 1000);
         Watch::Wanted wanted{.connection = {}, .world = "default", .island = 1};
-        wanted.connection.server = server.endpoint();
+        wanted.connection = server.options();
         watch.emplace(wanted);
         session.emplace(server.accept_and_welcome());
         for (std::uint32_t id : {6u, 7u}) { // events, pictures

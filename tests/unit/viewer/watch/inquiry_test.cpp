@@ -1,10 +1,9 @@
 #include "client/viewer/watch/inquiry.h"
 
+#include "tests/support/waiting.h"
 #include "tests/unit/link/fake_server.h"
 
 #include <gmock/gmock.h>
-
-#include <thread>
 
 namespace evod::viewer {
 namespace {
@@ -15,7 +14,7 @@ using testing::ElementsAre;
 struct InquiryTest : testing::Test {
     InquiryTest() {
         Watch::Wanted wanted{.connection = {}, .world = "default", .all_islands = true};
-        wanted.connection.server = server.endpoint();
+        wanted.connection = server.options();
         watch.emplace(wanted);
         session.emplace(server.accept_and_welcome());
         for (std::uint32_t id : {6u, 7u}) { // events, pictures
@@ -28,12 +27,10 @@ struct InquiryTest : testing::Test {
 
     template <class Condition>
     void until(Condition condition) {
-        const auto end = std::chrono::steady_clock::now() + 10s;
-        while (!condition()) {
-            ASSERT_LT(std::chrono::steady_clock::now(), end) << "it never came to that";
+        ASSERT_TRUE(wait_until(condition, [this] {
             watch->update(std::chrono::steady_clock::now());
-            std::this_thread::sleep_for(1ms);
-        }
+            take_a_nap();
+        }));
     }
     /// Asks, and returns what the server is asked.
     evod::v1::Request ask() {
@@ -110,7 +107,7 @@ TEST_F(InquiryTest, WhatWasAskedAboutAnotherPlaceIsNotBelieved) {
 TEST_F(InquiryTest, WhatWasAskedOfAnotherWatchIsNotBelieved) {
     const auto question = ask();
     Watch::Wanted wanted{.connection = {}, .world = "default", .all_islands = true};
-    wanted.connection.server = server.endpoint();
+    wanted.connection = server.options();
     const Watch beside{wanted};
     EXPECT_TRUE(inquiry->due(beside, now)) << "the panel is for the other half now";
     session->answer(question, 1);

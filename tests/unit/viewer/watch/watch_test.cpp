@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 
 #include <set>
-#include <thread>
 
 namespace evod::viewer {
 namespace {
@@ -15,9 +14,7 @@ using testing::ElementsAre;
 
 struct WatchTest : testing::Test {
     Watch::Wanted wanted() const {
-        Watch::Wanted island{.connection = {}, .world = "default", .island = 1};
-        island.connection.server = server.endpoint();
-        return island;
+        return {.connection = server.options(), .world = "default", .island = 1};
     }
 
     /// Updates until the condition holds; fails if it does not within some seconds.
@@ -46,7 +43,7 @@ struct WatchTest : testing::Test {
     }
 
     static void send_picture(link::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
-                             std::uint64_t tick, const std::string& world = "default") {
+                             std::uint64_t tick, const std::string& world = "default", std::uint64_t sequence = 0) {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(100);
         frame.set_height_px(100);
@@ -57,6 +54,7 @@ struct WatchTest : testing::Test {
         frame.set_island(island);
         frame.set_island_count(3);
         frame.set_tick(tick);
+        frame.set_sequence(sequence); // 0: it is not acknowledged
         frame.set_state(evod::v1::RUN_STATE_RUNNING);
         session.send(frame);
     }
@@ -226,7 +224,9 @@ TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
     ended.set_tick(53);
     session.send(answer);
     session.send(event);
-    std::this_thread::sleep_for(std::chrono::milliseconds{20}); // so that both are most likely taken in together
+    // The acknowledgement of a snapshot after them shows that both are there, to be taken in together.
+    send_picture(session, 7, 1, 51, "default", 1);
+    EXPECT_TRUE(session.read().has_acknowledge_picture());
     until(watch, [&] { return watch.all_answered() && watch.control().tick() == 53; });
     EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_PAUSED);
 }

@@ -1,8 +1,8 @@
-#include "client/link/option_numbers.h"
+#include "proto/command_line/number.h"
 
 #include <gtest/gtest.h>
 
-namespace evod::link {
+namespace evod::command_line {
 namespace {
 
 TEST(WholeNumber, TakesWhatIsInRange) {
@@ -26,4 +26,4 @@ TEST(RealNumber, TakesWhatIsInRangeAndNothingElse) {
 }
 
 } // namespace
-} // namespace evod::link
+} // namespace evod::command_line
