@@ -84,9 +84,11 @@ Result<std::string> rerun_text(storage::RunFile& file) {
     if (!changes)
         return changes.error();
     const std::uint64_t generations = file.last_generation_ended();
-    if (identity.first_generation > 1)
-        return "The run is a fork: it begins with generation " + std::to_string(identity.first_generation) +
-               " of another one, and the run file alone holds that. `evod verify` begins there.\n";
+    if (identity.forked_from) {
+        return "The run is a fork: it begins in generation " + std::to_string(identity.first_generation) + ", at tick " +
+               std::to_string(identity.first_tick) + ", of another run, and only the run file contains that state. `evod verify` " +
+               "begins there.\n";
+    }
     if (generations == 0)
         return std::string{"No generation has ended, so there are no numbers to compare.\n"};
     if (!changes->empty())

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t pairs_per_piece = 512;
 constexpr std::size_t survivors_per_piece = 1024;
-constexpr std::size_t prefetched_ahead = 8;
+constexpr std::size_t pairs_prefetched = 8;
 
 class Breeding {
   public:
@@ -22,8 +22,8 @@ class Breeding {
     void keep(std::span<const std::uint32_t> survivors, std::uint32_t kept, NextGeneration& next) const {
         next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
             const auto place = static_cast<std::uint32_t>(i);
-            if (i + prefetched_ahead < survivors.size())
-                prefetch(survivors[i + prefetched_ahead]);
+            if (i + pairs_prefetched < survivors.size())
+                prefetch(survivors[i + pairs_prefetched]);
             next.parents[i] = {survivors[i], survivors[i]};
             return descent_.keep(survivors[i], place, place >= kept, column(next.genes, place), Untold{});
         });
@@ -33,9 +33,9 @@ class Breeding {
     void breed(std::span<const Parents> pairs, std::uint32_t first, NextGeneration& next) const {
         const auto organisms = static_cast<std::uint32_t>(next.genes.cols());
         next.clamped_count += counted(pairs.size(), pairs_per_piece, [&](std::size_t i) {
-            if (i + prefetched_ahead < pairs.size()) {
-                prefetch(pairs[i + prefetched_ahead].first);
-                prefetch(pairs[i + prefetched_ahead].second);
+            if (i + pairs_prefetched < pairs.size()) {
+                prefetch(pairs[i + pairs_prefetched].first);
+                prefetch(pairs[i + pairs_prefetched].second);
             }
             const Parents pair = pairs[i];
             GeneMask mask = descent_.draw_mask(static_cast<std::uint32_t>(i)).value_or(0);

@@ -86,9 +86,10 @@ runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, run
                                   .owner = owner},
                 std::move(reply)};
     if (request.has_seek())
-        return {
-            runtime::Seek{.world = protocol::lookup_name(request.seek().world()), .to = wanted(request.seek().to())},
-            std::move(reply)};
+        return {runtime::Seek{.world = protocol::lookup_name(request.seek().world()),
+                              .to = wanted(request.seek().to()),
+                              .owner = owner},
+                std::move(reply)};
     return {runtime::ClosePast{protocol::lookup_name(request.close_past().world())}, std::move(reply)};
 }
 

@@ -57,11 +57,12 @@ struct OpenPast {
 struct Seek {
     std::string world;
     storage::WantedMoment to;
+    std::uint64_t owner = 0; // who asks, >= 1
 };
 struct ClosePast {
     std::string world;
 };
-/// Closes all that an owner has opened.
+/// Closes all that an owner has opened, and ends the seeks that it asked for.
 struct OwnerGone {
     std::uint64_t owner = 0;
 };

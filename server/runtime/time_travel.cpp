@@ -21,6 +21,14 @@ Refusal within(Refusal refused, const std::string& field) {
     return refused;
 }
 
+Refusal superseded() {
+    return refusal(RefusalCode::FailedPrecondition, "superseded by a later seek: seek again if this moment is still wanted");
+}
+
+Refusal owner_gone() {
+    return refusal(RefusalCode::NotFound, "the session that asked for it has ended");
+}
+
 Refusal closed_since() {
     return refusal(RefusalCode::NotFound, "the past has been closed: open it again");
 }
@@ -42,6 +50,7 @@ Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::o
     if (!departure)
         return departure.error();
     Journey journey{.number = 0,
+                    .owner = 0,
                     .rerun = std::move(departure->from),
                     .to = departure->to,
                     .there = std::move(departure->there),
@@ -116,14 +125,13 @@ void TimeTravel::once_written(const std::string& world, std::function<void(bool)
     });
 }
 
-simulation::Recording TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
-    simulation::Recording known;
+storage::KnownUntil TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
     const auto living = std::as_const(laboratory_).find(world);
-    if (living && !(*living)->recording && (*living)->run_id == run_id) {
-        known.last_generation = (*living)->world.moment().generation;
-        known.last_tick = (*living)->world.moment().tick;
+    if (!living || (*living)->recording || (*living)->run_id != run_id) {
+        return {};
     }
-    return known;
+    const simulation::Moment& now = (*living)->world.moment();
+    return {.generation = now.generation, .tick = now.tick};
 }
 
 void TimeTravel::stop_waiting() {
@@ -132,15 +140,11 @@ void TimeTravel::stop_waiting() {
 }
 
 void TimeTravel::set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
-                         const simulation::Recording& known, Arrived arrived,
-                         const std::function<void(std::uint64_t)>& departed) {
+                         storage::KnownUntil known, std::uint64_t owner, Arrived arrived, const Departed& departed) {
     if (departing_.size() + journeys_.size() >= journeys_max)
         return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again"));
     const std::uint64_t number = ++last_journey_;
-    Departing departing{.departed = {}, .arrived = std::move(arrived)};
-    if (departed)
-        departing.departed = [departed, number] { departed(number); };
-    departing_.emplace(number, std::move(departing));
+    departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
         base::InlineExecutor executor;
         const auto departure = std::make_shared<Result<storage::Departure>>(past.depart(to, known, executor));
@@ -149,43 +153,54 @@ void TimeTravel::set_out(const storage::Past& past, const std::optional<storage:
 }
 
 void TimeTravel::depart(std::uint64_t number, Result<storage::Departure> departure) {
-    Departing departing = std::move(departing_.extract(number).mapped());
+    const auto found = departing_.extract(number);
+    if (!found) { // its owner is gone
+        return;
+    }
+    Departing departing = std::move(found.mapped());
     if (!departure)
         return departing.arrived(departure.error());
-    if (departing.departed)
-        departing.departed();
+    if (departing.departed && !departing.departed(number)) {
+        return departing.arrived(closed_since());
+    }
     journeys_.push_back({.number = number,
+                         .owner = departing.owner,
                          .rerun = std::move(departure->from),
                          .to = departure->to,
                          .there = std::move(departure->there),
                          .arrived = std::move(departing.arrived)});
 }
 
-void TimeTravel::give_up(std::uint64_t number) {
+void TimeTravel::give_up(std::uint64_t number, const Refusal& why) {
     const auto journey = std::ranges::find(journeys_, number, &Journey::number);
     if (journey == journeys_.end())
         return;
     const Arrived gave_up = std::move(journey->arrived);
     journeys_.erase(journey);
-    gave_up(
-        refusal(RefusalCode::FailedPrecondition,
-                "another moment was asked for meanwhile, and that is shown: seek again if this one is still wanted"));
+    gave_up(why);
 }
 
 void TimeTravel::begin_journey(const std::string& world, std::uint64_t generation, Arrived arrived) {
     const auto past = past_of(world);
     if (!past)
         return arrived(past.error());
-    once_written(world, [this, world, generation, past = *past, arrived = std::move(arrived)](bool all_is_written) {
+    const auto known = known_of(world, past->run_id());
+    once_written(world, [this, generation, known, past = *past, arrived = std::move(arrived)](bool all_is_written) {
         set_out(past, storage::WantedMoment{.generation = generation, .tick = {}},
-                all_is_written ? known_of(world, past.run_id()) : simulation::Recording{}, arrived);
+                all_is_written ? known : storage::KnownUntil{}, 0, arrived);
     });
+}
+
+bool TimeTravel::is_over(const Journey& journey) {
+    const simulation::Moment& now = journey.rerun.world().moment();
+    return now.generation > journey.to.generation ||
+           (now.generation == journey.to.generation && now.tick >= journey.to.tick);
 }
 
 bool TimeTravel::advance(Journey& journey, base::Executor& executor) {
     const simulation::World& world = journey.rerun.world();
     const simulation::Moment& now = world.moment();
-    if (now.generation == journey.to.generation && now.tick >= journey.to.tick)
+    if (is_over(journey))
         return true;
     if (now.generation < journey.to.generation && world.generation_over())
         journey.rerun.turn_over(executor);
@@ -193,7 +208,7 @@ bool TimeTravel::advance(Journey& journey, base::Executor& executor) {
         journey.rerun.advance_tick(executor);
     else
         return true; // the run was over before: whoever arrives sees that
-    return now.generation == journey.to.generation && now.tick >= journey.to.tick;
+    return is_over(journey);
 }
 
 void TimeTravel::travel(const std::function<bool()>& stop) {
@@ -208,7 +223,7 @@ void TimeTravel::travel(const std::function<bool()>& stop) {
             journey.arrived(Arrival{std::move(journey.rerun), std::move(journey.there)});
         else
             journey.arrived(refusal(RefusalCode::DataLoss,
-                                    "simulated again, the run is over before the moment that its file tells of"));
+                                    "simulated again, the run does not come to the moment that its file contains"));
     }
 }
 
@@ -250,21 +265,23 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
             opening_.erase(opening);
         reply(laboratory_, look);
     };
-    once_written(world, [this, name, world, past = *past, request, opened](bool all_is_written) {
-        simulation::Recording known = all_is_written ? known_of(world, past.run_id()) : simulation::Recording{};
-        known.past_of = name;
+    const auto known = known_of(world, past->run_id());
+    once_written(world, [this, name, known, past = *past, request, opened](bool all_is_written) {
         std::optional<storage::WantedMoment> at;
         if (request.at.generation || request.at.tick)
             at = request.at;
-        set_out(past, at, known, [this, name, past, owner = request.owner, opened](Result<Arrival> arrival) {
+        const auto arrived = [this, name, past, owner = request.owner, opened](Result<Arrival> arrival) {
             if (!arrival)
                 return opened(within(arrival.error(), "at"));
-            if (!opening_.contains(owner))
-                return opened(refusal(RefusalCode::NotFound, "who asked for it is gone"));
+            arrival->there.past_of = name;
             const std::string look_name = name + "@" + std::to_string(++last_look_);
             show(look_name, past, owner, *std::move(arrival));
             opened(look_name);
-        });
+        };
+        if (!opening_.contains(request.owner)) {
+            return opened(owner_gone());
+        }
+        set_out(past, at, all_is_written ? known : storage::KnownUntil{}, request.owner, arrived);
     });
 }
 
@@ -283,30 +300,46 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
                     .violations = {}});
     const std::string& past_of = (*entry)->recording->past_of;
     const std::string origin = past_of.empty() ? name : past_of;
-    once_written(origin, [this, name, origin, request, reply](bool all_is_written) {
+    const auto known_now = known_of(origin, looks_.find(name)->second.past.run_id());
+    ++seeking_[request.owner];
+    const auto sought = [this, owner = request.owner, reply](const Result<std::string>& world) {
+        if (const auto seeking = seeking_.find(owner); seeking != seeking_.end() && --seeking->second == 0) {
+            seeking_.erase(seeking);
+        }
+        reply(laboratory_, world);
+    };
+    once_written(origin, [this, name, known_now, request, sought](bool all_is_written) {
         const auto look = looks_.find(name);
         if (look == looks_.end())
-            return reply(laboratory_, closed_since());
+            return sought(closed_since());
+        if (!seeking_.contains(request.owner)) {
+            return sought(owner_gone());
+        }
         const storage::Past& past = look->second.past;
         // The world may have begun another run: what is looked at is still the one of the look.
-        simulation::Recording known = *entry_of(name)->recording;
+        const simulation::Recording& seen = *entry_of(name)->recording;
+        storage::KnownUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
         if (all_is_written) {
-            const simulation::Recording now = known_of(origin, past.run_id());
-            known.last_generation = std::max(known.last_generation, now.last_generation);
-            known.last_tick = std::max(known.last_tick, now.last_tick);
+            known.generation = std::max(known.generation, known_now.generation);
+            known.tick = std::max(known.tick, known_now.tick);
         }
-        const auto arrived = [this, name, reply](Result<Arrival> arrival) {
+        const auto arrived = [this, name, past_of = seen.past_of, sought](Result<Arrival> arrival) {
             if (!arrival)
-                return reply(laboratory_, within(arrival.error(), "to"));
+                return sought(within(arrival.error(), "to"));
             const auto seen_from = looks_.find(name);
             if (seen_from == looks_.end())
-                return reply(laboratory_, closed_since());
+                return sought(closed_since());
+            arrival->there.past_of = past_of;
             arrive_in(*entry_of(name), seen_from->second, *std::move(arrival));
-            reply(laboratory_, name);
+            sought(name);
         };
-        set_out(past, request.to, known, arrived, [this, name](std::uint64_t journey) {
-            if (const auto look_on = looks_.find(name); look_on != looks_.end())
-                give_up(std::exchange(look_on->second.journey, journey));
+        set_out(past, request.to, known, request.owner, arrived, [this, name](std::uint64_t journey) {
+            const auto look_on = looks_.find(name);
+            if (look_on == looks_.end()) {
+                return false;
+            }
+            give_up(std::exchange(look_on->second.journey, journey), superseded());
+            return true;
         });
     });
 }
@@ -317,6 +350,7 @@ Result<std::string> TimeTravel::close(const ClosePast& request) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "there is no such look at the past",
                        .violations = {{"world", "one that was opened with OpenPast", request.world}}};
+    give_up(look->second.journey, closed_since());
     laboratory_.dismiss(request.world);
     looks_.erase(look);
     return request.world;
@@ -330,6 +364,25 @@ void TimeTravel::close_all_of(std::uint64_t owner) {
         return true;
     });
     opening_.erase(owner);
+    seeking_.erase(owner);
+    std::vector<Arrived> given_up;
+    std::erase_if(departing_, [&](auto& item) {
+        if (item.second.owner != owner) {
+            return false;
+        }
+        given_up.push_back(std::move(item.second.arrived));
+        return true;
+    });
+    std::erase_if(journeys_, [&](Journey& journey) {
+        if (journey.owner != owner) {
+            return false;
+        }
+        given_up.push_back(std::move(journey.arrived));
+        return true;
+    });
+    for (const Arrived& arrived : given_up) {
+        arrived(owner_gone());
+    }
 }
 
 void TimeTravel::follow(simulation::Entry& entry) {

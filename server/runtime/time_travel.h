@@ -82,15 +82,18 @@ class TimeTravel {
         std::uint64_t journey = 0; // the newest to another moment
     };
     struct Journey {
-        std::uint64_t number = 0;
+        std::uint64_t number = 0, owner = 0; // owner 0: the server itself
         storage::Rerun rerun;
         storage::PastMoment to;
         simulation::Recording there;
         Arrived arrived;
     };
+    /// Called with the journey's number before it begins. Returns whether its arrival is still wanted.
+    using Departed = std::function<bool(std::uint64_t number)>;
     /// A journey that begins once the file has been read.
     struct Departing {
-        std::function<void()> departed; // empty: nobody minds
+        std::uint64_t owner = 0;
+        Departed departed;
         Arrived arrived;
     };
 
@@ -103,18 +106,18 @@ class TimeTravel {
     /// Calls `then` on this thread when all that a world has done is on the disk; with false if nobody knows, because
     /// the disk makes trouble, or nothing of it is written.
     void once_written(const std::string& world, std::function<void(bool all_is_written)> then);
-    /// Where a world is, if it lives and this is its run.
-    simulation::Recording known_of(const std::string& world, const simulation::RunId& run_id) const;
-    /// to        nothing: the first moment.
-    /// known     as Past::depart takes it.
-    /// departed  called with the journey's number when there is such a moment, and it begins.
-    void set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
-                 const simulation::Recording& known, Arrived arrived,
-                 const std::function<void(std::uint64_t)>& departed = {});
+    /// Where a world is, if it lives and this is its run. To be called before once_written().
+    storage::KnownUntil known_of(const std::string& world, const simulation::RunId& run_id) const;
+    /// to     nothing: the first moment.
+    /// known  as Past::depart takes it.
+    void set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to, storage::KnownUntil known,
+                 std::uint64_t owner, Arrived arrived, const Departed& departed = {});
     void depart(std::uint64_t number, base::Result<storage::Departure> departure);
-    /// A journey that is still under way is in vain.
-    void give_up(std::uint64_t number);
-    /// A tick; true if the journey is over.
+    /// Ends a journey that is still under way with this refusal.
+    void give_up(std::uint64_t number, const base::Refusal& why);
+    /// Whether a journey is over: at its moment, or beyond it.
+    static bool is_over(const Journey& journey);
+    /// A tick; true if the journey is over. Every journey ends, whatever moment it goes to.
     static bool advance(Journey& journey, base::Executor& executor);
     void show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival);
     void arrive_in(simulation::Entry& entry, Look& look, Arrival arrival);
@@ -127,7 +130,8 @@ class TimeTravel {
     base::Executor& executor_;
     storage::Recorder* recorder_;
     std::map<std::string, Look, std::less<>> looks_; // by the name of the world that shows it
-    std::map<std::uint64_t, std::size_t> opening_;   // how many are on their way, by who wants them and is still there
+    // How many are on their way, by the owner; one that is gone is not in them.
+    std::map<std::uint64_t, std::size_t> opening_, seeking_;
     std::map<std::uint64_t, std::function<void(bool all_is_written)>> waiting_; // for the disk
     std::map<std::uint64_t, Departing> departing_;                              // by the number of the journey
     std::vector<Journey> journeys_;

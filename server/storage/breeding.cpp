@@ -94,9 +94,11 @@ Result<Bred> breeding_of(RunFile& file, const WantedBreeding& wanted, base::Exec
     std::vector<std::vector<double>> own; // fitness, per island, where it is shuffled
     for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
         own.push_back(parents->ended->outcomes[island].fitness);
-        evolution::shuffle_fitness(parents->ended->outcomes[island].fitness,
-                                   {.seed = seed, .island = island, .generation = *generation}, executor);
     }
+    evolution::apply_shuffle(
+        bred.parameters, islands,
+        [&](std::size_t island) -> std::span<double> { return parents->ended->outcomes[island].fitness; }, seed,
+        *generation, executor);
     const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
     bred.record = evolution::record_breeding(
         parents->ended->outcomes[bred.island].fitness, parents->begun.born[bred.island].genes, bred.parameters,

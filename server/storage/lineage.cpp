@@ -1,5 +1,7 @@
 #include "server/storage/lineage.h"
 
+#include "server/base/inline_executor.h"
+#include "server/evolution/fitness_shuffle.h"
 #include "server/evolution/migration.h"
 #include "server/storage/generation_reader.h"
 
@@ -47,17 +49,23 @@ using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // by islan
 std::optional<std::vector<std::vector<Place>>> breeders(const RunFile& file, const Births& parents,
                                                         const Births& children) {
     std::vector<std::vector<Place>> places(parents.islands.size());
-    std::vector<std::span<const double>> fitness;
+    std::vector<std::vector<double>> fitness;
     for (std::uint32_t island = 0; island < parents.islands.size(); ++island) {
         for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism)
             places[island].push_back({island, organism});
-        fitness.emplace_back(parents.islands[island].fitness);
+        fitness.push_back(parents.islands[island].fitness);
     }
     if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
         if (file.other_model())
             return std::nullopt;
+        const base::Seed seed = file.identity().seed;
+        base::InlineExecutor executor;
+        evolution::apply_shuffle(
+            children.parameters, fitness.size(), [&](std::size_t i) -> std::span<double> { return fitness[i]; }, seed,
+            parents.generation, executor);
+        const std::vector<std::span<const double>> bred_by(fitness.begin(), fitness.end());
         for (const evolution::Migrant& migrant :
-             choose_migrants(fitness, children.parameters, file.identity().seed, parents.generation))
+             choose_migrants(bred_by, children.parameters, seed, parents.generation))
             places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
     }
     return places;

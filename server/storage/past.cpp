@@ -97,7 +97,7 @@ Result<std::string> Past::world_name() const {
     return (*file)->identity().name;
 }
 
-Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, const simulation::Recording& known,
+Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
                                base::Executor& executor) const {
     const auto file = open();
     if (!file)
@@ -105,9 +105,8 @@ Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, const 
     if (auto held = (*file)->hold_still(); !held)
         return held.error();
     simulation::Recording there = recording_of(**file);
-    there.past_of = known.past_of;
-    there.last_generation = std::max(there.last_generation, known.last_generation);
-    there.last_tick = std::max(there.last_tick, known.last_tick);
+    there.last_generation = std::max(there.last_generation, known.generation);
+    there.last_tick = std::max(there.last_tick, known.tick);
     const auto to =
         find(**file, wanted.value_or(WantedMoment{.generation = there.first_generation, .tick = {}}), there);
     if (!to)

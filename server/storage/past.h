@@ -30,9 +30,15 @@ struct PastMoment {
 
 /// The way to a moment.
 struct Departure {
-    simulation::Recording there; // what there is to be seen
+    simulation::Recording there; // what there is to be seen; past_of is left empty
     PastMoment to;
     Rerun from; // the last moment up to that one that is known without simulating
+};
+
+/// Until where a run that goes on has been handed over to be written. What its file contains by then reaches as far, or
+/// further; zeros: nothing is known but what the file contains.
+struct KnownUntil {
+    std::uint64_t generation = 0, tick = 0;
 };
 
 /// What a run that goes on has come to.
@@ -59,9 +65,9 @@ class Past {
     /// Refused, saying what there is, unless that moment has been.
     ///
     /// wanted  nothing: the first.
-    /// known   what there is to be seen at least, past_of among it: as somebody sees it already, or where the world is
-    ///         now, if the file tells all that was asked of it until then.
-    base::Result<Departure> depart(const std::optional<WantedMoment>& wanted, const simulation::Recording& known,
+    /// known   taken before the caller began to wait for the disk, so that the file contains every command until then and
+    ///         the beginning of that generation. Taken later, it would reach beyond what the file contains.
+    base::Result<Departure> depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
                                    base::Executor& executor) const;
 
     base::Result<PastNews> news() const;

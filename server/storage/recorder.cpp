@@ -139,6 +139,7 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     identity.forked_from = origin;
     Inherited inherited = inherited_by(entry.world);
     identity.inherited_generations = inherited.history.size();
+    run.news_.seen(entry.world.moment().tick); // the origin has that tick's link
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
     // Within a generation its beginning is not enough: what came since is known to the origin alone.

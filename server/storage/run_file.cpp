@@ -18,34 +18,34 @@ namespace {
 using base::Refusal;
 using base::RefusalCode;
 using base::Result;
-using Columns = std::vector<std::string>;
+using ColumnNames = std::vector<std::string>;
 
-const Columns journal_columns = {"number", "tick",    "client",           "client_key", "request_id", "request",
+const ColumnNames journal_columns = {"number", "tick",    "client",           "client_key", "request_id", "request",
                                  "answer", "endless", "until_generation", "until_tick", "paused",     "speed"};
-const Columns parameters_columns = {"number", "revision", "active", "requested"};
-const Columns generation_columns = {"generation",   "first_tick",        "simulated_s",
+const ColumnNames parameters_columns = {"number", "revision", "active", "requested"};
+const ColumnNames generation_columns = {"generation",   "first_tick",        "simulated_s",
                                     "parameters",   "generations_over",  "stagnant",
                                     "best_fitness", "last_best_fitness", "last_died_out"};
-const Columns population_columns = {"generation",     "island",        "organism_count", "elite_count",
+const ColumnNames population_columns = {"generation",     "island",        "organism_count", "elite_count",
                                     "survivor_count", "clamped_count", "chromosomes",    "parents"};
-const Columns founders_columns = {"generation", "island", "founders"};
-const Columns account_columns = [] {
-    Columns columns{"generation", "island"};
+const ColumnNames founders_columns = {"generation", "island", "founders"};
+const ColumnNames account_columns = [] {
+    ColumnNames columns{"generation", "island"};
     evolution::for_each_number(std::nullopt, [&](const std::string& name, auto) { columns.push_back(name); });
     return columns;
 }();
-const Columns outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
-const Columns link_columns = {"tick", "low", "high"};
-const Columns checkpoint_columns = {
+const ColumnNames outcome_columns = {"generation", "island", "fitness", "lived_ticks", "cause"};
+const ColumnNames link_columns = {"tick", "low", "high"};
+const ColumnNames checkpoint_columns = {
     "tick", "generation", "generation_tick", "simulated_s", "parameters", "journal_entries", "low", "high", "state"};
-const Columns part_columns = {"tick", "part", "bytes"};
-const Columns end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
-const Columns thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
-const Columns run_columns = {"key", "value"};
-const Columns first_population_columns = {"island", "organism_count", "chromosomes"};
+const ColumnNames part_columns = {"tick", "part", "bytes"};
+const ColumnNames end_columns = {"number", "how", "tick", "journal_entries", "generations", "links"};
+const ColumnNames thinned_columns = {"number", "keep_every", "until_generation", "until_tick"};
+const ColumnNames run_columns = {"key", "value"};
+const ColumnNames first_population_columns = {"island", "organism_count", "chromosomes"};
 
-Columns statistics_columns() {
-    Columns columns;
+ColumnNames statistics_columns() {
+    ColumnNames columns;
     simulation::for_each_number(simulation::GenerationStatistics{},
                                 [&](const std::string& name, auto) { columns.push_back(name); });
     return columns;

@@ -291,7 +291,9 @@ class Reader {
     /// Of a generation, with its checkpoints, once the one after it has been read.
     Result<void> read_links(StoredGeneration& generation) {
         generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
-        auto links = file_.links(generation.opening.moment.tick, generation.last_tick);
+        // A fork may begin within a generation, and at a tick that has a link in its origin.
+        const std::uint64_t first_tick = std::max(generation.opening.moment.tick, file_.identity().first_tick);
+        auto links = file_.links(first_tick, generation.last_tick);
         if (!links)
             return links.error();
         generation.links = *std::move(links);

@@ -1,5 +1,6 @@
 #include "server/runtime/export_thread.h"
 
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/other_model.h"
 #include "tests/unit/storage/recorded_run.h"
 
@@ -27,8 +28,7 @@ class ExportThreadTest : public testing::Test {
         while (run.world().moment().generation <= static_cast<std::uint64_t>(generations))
             run.advance(1);
         run.advance(1);
-        while (!thread.idle())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         past.emplace(*storage::Past::of_file(data.file_of("w")));
     }
     static base::Result<ExportThread::Part> next(ExportThread& thread) {
@@ -91,8 +91,7 @@ TEST_F(ExportThreadTest, WhatIsWrongIsToldInsteadOfAPart) {
 TEST_F(ExportThreadTest, AnExportThatNobodyGoesOnWithIsGivenUpAndNeverCutShort) {
     record(300);
     ExportThread thread{*past, {.table = RunTable::Organisms}, std::chrono::milliseconds{1}};
-    while (!thread.finished())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
     const auto part = next(thread);
     ASSERT_FALSE(part);
     EXPECT_THAT(part.error().message, HasSubstr("given up"));
@@ -104,8 +103,7 @@ TEST_F(ExportThreadTest, StoppingEndsASimulationUnderWay) {
     thread.request_stop();
     const auto part = next(thread);
     ASSERT_FALSE(part);
-    while (!thread.finished())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.finished(); }));
 }
 
 } // namespace

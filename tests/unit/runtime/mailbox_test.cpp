@@ -1,5 +1,7 @@
 #include "server/runtime/mailbox.h"
 
+#include "tests/support/waiting.h"
+
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -54,8 +56,7 @@ TEST(Mailbox, WakesWhoWaits) {
         EXPECT_TRUE(mailbox.drain().empty());
     }};
     mailbox.try_push(note(read, 1));
-    while (mailbox.pending())
-        std::this_thread::yield();
+    EXPECT_TRUE(wait_until([&] { return !mailbox.pending(); }));
     mailbox.wake();
     waiting.join();
     EXPECT_EQ(read, (std::vector{1}));

@@ -4,6 +4,7 @@
 #include "server/storage/verify.h"
 #include "tests/support/older_run_file.h"
 #include "tests/support/thread_executor.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -450,11 +451,10 @@ TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
     recorder.make_checkpoint(world, executor);
     EXPECT_FALSE(recorder.checkpoint_due(world, 1s));
     // Once it is written, it has cost something: at least fifty times that has to pass.
-    while (!thread->idle())
-        std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(wait_until([&] { return thread->idle(); }));
     recorder.checkpoint_took(1s);
     EXPECT_FALSE(recorder.checkpoint_due(world, 48s));
-    EXPECT_TRUE(recorder.checkpoint_due(world, 1000s));
+    EXPECT_TRUE(recorder.checkpoint_due(world, 1h));
     // A generation that has just begun needs none.
     simulation::World next{small_world(), {1}};
     for (int tick = 0; tick < 120; ++tick)

@@ -6,9 +6,9 @@
 #include "server/storage/archive.h"
 #include "server/storage/rerun.h"
 #include "server/storage/verify.h"
+#include "tests/support/everyday.h"
 #include "tests/unit/storage/recorded_run.h"
 
-#include <cstdlib>
 #include <fstream>
 #include <random>
 #include <set>
@@ -43,11 +43,6 @@ void write_content(const std::string& path, const Content& content) {
     write_bytes(path, content.file);
     if (!content.log.empty())
         write_bytes(path + "-wal", content.log);
-}
-
-int times(const char* variable, int everyday) {
-    const char* asked = std::getenv(variable);
-    return asked == nullptr ? everyday : std::atoi(asked);
 }
 
 /// Everything that a sound file tells, as one text.
@@ -249,7 +244,7 @@ TEST_P(DamageTest, AFlippedBitIsNamedOrChangesNothingThatIsRead) {
                                            : heads.first + random() % count * heads.distance + random() % heads.bytes;
     };
     constexpr std::size_t page = 4096, frame_head = 24, log_head = 32;
-    for (int i = 0, flips = times("FLIPS", 200); i < flips; ++i) {
+    for (std::uint64_t i = 0, flips = everyday_size("FLIPS", 200); i < flips; ++i) {
         Content flipped = sound;
         std::string& bytes = i % 2 == 0 || sound.log.empty() ? flipped.file : flipped.log;
         const bool head = i % 4 >= 2;
@@ -287,7 +282,7 @@ TEST_P(DamageTest, APageThatHidesItsLastRowIsNamed) {
 
 TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
     std::mt19937 random{6};
-    for (int i = 0, cuts = times("CUTS", 100); i < cuts; ++i) {
+    for (std::uint64_t i = 0, cuts = everyday_size("CUTS", 100); i < cuts; ++i) {
         Content cut = sound;
         std::string& bytes = i % 4 == 0 || sound.log.empty() ? cut.file : cut.log;
         bytes.resize(i == 1 ? 0 : random() % bytes.size()); // all of the log, too

@@ -2,6 +2,7 @@
 
 #include "server/storage/archive.h"
 #include "server/storage/past.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -192,8 +193,7 @@ TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
         auto data = DataFolder::open(folder.path());
         StorageThread thread{{}, std::chrono::hours{1}};
         const RecordedRun run{*data, thread};
-        while (!thread.trouble())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
         EXPECT_THAT(*thread.trouble(), HasSubstr(path + " is there already"));
     }
     EXPECT_EQ(std::filesystem::file_size(path), 0u);

@@ -205,6 +205,29 @@ TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
                 HasSubstr("inherited_statistics"));
 }
 
+/// A link of the hash chain is written every 60 ticks; a generation of these worlds takes 120.
+TEST_F(ForkTest, AgreesWithItselfWhereverItBegins) {
+    for (std::uint64_t first_tick = 179; first_tick <= 240; ++first_tick) {
+        SCOPED_TRACE("fork at tick " + std::to_string(first_tick));
+        const TemporaryFolder elsewhere;
+        auto there = *DataFolder::open(elsewhere.path());
+        {
+            StorageThread thread{{}};
+            RecordedRun run{there, thread};
+            run.advance(first_tick);
+            run.fork({3, 4});
+            run.advance(130, "fork");
+            run.recorder().close_all(run.laboratory());
+        }
+        const auto file = RunFile::open_read_only(there.file_of("fork"));
+        ASSERT_TRUE(file) << to_text(file.error());
+        const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
+        ASSERT_TRUE(verified) << to_text(verified.error());
+        EXPECT_FALSE(verified->difference) << verified->difference->part;
+        EXPECT_EQ(verified->ticks, 130u);
+    }
+}
+
 TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
     for (const std::uint64_t ticks : {360u, 400u}) { // a generation is over; within the next
         const TemporaryFolder elsewhere;

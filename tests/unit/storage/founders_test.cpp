@@ -1,4 +1,5 @@
 // Founders in run files: families are told apart in worlds that are made again from their file, whatever the way.
+#include "server/storage/lineage.h"
 #include "server/storage/rerun.h"
 #include "tests/support/older_run_file.h"
 #include "tests/unit/storage/recorded_run.h"
@@ -15,9 +16,10 @@ using testing::HasSubstr;
 class FoundersTest : public testing::Test {
   protected:
     /// Six generations and a half on two islands with migrants between them.
-    void record(std::uint64_t keep_every) {
+    void record(std::uint64_t keep_every, bool shuffled = false) {
         StorageThread thread{{.keep_every = keep_every}};
         RecordedRun run{data, thread};
+        run.command(set_parameter("shuffle_fitness", shuffled));
         for (int tick = 0; tick < 780; ++tick) {
             run.advance(1);
             founders.resize(run.world().moment().generation);
@@ -32,6 +34,32 @@ class FoundersTest : public testing::Test {
     base::InlineExecutor executor;
     std::vector<simulation::Founders> founders; // of each generation; before somebody left for another island
 };
+
+/// The lineage follows migrants with the fitness that they were chosen by.
+TEST_F(FoundersTest, AreWhereTheLineageOfFirstParentsLeads) {
+    for (const bool shuffled : {false, true}) {
+        folder.clear();
+        founders.clear();
+        record(1, shuffled);
+        const auto file = RunFile::open_read_only(path());
+        simulation::Founders led_to;
+        const auto followed = each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
+            simulation::Founders next(families.size());
+            for (std::uint32_t i = 0; i < families.size(); ++i) {
+                for (std::uint32_t organism = 0; organism < families[i].organism_count; ++organism) {
+                    const bool initial = families[i].initial;
+                    next[i].push_back(initial ? i * families[i].organism_count + organism
+                                              : led_to[families[i].parents[organism][0].island]
+                                                      [families[i].parents[organism][0].organism]);
+                }
+            }
+            led_to = std::move(next);
+            EXPECT_EQ(led_to, founders[generation - 1]) << "generation " << generation << ", shuffled " << shuffled;
+            return true;
+        });
+        EXPECT_TRUE(followed);
+    }
+}
 
 TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
     for (const std::uint64_t keep_every : {1u, 3u}) {

@@ -2,6 +2,7 @@
 #include "server/storage/generation_reader.h"
 #include "server/storage/mismatch.h"
 #include "server/storage/verify.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -24,8 +25,7 @@ class KeepEveryTest : public testing::Test {
         for (int tick = 1; tick <= 4'980; ++tick) {
             if (tick % 1000 == 70) {
                 run.command(set_parameter("mutation_chance", 0.1 + tick * 1e-5));
-                while (!thread.idle())
-                    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+                EXPECT_TRUE(wait_until([&] { return thread.idle(); }));
             }
             run.advance(1);
             if (run.world().moment().generation_tick == 1 && run.world().moment().generation > 1)

@@ -84,10 +84,11 @@ class RecordedRun {
     Recorder& recorder() { return recorder_; }
     const simulation::Laboratory& laboratory() const { return laboratory_; }
 
-    void advance(std::uint64_t ticks) {
-        for (std::uint64_t tick = 0; tick < ticks && world().outcome() == evolution::Outcome::Running; ++tick) {
-            laboratory_.advance(entry(), executor_);
-            recorder_.of("w")->follow(world());
+    void advance(std::uint64_t ticks, const std::string& name = "w") {
+        simulation::Entry& advanced = **laboratory_.find(name);
+        for (std::uint64_t tick = 0; tick < ticks && advanced.world.outcome() == evolution::Outcome::Running; ++tick) {
+            laboratory_.advance(advanced, executor_);
+            recorder_.of(name)->follow(advanced.world);
         }
     }
 

@@ -1,6 +1,8 @@
 #include "server/storage/storage_thread.h"
 
 #include "server/storage/archive.h"
+#include "tests/support/everyday.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/failing_disk.h"
 #include "tests/unit/storage/recorded_run.h"
 
@@ -65,8 +67,7 @@ TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
     {
         StorageThread thread{{.vfs = failing_disk()}, 1h};
         RecordedRun run{data, thread};
-        while (!thread.trouble())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
         const auto since = thread.waiting_since();
         ASSERT_TRUE(since);
         EXPECT_LE(*since, std::chrono::steady_clock::now());
@@ -86,16 +87,16 @@ TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
     const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++told; }); };
     const std::string path = data.file_of("w"), away = path + ".away";
     command();
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     for (const bool another : {false, true}) {
         std::filesystem::rename(path, away);
         if (another)
             std::ofstream{path} << "somebody else's";
-        while (!thread.trouble()) { // it looks once a second
-            command();
-            std::this_thread::sleep_for(10ms);
-        }
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // it looks once a second
+                               [&] {
+                                   command();
+                                   std::this_thread::sleep_for(10ms);
+                               }));
         EXPECT_THAT(*thread.trouble(),
                     testing::HasSubstr(path + (another ? " is another file than the one that is written"
                                                        : " has been moved or deleted")));
@@ -104,10 +105,7 @@ TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
         std::this_thread::sleep_for(20ms);
         EXPECT_EQ(told, at_trouble) << "nobody is told of what has no name";
         std::filesystem::rename(away, path);
-        while (told < static_cast<int>(value))
-            std::this_thread::yield();
-        while (thread.trouble())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return told >= static_cast<int>(value) && !thread.trouble(); }));
     }
     EXPECT_EQ((*RunFile::open_read_only(path))->journal()->size(), static_cast<std::size_t>(value));
 }
@@ -123,8 +121,7 @@ TEST_F(StorageThreadTest, SaysAtItsEndWhatItCouldNotWrite) {
         fail_operation(1, Failure::Gone); // and all after it
         bool late = false;
         run.command(set_parameter("food_health", 2.0), [&] { late = true; });
-        while (!thread.trouble())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
         run.command(set_parameter("food_health", 3.0), [&] { late = true; });
         EXPECT_FALSE(late);
     }
@@ -143,8 +140,7 @@ TEST_F(StorageThreadTest, NothingWaitsOnceAllIsWritten) {
     std::promise<void> told;
     run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
     told.get_future().wait();
-    while (thread.waiting_since())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return !thread.waiting_since(); }));
     EXPECT_EQ(thread.waiting_bytes(), 0u);
 }
 
@@ -195,8 +191,7 @@ TEST_F(StorageThreadTest, WhatSomebodyWaitsForIsThereBeforeACheckpointIsPacked) 
     told.get_future().wait();
     EXPECT_EQ(commands, 2u);
     EXPECT_EQ(checkpoints, 0u);
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->checkpoints(0, 70)->size(), 1u);
 }
 
@@ -218,14 +213,12 @@ TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
     RecordedRun run{data, thread};
     run.advance(70);
     run.checkpoint();
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const std::int64_t parts = parts_in(data.file_of("w")).of_whole;
     ASSERT_GT(parts, 20);
 
     run.advance(70);
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     std::promise<void> written_to, go_on, told;
     call_before_operation(40, [&] { // a part takes several: pages and a sync
         written_to.set_value();
@@ -243,8 +236,7 @@ TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
     EXPECT_EQ(when_told.of_whole, parts);
     EXPECT_GT(when_told.of_none, 0);
     EXPECT_LT(when_told.of_none, parts / 2);
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const auto file = RunFile::open_read_only(data.file_of("w"));
     EXPECT_EQ((*file)->checkpoints(0, 140)->size(), 2u);
     EXPECT_TRUE((*file)->check());
@@ -257,8 +249,7 @@ TEST_F(StorageThreadTest, OfCheckpointsThatAreKeptNoMoreNothingStays) {
     for (int count = 0; count < 6; ++count) {
         run.advance(30);
         run.checkpoint();
-        while (!thread.idle())
-            std::this_thread::yield();
+        ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
     }
     EXPECT_GT(parts_in(data.file_of("w")).of_whole, 3 * 2);
@@ -281,8 +272,7 @@ TEST_F(StorageThreadTest, ACheckpointThatIsNotWrittenWhenItsRunEndsIsLeftOut) {
     run.reset({2}, {3, 4}, [&] { told.set_value(); });
     go_on.set_value();
     told.get_future().wait();
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const std::string path = data.ended_file_of("w", {1, 2});
     const auto file = RunFile::open_read_only(path);
     ASSERT_TRUE(file) << to_text(file.error());
@@ -304,8 +294,7 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
     const auto bytes = std::filesystem::file_size(data.file_of("w"));
     for (int number = 1; number <= 100; ++number)
         command(number);
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_GT(std::filesystem::file_size(data.file_of("w")), bytes);
     const auto file = RunFile::open_read_only(data.file_of("w"));
     EXPECT_EQ((*file)->journal()->size(), 101u);
@@ -336,22 +325,23 @@ TEST_F(StorageThreadTest, ACheckpointWhoseGenerationIsNotHeldAnyMoreIsNotWritten
     run.checkpoint();
     in_generation(3);
     go_on.set_value();
-    while (!thread.idle())
-        std::this_thread::yield();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     const auto file = RunFile::open_read_only(data.file_of("w"));
     EXPECT_EQ((*file)->last_generation(), 3u);
     EXPECT_TRUE(ticks_of_checkpoints(**file).empty());
     EXPECT_TRUE((*file)->check());
 }
 
-/// Runs of some commits, with checkpoints; in each another operation of the disk fails, until there is none left to
-/// fail.
+/// Runs of some commits, with checkpoints. In each run one operation of the disk fails, until a run has too few operations
+/// for one to fail. Every day only each eighth operation fails: all of them take two minutes.
 class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
 
 TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
+    const std::uint64_t stride = everyday_size("FAILING_STRIDE", 8);
     std::uint64_t operation = 0;
     do {
-        ASSERT_LT(++operation, 10'000u);
+        operation += stride;
+        ASSERT_LT(operation, 10'000u);
         folder.clear();
         fail_operation(operation, GetParam());
         base::StateHash ended_hash, hash;
@@ -366,26 +356,24 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
                     ++told;
                     durable.set_value();
                 });
-                ASSERT_EQ(durable.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
+                ASSERT_TRUE(wait_until_ready(durable.get_future())) << "operation " << operation;
                 run.advance(70);
                 run.checkpoint();
                 ended_hash = run.world().hash();
             }
-            while (!thread.idle()) // or the last checkpoint would be left out
-                std::this_thread::yield();
+            ASSERT_TRUE(wait_until([&] { return thread.idle(); })); // or the last checkpoint would be left out
             std::promise<void> begun_again;
             run.reset({9}, {3, 4}, [&] {
                 ++told;
                 begun_again.set_value();
             });
-            ASSERT_EQ(begun_again.get_future().wait_for(60s), std::future_status::ready) << "operation " << operation;
+            ASSERT_TRUE(wait_until_ready(begun_again.get_future())) << "operation " << operation;
             run.advance(70);
             run.checkpoint();
             run.recorder().close_all(run.laboratory());
             hash = run.world().hash();
             // The end is waited for too: a thread that stops gives up what cannot be written.
-            while (!thread.idle())
-                std::this_thread::yield();
+            ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         }
         EXPECT_EQ(told, 5);
         const auto expect_whole = [&](const std::string& path, std::size_t commands,
@@ -409,21 +397,23 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
     fail_operation(0, GetParam());
 }
 
-std::string name_of(const testing::TestParamInfo<Failure>& how) {
+std::string failure_name(const testing::TestParamInfo<Failure>& how) {
     constexpr const char* names[] = {"InputOutput", "Full", "Torn"};
     return names[static_cast<int>(how.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput, Failure::Full, Failure::Torn),
-                         name_of);
+                         failure_name);
 
 /// As if a server had been killed right before each of its operations of the disk in turn.
 TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
+    const std::uint64_t stride = std::max<std::uint64_t>(1, everyday_size("FAILING_STRIDE", 8) / 8); // a kill takes 30 ms
     std::uint64_t operation = 0;
     int half_written = 0;
     { DataFolder taken = std::move(data); }
     do {
-        ASSERT_LT(++operation, 10'000u);
+        operation += stride;
+        ASSERT_LT(operation, 10'000u);
         SCOPED_TRACE("killed before operation " + std::to_string(operation));
         folder.clear();
         fail_operation(operation, Failure::Gone);
@@ -439,8 +429,7 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
                 return [&] { ++told; };
             };
             const auto wait = [&] {
-                while (told != asked && !thread.trouble())
-                    std::this_thread::yield();
+                EXPECT_TRUE(wait_until([&] { return told == asked || thread.trouble(); }));
                 return !thread.trouble();
             };
             const auto advance = [&] {

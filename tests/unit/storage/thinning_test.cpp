@@ -2,6 +2,7 @@
 #include "server/storage/generation_reader.h"
 #include "server/storage/lineage.h"
 #include "server/storage/mismatch.h"
+#include "tests/support/waiting.h"
 #include "tests/unit/storage/recorded_run.h"
 
 #include <gmock/gmock.h>
@@ -24,8 +25,7 @@ class ThinningTest : public testing::Test {
             if (tick % 1000 == 70) {
                 run.command(set_parameter("mutation_chance", 0.1 + tick * 1e-5));
                 // So that the file is written, and thinned, many times.
-                while (!thread.idle())
-                    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+                EXPECT_TRUE(wait_until([&] { return thread.idle(); }));
             }
             run.advance(1);
             hashes.push_back(run.world().hash());
