@@ -319,6 +319,54 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
 }
 
+TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
+    parameters.population_size = 50;
+    parameters.island_count = 2;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 3;
+    parameters.mutation_chance = 0;
+    parameters.crossover_chance = 0;
+    parameters.replaced_count = 30;
+    for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
+                             evolution::PopulationModel::SteadyState}) {
+        parameters.population_model = model;
+        World world = make();
+        std::vector<evolution::Chromosome> first;
+        for (const Island& island : world.islands()) {
+            for (std::uint32_t id = 0; id < 50; ++id) {
+                first.emplace_back(island.born().genes.col(id));
+            }
+        }
+        while (world.moment().generation < 30) {
+            world.advance_tick(executor);
+            for (const Island& island : world.islands()) {
+                for (std::uint32_t id = 0; id < 50; ++id) {
+                    ASSERT_TRUE((island.born().genes.col(id) == first[world.founders(island)[id]]).all())
+                        << "organism " << id << " of generation " << world.moment().generation;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
+    parameters.population_size = 2'000;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.mutation_chance = 0;
+    for (const double chance : {0.0, 0.5, 1.0}) {
+        parameters.crossover_chance = chance;
+        World world = make();
+        const evolution::GeneMatrix first = world.islands()[0].born().genes;
+        world.advance_tick(executor);
+        world.turn_over(executor);
+        const Island& island = world.islands()[0];
+        for (std::uint32_t id = 0; id < 2'000; ++id) {
+            EXPECT_GE((island.born().genes.col(id) == first.col(world.founders(island)[id])).count(), 3) << id;
+        }
+    }
+}
+
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     parameters.fitness = FitnessFunction::GeneSum;
     World world = make();
