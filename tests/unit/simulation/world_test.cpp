@@ -367,6 +367,46 @@ TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
     }
 }
 
+/// docs/MODEL.md states these figures.
+TEST_F(WorldTest, OrganismsStarveATickLateAsHealthIsAFloat) {
+    parameters.generation_s = 40;
+    parameters.food_count = parameters.poison_count = 0;
+    for (const auto& [base_health, tick] : {std::pair{80, 801u}, {100, 1001u}, {120, 1201u}}) {
+        parameters.initial_gene_min = parameters.initial_gene_max = base_health;
+        World world = make();
+        run_generation(world);
+        EXPECT_EQ(world.alive_count(), 0u);
+        EXPECT_EQ(world.moment().generation_tick, tick);
+    }
+}
+
+/// docs/MODEL.md states these figures.
+TEST_F(WorldTest, SurvivorsHealthIsExactToAFiftieth) {
+    // What a survivor has in exact numbers: its base health, its meals, and a tenth less for each of 2,400 ticks.
+    parameters.population_size = 500;
+    parameters.scale_with_population = true;
+    parameters.reference_population = 50;
+    parameters.generation_s = 40;
+    World world = make();
+    run_generation(world);
+    const Fate fate = world.state(executor).islands[0].fate;
+    const Island& island = world.islands()[0];
+    int survivors = 0;
+    bool rounded = false;
+    for (std::uint32_t id = 0; id < 500; ++id) {
+        if (fate.lived_ticks[id] != 0) {
+            continue;
+        }
+        const double exact = 40 + double{island.born().genes(evolution::BaseHealth, id)} + 25.0 * fate.food_eaten[id] -
+                             40.0 * fate.poison_eaten[id] - 240;
+        EXPECT_NEAR(world.fitness()[0][id], exact, 0.02) << "organism " << id;
+        rounded |= std::abs(world.fitness()[0][id] - exact) > 0.005;
+        ++survivors;
+    }
+    EXPECT_GT(survivors, 100);
+    EXPECT_TRUE(rounded);
+}
+
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     parameters.fitness = FitnessFunction::GeneSum;
     World world = make();
