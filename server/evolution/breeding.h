@@ -13,6 +13,7 @@
 #include "server/evolution/selection.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 namespace evod::evolution {
@@ -37,6 +38,22 @@ base::RandomKey selection_key(const BreedingKey& key);
 
 Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
               base::Executor& executor);
+
+/// From which parent a child has each gene.
+struct Inheritance {
+    Parents parents;          // first: the parent that gave more of the genes
+    GeneMask from_second = 0; // the genes that parents.second gave; at most half of them
+};
+
+/// Orders the parents of one child of a pair by how many genes each gave it; on a tie the pair's first stays first.
+///
+/// mask  the genes that the child takes from pair.second; bits beyond the genes do not count.
+inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
+    mask &= all_genes;
+    if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count)
+        return {pair, mask};
+    return {{pair.second, pair.first}, ~mask & all_genes};
+}
 
 /// Does to a chromosome what happens to it, and tells nobody.
 struct Untold {
@@ -83,10 +100,10 @@ class Descent {
         return crossover_.draw(random);
     }
 
-    /// One child of two parents, in its place. Returns how many genes were clamped.
+    /// One child, in its place. Returns how many genes were clamped.
     template <class By>
-    unsigned beget(const Parents& pair, GeneMask mask, std::uint32_t place, Genes child, By&& by) const {
-        cross(column(present_, pair.first), column(present_, pair.second), mask, child);
+    unsigned beget(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
+        cross(column(present_, of.parents.first), column(present_, of.parents.second), of.from_second, child);
         base::RandomStream rearranging{rearranging_key_, place}, mutation{mutation_key_, place};
         by.rearrange(rearranging_, child, rearranging);
         return by.mutate(mutation_, child, mutation);

@@ -143,11 +143,13 @@ BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix
                          Telling{told});
         } else {
             const std::uint32_t child = place - choice.places.survivors;
-            told.parents = choice.pairs[child / 2];
             const std::optional<GeneMask> mask = descent.draw_mask(child / 2);
+            const Inheritance inheritance =
+                inheritance_of(choice.pairs[child / 2], child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0));
+            told.parents = inheritance.parents;
+            told.from_second = inheritance.from_second;
             told.crossed = mask.has_value();
-            told.from_second = (child % 2 == 0 ? mask.value_or(0) : ~mask.value_or(0)) & all_genes;
-            descent.beget(told.parents, told.from_second, place, made, Telling{told});
+            descent.beget(inheritance, place, made, Telling{told});
         }
         told.first_genes = chromosome(genes, told.parents.first);
         told.second_genes = chromosome(genes, told.parents.second);

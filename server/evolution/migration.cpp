@@ -6,12 +6,13 @@
 #include "server/evolution/selection.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace evod::evolution {
 namespace {
 
 // The draws of one migration and island are told apart by what they decide, in the place of the tick.
-enum Decision : std::uint64_t { Destination, WhoLeaves, WhoIsReplaced };
+enum Decision : std::uint64_t { Destination, WhoLeaves, WhoIsReplaced, LastPlaces };
 
 struct Edge {
     std::uint32_t from, to;
@@ -46,6 +47,36 @@ std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed see
     return result;
 }
 
+/// Shares the places of an island among the edges that lead to it: in rounds, one place each, until there are no more
+/// places or migrants. The places of a last round that is not full are drawn.
+///
+/// wanted   migrants of each edge.
+/// returns  how many of them find a place; `wanted` itself where there is room for all, without a draw.
+std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, std::uint32_t places,
+                                           base::RandomStream random, base::Executor& executor) {
+    if (std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0}) <= places)
+        return wanted;
+    std::vector<std::uint32_t> shares(wanted.size());
+    std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left; all have the same share so far
+    std::iota(waiting.begin(), waiting.end(), 0u);
+    while (places > 0) {
+        std::erase_if(waiting, [&](std::uint32_t edge) { return shares[edge] == wanted[edge]; });
+        const auto count = static_cast<std::uint32_t>(waiting.size());
+        if (places < count) {
+            for (const std::uint32_t index : draw_unique(count, places, random, executor))
+                ++shares[waiting[index]];
+            break;
+        }
+        std::uint32_t rounds = places / count;
+        for (const std::uint32_t edge : waiting)
+            rounds = std::min(rounds, wanted[edge] - shares[edge]);
+        for (const std::uint32_t edge : waiting)
+            shares[edge] += rounds;
+        places -= rounds * count;
+    }
+    return shares;
+}
+
 } // namespace
 
 bool migration_due(std::uint64_t generation, const Parameters& parameters) {
@@ -63,34 +94,39 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
     std::vector<Ranking> rankings(fitness.begin(), fitness.end());
 
     std::vector<Migrant> migrants;
-    std::vector<std::uint32_t> replaced; // at the island of the present edge, in the order in which they make room
-    std::uint32_t arrived = 0;           // there, so far
-    std::uint32_t previous_to = islands;
-    for (const Edge edge : edges(islands, parameters.migration, seed, generation)) {
-        if (edge.to != previous_to) {
-            previous_to = edge.to;
-            arrived = 0;
-            if (parameters.immigrants_replace == Replaced::Worst) {
-                const auto order = rankings[edge.to].best_first();
-                replaced.assign(order.rbegin(), order.rend());
-            } else {
-                base::RandomStream random = stream(edge.to, 0, WhoIsReplaced);
-                replaced = draw_unique(population(edge.to), population(edge.to), random, executor);
-            }
-        }
-        const std::uint32_t leaving =
-            std::min({parameters.migrant_count, population(edge.from), population(edge.to) - arrived});
-        std::vector<std::uint32_t> drawn;
-        std::span<const std::uint32_t> emigrants;
-        if (parameters.emigrants == Emigrants::Best) {
-            emigrants = rankings[edge.from].best_first().first(leaving);
+    const std::vector<Edge> all = edges(islands, parameters.migration, seed, generation);
+    for (auto first = all.begin(); first != all.end();) {
+        const std::uint32_t to = first->to;
+        const auto last = std::find_if(first, all.end(), [&](const Edge& edge) { return edge.to != to; });
+        std::vector<std::uint32_t> wanted;
+        for (auto edge = first; edge != last; ++edge)
+            wanted.push_back(std::min(parameters.migrant_count, population(edge->from)));
+        const std::vector<std::uint32_t> leaving =
+            share_of_places(std::move(wanted), population(to), stream(to, 0, LastPlaces), executor);
+
+        std::vector<std::uint32_t> replaced; // in the order in which they make room
+        if (parameters.immigrants_replace == Replaced::Worst) {
+            const auto order = rankings[to].best_first();
+            replaced.assign(order.rbegin(), order.rend());
         } else {
-            base::RandomStream random = stream(edge.from, edge.to, WhoLeaves);
-            drawn = draw_unique(population(edge.from), leaving, random, executor);
-            emigrants = drawn;
+            base::RandomStream random = stream(to, 0, WhoIsReplaced);
+            replaced = draw_unique(population(to), population(to), random, executor);
         }
-        for (const std::uint32_t organism : emigrants)
-            migrants.push_back({edge.from, edge.to, organism, replaced[arrived++]});
+        auto makes_room = replaced.begin();
+        for (const std::uint32_t count : leaving) {
+            const std::uint32_t from = first++->from;
+            std::vector<std::uint32_t> drawn;
+            std::span<const std::uint32_t> emigrants;
+            if (parameters.emigrants == Emigrants::Best) {
+                emigrants = rankings[from].best_first().first(count);
+            } else {
+                base::RandomStream random = stream(from, to, WhoLeaves);
+                drawn = draw_unique(population(from), count, random, executor);
+                emigrants = drawn;
+            }
+            for (const std::uint32_t organism : emigrants)
+                migrants.push_back({from, to, organism, *makes_room++});
+        }
     }
     return migrants;
 }

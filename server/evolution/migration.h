@@ -36,8 +36,9 @@ bool migration_due(std::uint64_t generation, const Parameters& parameters);
 ///
 /// Along each edge go min(migrant_count, population) different organisms: the best, best first (ties: lower index), or
 /// different ones drawn uniformly for that edge. Those that arrive at an island replace its worst, worst first (of
-/// equals the higher index is the worse), or different ones drawn uniformly. If more arrive than the island holds, the
-/// last of them are turned away.
+/// equals the higher index is the worse), or different ones drawn uniformly. If more would arrive than the island
+/// holds, its places are shared evenly among the edges: none gets more than one place more than another, unless the other
+/// has no more migrants. The edges that get the places left over are drawn, each equally likely.
 ///
 /// fitness     one span per island, shape (population), finite; not all islands need the same population, and one may
 ///             be empty: it sends and receives nobody.

@@ -42,8 +42,9 @@ class Breeding {
             unsigned clamped = 0;
             const auto begin = first + 2 * static_cast<std::uint32_t>(i);
             for (std::uint32_t place = begin; place < std::min(begin + 2, organisms); ++place, mask = ~mask) {
-                next.parents[place] = pair;
-                clamped += descent_.beget(pair, mask, place, column(next.genes, place), Untold{});
+                const Inheritance inheritance = inheritance_of(pair, mask);
+                next.parents[place] = inheritance.parents;
+                clamped += descent_.beget(inheritance, place, column(next.genes, place), Untold{});
             }
             return clamped;
         });

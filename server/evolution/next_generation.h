@@ -34,7 +34,7 @@ struct BreedingKey {
 
 struct NextGeneration {
     GeneMatrix genes;              // shape (gene_count, organisms): the elite, the other survivors, the children
-    std::vector<Parents> parents;  // shape (organisms)
+    std::vector<Parents> parents;  // shape (organisms); first the parent that gave more of the genes
     std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the last generation, best first
     std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 were kept, the elite among them; then children
     std::uint64_t clamped_count = 0; // genes that were out of bounds and were put onto them

@@ -43,7 +43,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     REAL(ranking_pressure, 1.5, 1, 2, "", NextTick, "Expected copies of the best under linear_ranking; 1 is no pressure.") \
     REAL(ranking_decay, 0.95, 0.01, 1, "", NextTick, "Weight of each rank relative to the next better one under exponential_ranking.") \
     CHOICE(selection, SelectionMethod, Roulette, NextTick, "How those that breed are chosen.")                         \
-    COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Contestants in a tournament.")                     \
+    COUNT(tournament_size, 3, 1, 1'000'000, "organisms", NextTick, "Contestants in a tournament; without tournament_replacement at most population_size.") \
     COUNT(tournament_winners, 1, 1, 1'000'000, "organisms", NextTick, "How many of a tournament's best win; at most tournament_size.") \
     FLAG(tournament_replacement, true, NextTick, "Whether an organism can be drawn twice into the same tournament.")   \
     CHOICE(crossover, CrossoverMethod, Uniform, NextTick, "How two parents' genes are mixed.")                         \
@@ -78,7 +78,7 @@ EVOD_CHOICE_NAMES(evod::evolution::Replaced, "worst", "random")
     FLAG(stop_at_extinction, false, NextTick, "Whether the run ends with a generation in which everyone died.")        \
     CHOICE(migration, Topology, None, NextTick, "Which islands send migrants to which.")                               \
     COUNT(migration_epoch, 10, 1, count_max, "generations", NextTick, "Generations between migrations.")               \
-    COUNT(migrant_count, 1, 1, 4'000'000, "organisms", NextTick, "Organisms copied along each edge of the topology.")  \
+    COUNT(migrant_count, 1, 1, 4'000'000, "organisms", NextTick, "Organisms copied along each edge of the topology; where more arrive than an island holds, its places are shared evenly among the islands that send them.") \
     CHOICE(emigrants, Emigrants, Best, NextTick, "Who is copied out.")                                                 \
     CHOICE(immigrants_replace, Replaced, Worst, NextTick, "Who makes room for those that arrive.")
 // clang-format on

@@ -108,6 +108,13 @@ const std::vector<Scenario>& all() {
          base::Seed{53},
          480,
          {}},
+
+        {"crowded_migration", // more arrive than an island holds
+         R"({"fitness": "gene_sum", "island_count": 4, "population_size": 5, "migration": "fully_connected",
+             "migration_epoch": 2, "migrant_count": 3})",
+         base::Seed{54},
+         40,
+         {}},
     };
     return scenarios;
 }

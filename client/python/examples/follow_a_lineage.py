@@ -23,7 +23,7 @@ with tempfile.TemporaryDirectory() as folder:
         figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6))
         run.plot_lineage(fittest, left)
 
-# Its first parent, and the first parent of that, …
+# Its first parent, which gave most of its genes, and the first parent of that, …
 names = organisms.set_index(["generation", "island", "organism"])
 line, name = [], fittest
 while True:

@@ -121,7 +121,7 @@ TEST(Migration, ReplacedAtRandomAreDifferentAndUniform) {
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
-TEST(Migration, NoOrganismIsReplacedTwiceAndWhoFindsNoRoomIsTurnedAway) {
+TEST(Migration, NoOrganismIsReplacedTwice) {
     const Islands islands{2, 6, 6, 0};
     for (const Replaced replaced : {Replaced::Worst, Replaced::Random})
         for (const std::uint32_t count : {1u, 2u, 5u, 100u}) {
@@ -137,9 +137,67 @@ TEST(Migration, NoOrganismIsReplacedTwiceAndWhoFindsNoRoomIsTurnedAway) {
             EXPECT_EQ(arrived[1], std::min(6u, std::min(count, 2u) + std::min(count, 6u)));
             EXPECT_EQ(arrived.count(3), 0u);
         }
-    // Island 1's migrants fill island 0, so island 2's find no room.
-    for (const Migrant& migrant : islands.migrants(with(Topology::FullyConnected, 2)))
-        EXPECT_TRUE(migrant.to != 0 || migrant.from == 1);
+}
+
+/// How many go from where to where: arrivals[to][from].
+std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> arrivals_of(const std::vector<Migrant>& migrants) {
+    std::map<std::uint32_t, std::map<std::uint32_t, std::uint32_t>> arrivals;
+    for (const Migrant& migrant : migrants) {
+        ++arrivals[migrant.to][migrant.from];
+    }
+    return arrivals;
+}
+
+TEST(Migration, SharesPlacesEvenlyAmongOrigins) {
+    const Islands islands{5, 7, 7, 2, 20, 0};
+    const std::uint32_t populations[] = {5, 7, 7, 2, 20, 0};
+    for (const Topology topology : {Topology::FullyConnected, Topology::Random}) {
+        for (const Emigrants emigrants : {Emigrants::Best, Emigrants::Random}) {
+            for (std::uint32_t count = 1; count <= 25; ++count) {
+                Parameters parameters = with(topology, count);
+                parameters.emigrants = emigrants;
+                for (auto& [to, origins] : arrivals_of(islands.migrants(parameters, 10 * count))) {
+                    for (std::uint32_t from = 0; topology == Topology::FullyConnected && from < 5; ++from) {
+                        if (from != to) {
+                            origins.try_emplace(from, 0);
+                        }
+                    }
+                    std::uint32_t arrived = 0, most = 0;
+                    for (const auto& [from, sent] : origins) {
+                        arrived += sent;
+                        most = std::max(most, sent);
+                    }
+                    EXPECT_LE(arrived, populations[to]);
+                    for (const auto& [from, sent] : origins) {
+                        const std::uint32_t wanted = std::min(count, populations[from]);
+                        EXPECT_LE(sent, wanted);
+                        EXPECT_TRUE(sent == wanted || (sent + 1 >= most && arrived == populations[to]))
+                            << sent << " of " << wanted << " from " << from << " to " << to << ", most " << most;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Migration, DrawsWhoGetsThePlacesThatAreLeftOver) {
+    // Law: of three origins each gets the place that cannot be shared with chance 1/3. Chi-square over 4 · 3 cells for
+    // 4 independent rows, so 8 degrees of freedom.
+    for (const std::uint32_t population : {1u, 4u}) {
+        const Islands islands{population, population, population, population};
+        std::vector<std::uint64_t> counts(12);
+        constexpr std::uint64_t generations = 9'000;
+        for (std::uint64_t generation = 1; generation <= generations; ++generation) {
+            for (const auto& [to, origins] :
+                 arrivals_of(islands.migrants(with(Topology::FullyConnected, 4), generation))) {
+                for (const auto& [from, sent] : origins) {
+                    counts[to * 3 + from - (from > to)] += sent - population / 4; // each has the places that can be
+                }
+            }
+        }
+        const std::vector<double> expected(12, generations / 3.0);
+        EXPECT_GT(support::p_value(support::chi_square(counts, expected), 8), alpha) << population;
+    }
 }
 
 TEST(Migration, EmigrantsAreCopiedOutBeforeAnyoneArrives) {

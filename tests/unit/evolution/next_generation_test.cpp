@@ -44,6 +44,11 @@ Parameters without_mutation() {
     return parameters;
 }
 
+/// Who the parents are, whichever is the first.
+std::pair<std::uint32_t, std::uint32_t> pair_of(const Parents& parents) {
+    return std::minmax({parents.first, parents.second});
+}
+
 constexpr PopulationModel all_models[] = {PopulationModel::Hybrid, PopulationModel::Generational,
                                           PopulationModel::SteadyState};
 
@@ -237,13 +242,13 @@ TEST(NextGeneration, SteadyStateParentsAreDrawnFromAllTheWorstIncluded) {
     std::vector<std::uint64_t> bred(7);
     for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
         const NextGeneration next = breed(population, parameters, 7, seed);
-        for (std::uint32_t i = next.survivor_count; i < 7; ++i)
+        for (std::uint32_t i = next.survivor_count; i < 7; i += 2) { // both children of a pair have its two parents
             ++bred[next.parents[i].first];
+            ++bred[next.parents[i].second];
+        }
     }
-    // Law: uniform over the population. A pair has two children here, so every count is even. The four parents of a
-    // generation are different, so the counts vary less than in the test's law. Chi-square, 6 degrees of freedom.
-    for (std::uint64_t& count : bred)
-        count /= 2;
+    // Law: uniform over the population. The four parents of a generation are different, so the counts vary less than in
+    // the test's law. Chi-square, 6 degrees of freedom.
     EXPECT_GT(support::p_value_of_equal_cells(bred), alpha);
 }
 
@@ -281,7 +286,7 @@ TEST(NextGeneration, ChildrenAreComplementaryMixturesOfTheirParents) {
     Population population = population_of(60, 233);
     const NextGeneration next = breed(population, without_mutation(), 60);
     for (std::uint32_t i = next.survivor_count; i + 1 < 60; i += 2) {
-        ASSERT_EQ(next.parents[i], next.parents[i + 1]);
+        ASSERT_EQ(pair_of(next.parents[i]), pair_of(next.parents[i + 1]));
         for (unsigned gene = 0; gene < gene_count; ++gene) {
             const float a = population.genes(gene, next.parents[i].first);
             const float b = population.genes(gene, next.parents[i].second);
@@ -289,6 +294,45 @@ TEST(NextGeneration, ChildrenAreComplementaryMixturesOfTheirParents) {
             EXPECT_TRUE((child == a && sibling == b) || (child == b && sibling == a));
         }
     }
+}
+
+TEST(NextGeneration, TheFirstParentGaveMostGenes) {
+    const Population population = population_of(401, 242);
+    for (const CrossoverMethod method : {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint,
+                                         CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
+        for (const double chance : {0.0, 0.5, 1.0}) {
+            Parameters parameters = without_mutation();
+            parameters.crossover = method;
+            parameters.crossover_chance = chance;
+            const NextGeneration next = breed(population, parameters, 401);
+            for (std::uint32_t i = next.survivor_count; i < 401; ++i) {
+                const auto [first, second] = next.parents[i];
+                if (first == second) {
+                    continue;
+                }
+                const auto of_first = (next.genes.col(i) == population.genes.col(first)).count();
+                ASSERT_GE(of_first, 3) << "child " << i;
+                ASSERT_EQ((next.genes.col(i) == population.genes.col(second)).count(), 6 - of_first);
+                ASSERT_TRUE(of_first == 6 || (chance > 0 && method != CrossoverMethod::None));
+            }
+        }
+    }
+}
+
+TEST(NextGeneration, SiblingsOfHalfAndHalfHaveTheSameFirst) {
+    const Population population = population_of(400, 243);
+    const NextGeneration next = breed(population, without_mutation(), 400);
+    std::uint32_t halves = 0;
+    for (std::uint32_t i = next.survivor_count; i + 1 < 400; i += 2) {
+        const auto [first, second] = next.parents[i];
+        if (first != second && (next.genes.col(i) == population.genes.col(first)).count() == 3) {
+            EXPECT_EQ(next.parents[i], next.parents[i + 1]);
+            ++halves;
+        } else if (first != second) {
+            EXPECT_EQ(next.parents[i + 1], (Parents{second, first}));
+        }
+    }
+    EXPECT_GT(halves, 10u); // of 100 pairs, each with chance 20 / 64
 }
 
 TEST(NextGeneration, SurplusChildrenAreDroppedLastFirst) {
@@ -305,9 +349,9 @@ TEST(NextGeneration, SurplusChildrenAreDroppedLastFirst) {
     EXPECT_EQ(odd.survivor_count, 13u);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> children;
     for (std::uint32_t i = 13; i < 20; ++i)
-        ++children[{odd.parents[i].first, odd.parents[i].second}];
-    EXPECT_EQ(odd.parents[13], odd.parents[14]);
-    EXPECT_EQ(odd.parents[17], odd.parents[18]);
+        ++children[pair_of(odd.parents[i])];
+    EXPECT_EQ(pair_of(odd.parents[13]), pair_of(odd.parents[14]));
+    EXPECT_EQ(pair_of(odd.parents[17]), pair_of(odd.parents[18]));
     EXPECT_EQ(children.size(), 4u);
 }
 
@@ -349,7 +393,7 @@ TEST(NextGeneration, HasItsGoldenHash) {
             hash += entity.add(next.parents[i].first, next.parents[i].second).finish();
         }
     }
-    EXPECT_EQ(base::to_text(hash), "68dc25fd696dcd3cdaef8056e79a1b95");
+    EXPECT_EQ(base::to_text(hash), "6a6ad3dec19d4d1d881facd1eaf6957b");
 }
 
 class SameBitsOnAnyThreadCount : public testing::TestWithParam<std::size_t> {};

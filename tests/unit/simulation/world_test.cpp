@@ -319,6 +319,94 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     EXPECT_EQ(later.founders(later.islands()[2])[11], 35u);
 }
 
+TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
+    parameters.population_size = 50;
+    parameters.island_count = 2;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 3;
+    parameters.mutation_chance = 0;
+    parameters.crossover_chance = 0;
+    parameters.replaced_count = 30;
+    for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
+                             evolution::PopulationModel::SteadyState}) {
+        parameters.population_model = model;
+        World world = make();
+        std::vector<evolution::Chromosome> first;
+        for (const Island& island : world.islands()) {
+            for (std::uint32_t id = 0; id < 50; ++id) {
+                first.emplace_back(island.born().genes.col(id));
+            }
+        }
+        while (world.moment().generation < 30) {
+            world.advance_tick(executor);
+            for (const Island& island : world.islands()) {
+                for (std::uint32_t id = 0; id < 50; ++id) {
+                    ASSERT_TRUE((island.born().genes.col(id) == first[world.founders(island)[id]]).all())
+                        << "organism " << id << " of generation " << world.moment().generation;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
+    parameters.population_size = 2'000;
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.mutation_chance = 0;
+    for (const double chance : {0.0, 0.5, 1.0}) {
+        parameters.crossover_chance = chance;
+        World world = make();
+        const evolution::GeneMatrix first = world.islands()[0].born().genes;
+        world.advance_tick(executor);
+        world.turn_over(executor);
+        const Island& island = world.islands()[0];
+        for (std::uint32_t id = 0; id < 2'000; ++id) {
+            EXPECT_GE((island.born().genes.col(id) == first.col(world.founders(island)[id])).count(), 3) << id;
+        }
+    }
+}
+
+/// docs/MODEL.md states these figures.
+TEST_F(WorldTest, OrganismsStarveATickLateAsHealthIsAFloat) {
+    parameters.generation_s = 40;
+    parameters.food_count = parameters.poison_count = 0;
+    for (const auto& [base_health, tick] : {std::pair{80, 801u}, {100, 1001u}, {120, 1201u}}) {
+        parameters.initial_gene_min = parameters.initial_gene_max = base_health;
+        World world = make();
+        run_generation(world);
+        EXPECT_EQ(world.alive_count(), 0u);
+        EXPECT_EQ(world.moment().generation_tick, tick);
+    }
+}
+
+/// docs/MODEL.md states these figures.
+TEST_F(WorldTest, SurvivorsHealthIsExactToAFiftieth) {
+    // What a survivor has in exact numbers: its base health, its meals, and a tenth less for each of 2,400 ticks.
+    parameters.population_size = 500;
+    parameters.scale_with_population = true;
+    parameters.reference_population = 50;
+    parameters.generation_s = 40;
+    World world = make();
+    run_generation(world);
+    const Fate fate = world.state(executor).islands[0].fate;
+    const Island& island = world.islands()[0];
+    int survivors = 0;
+    bool rounded = false;
+    for (std::uint32_t id = 0; id < 500; ++id) {
+        if (fate.lived_ticks[id] != 0) {
+            continue;
+        }
+        const double exact = 40 + double{island.born().genes(evolution::BaseHealth, id)} + 25.0 * fate.food_eaten[id] -
+                             40.0 * fate.poison_eaten[id] - 240;
+        EXPECT_NEAR(world.fitness()[0][id], exact, 0.02) << "organism " << id;
+        rounded |= std::abs(world.fitness()[0][id] - exact) > 0.005;
+        ++survivors;
+    }
+    EXPECT_GT(survivors, 100);
+    EXPECT_TRUE(rounded);
+}
+
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     parameters.fitness = FitnessFunction::GeneSum;
     World world = make();

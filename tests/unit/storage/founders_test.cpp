@@ -15,11 +15,12 @@ using testing::HasSubstr;
 
 class FoundersTest : public testing::Test {
   protected:
-    /// Six generations and a half on two islands with migrants between them.
+    /// Six generations and a half on two islands with migrants between them; every other pair is crossed.
     void record(std::uint64_t keep_every, bool shuffled = false) {
         StorageThread thread{{.keep_every = keep_every}};
         RecordedRun run{data, thread};
         run.command(set_parameter("shuffle_fitness", shuffled));
+        run.command(set_parameter("crossover_chance", 0.5));
         for (int tick = 0; tick < 780; ++tick) {
             run.advance(1);
             founders.resize(run.world().moment().generation);
