@@ -11,8 +11,6 @@ using base::Refusal;
 using base::RefusalCode;
 using base::Result;
 
-namespace {} // namespace
-
 Gate::Stamp Gate::stamp() const {
     struct stat about {};
     if (folder_.empty() || ::lstat(token_file_of(folder_).c_str(), &about) != 0)
@@ -70,12 +68,6 @@ void Gate::fail(const std::string& address, Clock::time_point now) {
 }
 
 Result<Visitor> Gate::admit(const std::string& token, const std::string& address, Clock::time_point now) {
-    const auto before = failures_.find(address);
-    if (before != failures_.end() && now < before->second.not_before && (!token.empty() || token_needed_)) {
-        const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
-        return refusal(RefusalCode::ResourceExhausted,
-                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s");
-    }
     if (token.empty() && !token_needed_)
         return Visitor{};
     if (trouble_)
@@ -83,18 +75,21 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
                        "the server cannot tell at present who may come in: its log says why, to whoever runs it");
     const Digest digest = digest_of(token);
     const Token* known = token.empty() ? nullptr : find(tokens_, digest);
-    if (known == nullptr) {
-        // Who has none is asked for one, and need not wait with it.
-        if (!token.empty())
-            fail(address, now);
+    if (known != nullptr) {
+        failures_.erase(address);
+        return Visitor{known->name, known->role, digest};
+    }
+    if (token.empty())
         return refusal(
             RefusalCode::Unauthenticated,
-            token.empty()
-                ? "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them"
-                : "this server does not know the token: ask whoever runs it for one");
+            "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them");
+    if (const auto before = failures_.find(address); before != failures_.end() && now < before->second.not_before) {
+        const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
+        return refusal(RefusalCode::ResourceExhausted,
+                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s");
     }
-    failures_.erase(address);
-    return Visitor{known->name, known->role, digest};
+    fail(address, now);
+    return refusal(RefusalCode::Unauthenticated, "this server does not know the token: ask whoever runs it for one");
 }
 
 } // namespace evod::access

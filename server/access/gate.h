@@ -25,7 +25,8 @@ struct Visitor {
 class Gate {
   public:
     using Clock = std::chrono::steady_clock;
-    // A failed login keeps its address from the next one for this long; twice as long after each further one.
+    // After a failed login, further unknown tokens from its address are refused unexamined for this long; twice as long
+    // after each further one. A known token is always admitted: it cannot be guessed, so there is nothing to slow down.
     static constexpr std::chrono::milliseconds delay_min{500};
     static constexpr std::chrono::milliseconds delay_max{30'000};
     static constexpr std::chrono::minutes forgotten_after{10}; // without another failure
@@ -36,8 +37,8 @@ class Gate {
     /// Refused where the file cannot be believed, or a token is needed and there is none.
     static base::Result<Gate> open(const std::string& folder, bool token_needed);
 
-    /// UNAUTHENTICATED for a wrong token, or none where one is needed; RESOURCE_EXHAUSTED, without a look at the token,
-    /// while the address has to wait.
+    /// UNAUTHENTICATED for an unknown token, or none where one is needed; RESOURCE_EXHAUSTED for an unknown one while the
+    /// address has to wait.
     ///
     /// address  as far as it tells people apart.
     base::Result<Visitor> admit(const std::string& token, const std::string& address, Clock::time_point now);

@@ -94,8 +94,9 @@ runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, run
 }
 
 /// request  without faults.
-tables::WantedTable wanted(const v1::ExportRun& request) {
+tables::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     tables::WantedTable to;
+    to.only_users = role < access::Role::Admin;
     to.table = static_cast<tables::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
         request.format() == v1::TEXT_FORMAT_JSON_LINES ? tables::Table::Format::JsonLines : tables::Table::Format::Csv;
@@ -164,7 +165,10 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
                   request.mutable_release_lease()->set_world(world);
                   handle_own(std::move(request));
               }}
-    , retries_{{.kept_per_key = retries_kept, .keys_max = client_keys_max, .bytes_max = retry_bytes_max},
+    , retries_{{.kept_per_key = retries_kept,
+                .keys_max = client_keys_max,
+                .bytes_max = retry_bytes_max,
+                .evicted_max = evicted_keys_max},
                [&limit_counters] { limit_counters.met(Limit::ClientKeys); }}
     , own_key_{"evod " + to_text(draw_run_id())} {}
 
@@ -225,7 +229,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
 
 void Dispatcher::restore(const std::vector<storage::JournalEntry>& answers) {
     for (const storage::JournalEntry& entry : answers)
-        retries_.restore(entry.origin.client_key, entry.origin.request_id, entry.origin.request,
+        retries_.restore(Retries::key_of(storage::user_of(entry.origin), entry.origin.client_key),
+                         entry.origin.request_id, entry.origin.request,
                          std::make_shared<const std::string>(entry.answer));
 }
 
@@ -239,7 +244,7 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         return session.answer(refused(command.error()));
     }
 
-    const std::string& key = request.client_key();
+    const std::string key = Retries::key_of(session.visitor().name, request.client_key());
     const auto verdict =
         retries_.begin(key, id, bytes_of(request), [weak = session.weak_from_this()](const auto& frame) {
             if (const auto waiting = weak.lock())
@@ -263,13 +268,14 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     }
 
     auto answered = [this, key, id](const SharedBytes& frame, const base::Refusal* why) {
-        // What cannot be taken now leaves no trace: sent again, it may be.
-        if (why != nullptr && why->code == base::RefusalCode::Unavailable)
+        // A refusal that may pass leaves no trace: the same request sent again may be carried out.
+        if (why != nullptr && (why->code == base::RefusalCode::Unavailable ||
+                               why->code == base::RefusalCode::ResourceExhausted))
             retries_.forget(key, id, frame);
         else
             retries_.finish(key, id, frame);
     };
-    if (!carry_out(*std::move(command), request, {session.number(), session.by()}, std::move(answered)))
+    if (!carry_out(*std::move(command), request, {session.number(), session.by(), session.visitor().name}, std::move(answered)))
         retries_.forget(key, id, encode_response(refused(busy())));
 }
 
@@ -278,7 +284,7 @@ void Dispatcher::handle_own(v1::Request request) {
     request.set_request_id(++own_request_id_);
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     EVOD_ASSERT(command.has_value());
-    carry_out(*std::move(command), request, {0, "evod"},
+    carry_out(*std::move(command), request, {0, "evod", ""},
               [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
                   if (refused != nullptr)
                       log::error("{} of the server itself is refused: {}", name, to_text(*refused));
@@ -314,7 +320,8 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
         if (applied)
             if (const auto entry = laboratory.find(applied->world))
                 told->leased = (*entry)->control.leased;
-        auto give = [this, told, answered, key = request.client_key(), steps = request.has_run_until_tick(),
+        auto give = [this, told, answered, key = Retries::key_of(from.user, request.client_key()),
+                     steps = request.has_run_until_tick(),
                      world = applied ? applied->world : ""] {
             answered(told->frame, told->refused ? &*told->refused : nullptr);
             if (told->event)
@@ -588,7 +595,7 @@ void Dispatcher::export_text(Session& session, const v1::Request& request) {
     if (request.has_continue_export())
         return exports_.go_on(session, id, request.continue_export());
     find_run(session, request, request.export_run().world(), [this, id, request](Session& asking, const auto& run) {
-        exports_.begin(asking, id, run.past, wanted(request.export_run()));
+        exports_.begin(asking, id, run.past, wanted(request.export_run(), asking.visitor().role));
     });
 }
 
@@ -627,8 +634,9 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
             else
                 refuse(response, protocol::with_paths(entry.error(), name_of(request)));
         },
-        [this, world, key = request.client_key()](Session&, v1::Response& response) {
-            if (response.status().code() == v1::CODE_OK && !leases_.renew(*world, key))
+        [this, world, key = request.client_key()](Session& asking, v1::Response& response) {
+            if (response.status().code() == v1::CODE_OK &&
+                !leases_.renew(*world, Retries::key_of(asking.visitor().name, key)))
                 refuse(response, {.code = base::RefusalCode::FailedPrecondition,
                                   .message = "this client_key has no lease of that world: it gets one by "
                                              "run_until_tick, if the world runs",

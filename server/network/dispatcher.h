@@ -64,6 +64,7 @@ class Dispatcher {
     struct From {
         std::uint64_t session; // number; 0: the server itself
         std::string by;
+        std::string user; // name of its token; empty: none
     };
     /// Hands a command to the simulation, and tells everybody of it. false: the mailbox is full.
     bool carry_out(simulation::Command command, const v1::Request& request, const From& from, Answered answered);

@@ -70,7 +70,8 @@ constexpr LimitRow table[] = {
     {Limit::RetriesKept, "retries_kept", retries_kept, "answers kept of each `client_key`, for retries",
      "an older request is refused, `FAILED_PRECONDITION`"},
     {Limit::ClientKeys, "client_keys_max", client_keys_max, "keys whose answers are kept; 64 MiB in all",
-     "those of the key longest unused are forgotten"},
+     "those of a key that sent a single command go first, then those of the key longest unused; its requests up to the "
+     "highest id it used are then refused, `FAILED_PRECONDITION`, until 100,000 further keys have gone"},
     {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::World::history_generations_kept,
      "generations of statistics kept of each world", "the oldest are forgotten; a `History` begins after them"},
     {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,

@@ -126,6 +126,8 @@ constexpr std::chrono::milliseconds untaken_max{30'000};
 
 // Of all retries together: the answers of the longest unused keys go first.
 constexpr std::size_t retry_bytes_max = 64 << 20;
+// Keys whose answers are gone, but not the highest request_id that they used.
+constexpr std::size_t evicted_keys_max = 100'000;
 
 constexpr std::chrono::milliseconds look_every{500};   // for a token file that has changed, and who is stalled
 constexpr std::size_t ended_to_trim = 64;              // sessions between two looks; then memory is given back

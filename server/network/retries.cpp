@@ -1,5 +1,6 @@
 #include "server/network/retries.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -21,9 +22,13 @@ base::StateHash fingerprint(std::string_view bytes) {
 
 } // namespace
 
+std::string Retries::key_of(const std::string& user, const std::string& client_key) {
+    return user + '\0' + client_key; // a token's name has no such character
+}
+
 Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t request_id, std::string_view request,
                                 Waiter waiter) {
-    Key& key = touch(client_key);
+    Key& key = touch(client_key, request_id);
     const auto print = fingerprint(request);
     if (const auto found = key.commands.find(request_id); found != key.commands.end()) {
         Command& command = found->second;
@@ -81,15 +86,23 @@ void Retries::forget(const std::string& client_key, std::uint64_t request_id, co
         waiter(answer);
 }
 
-Retries::Key& Retries::touch(const std::string& client_key) {
+Retries::Key& Retries::touch(const std::string& client_key, std::uint64_t request_id) {
     const auto found = keys_.find(client_key);
     if (found != keys_.end()) {
-        used_.splice(used_.begin(), used_, found->second.use);
-        return found->second;
+        Key& key = found->second;
+        auto& from = key.used_again ? used_again_ : used_once_;
+        key.used_again |= !key.commands.contains(request_id);
+        auto& to = key.used_again ? used_again_ : used_once_;
+        to.splice(to.begin(), from, key.use);
+        last_used_ = &*key.use;
+        return key;
     }
-    used_.push_front(client_key);
+    used_once_.push_front(client_key);
     Key& key = keys_[client_key];
-    key.use = used_.begin();
+    key.use = used_once_.begin();
+    last_used_ = &*key.use;
+    if (const auto evicted = evicted_.find(fingerprint(client_key)); evicted != evicted_.end())
+        key.forgotten_up_to = evicted->second;
     return key;
 }
 
@@ -108,18 +121,35 @@ void Retries::trim(Key& key) {
 }
 
 void Retries::trim_keys() {
-    // The key used last is never forgotten: somebody is using it now.
-    for (auto oldest = used_.end(); oldest != used_.begin() && --oldest != used_.begin();) {
-        if (keys_.size() <= bounds_.keys_max && answer_bytes_ <= bounds_.bytes_max)
-            return;
-        const auto key = keys_.find(*oldest);
-        if (key->second.pending_count > 0)
+    trim_keys(used_once_, *last_used_);
+    trim_keys(used_again_, *last_used_);
+}
+
+void Retries::trim_keys(std::list<std::string>& used, const std::string& spared) {
+    for (auto oldest = used.end(); too_much() && oldest != used.begin();) {
+        const auto key = keys_.find(*--oldest);
+        if (&*oldest == &spared || key->second.pending_count > 0)
             continue;
+        remember_evicted(key->first, key->second);
         for (const auto& [id, command] : key->second.commands)
             answer_bytes_ -= command.answer->size();
         keys_.erase(key);
-        oldest = used_.erase(oldest);
+        oldest = used.erase(oldest);
         key_forgotten_();
+    }
+}
+
+void Retries::remember_evicted(const std::string& client_key, const Key& key) {
+    const std::uint64_t highest =
+        key.commands.empty() ? key.forgotten_up_to : std::max(key.forgotten_up_to, key.commands.rbegin()->first);
+    const auto [entry, is_new] = evicted_.try_emplace(fingerprint(client_key), highest);
+    entry->second = std::max(entry->second, highest);
+    if (!is_new)
+        return;
+    evicted_in_order_.push_back(entry->first);
+    if (evicted_in_order_.size() > bounds_.evicted_max) {
+        evicted_.erase(evicted_in_order_.front());
+        evicted_in_order_.pop_front();
     }
 }
 

@@ -1,7 +1,9 @@
 // Retries: the answers to commands that were run, so that sending one again never runs it again.
 //
-// A command is known by (client_key, request_id). The newest `retries_kept` of each key are kept, for the
-// `client_keys_max` keys used last; both bounds and the bytes of all answers together hold memory down.
+// A command is known by (user, client_key, request_id): what one user sends never meets the commands of another. The newest
+// `kept_per_key` answers of each key are kept, for `keys_max` keys. Where there are more, or more bytes, keys that sent a
+// single command go first, then those used longest ago. Of a key that went, its highest request_id is remembered, for
+// `evicted_max` keys, so that a command whose answer is gone is refused instead of being carried out again.
 //
 // Owner        the dispatcher, on the network thread.
 #pragma once
@@ -9,6 +11,7 @@
 #include "server/base/state_hash.h"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <list>
 #include <map>
@@ -27,7 +30,7 @@ using SharedBytes = std::shared_ptr<const std::string>;
 class Retries {
   public:
     struct Bounds {
-        std::size_t kept_per_key, keys_max, bytes_max;
+        std::size_t kept_per_key, keys_max, bytes_max, evicted_max;
     };
     /// Called with the answer when it is there.
     using Waiter = std::function<void(const SharedBytes&)>;
@@ -43,6 +46,11 @@ class Retries {
         Different, // the same id was used for another request; the waiter is not kept
         TooOld,    // its answer is not kept any more; the waiter is not kept
     };
+    /// The client_key of a user as the other functions take it: no two users have the same.
+    ///
+    /// user  name of the session's token; empty: it has none.
+    static std::string key_of(const std::string& user, const std::string& client_key);
+
     /// Looks a command up, and begins it if it is new.
     ///
     /// request  the request as bytes, the same bytes for the same request.
@@ -71,16 +79,27 @@ class Retries {
         std::map<std::uint64_t, Command> commands;
         std::uint64_t forgotten_up_to = 0; // ids up to here are too old unless they are in `commands`
         std::size_t pending_count = 0;
-        std::list<std::string>::iterator use; // in used_
+        bool used_again = false;              // sent more than one command
+        std::list<std::string>::iterator use; // in used_once_ or used_again_
     };
-    Key& touch(const std::string& client_key);
+    struct HashOfHash {
+        std::size_t operator()(const base::StateHash& hash) const { return hash.low; }
+    };
+    Key& touch(const std::string& client_key, std::uint64_t request_id);
     void trim(Key& key);
     void trim_keys();
+    /// Evicts the keys of a list used longest ago until the bounds hold. spared  has just been used.
+    void trim_keys(std::list<std::string>& used, const std::string& spared);
+    bool too_much() const { return keys_.size() > bounds_.keys_max || answer_bytes_ > bounds_.bytes_max; }
+    void remember_evicted(const std::string& client_key, const Key& key);
 
     const Bounds bounds_;
     const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
-    std::list<std::string> used_; // keys, the last used first
+    std::list<std::string> used_once_, used_again_; // keys, the last used first
+    const std::string* last_used_ = nullptr;        // in one of them
+    std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of a key: its highest request_id
+    std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;
 };
 

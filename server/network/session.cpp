@@ -312,6 +312,9 @@ void Session::on_hello(const v1::Hello& hello) {
     hello_timer_.cancel();
     reader_.set_limits(wire::server_limits);
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
+    // In by(), a colon and a space end the user's name and nothing else.
+    for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": "))
+        client_[colon] = ' ';
     log::info({.session = number_, .client = by()}, "session {}: {} connected as {}, version {}", number_, by(),
               access::name_of(visitor_.role),
               hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));

@@ -37,11 +37,17 @@ struct RunIdentity {
 
 /// Who asked for a command, and how.
 struct Origin {
-    std::string client; // as others are told who did it
+    std::string client; // "user: program address", or "program address" where the session had no token
     std::string client_key;
     std::uint64_t request_id = 0;
     std::string request; // a serialized v1::Request
 };
+
+/// The user in Origin::client; empty: none. No program's name contains ": ".
+inline std::string user_of(const Origin& origin) {
+    const auto end = origin.client.find(": ");
+    return end == std::string::npos ? "" : origin.client.substr(0, end);
+}
 
 /// A command that was applied.
 struct JournalEntry {

@@ -254,11 +254,11 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
     return {};
 }
 
-Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format) {
+Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format, bool only_users) {
     constexpr std::uint32_t entries_at_once = 1000;
     google::protobuf::util::JsonPrintOptions json_options;
     json_options.preserve_proto_field_names = true;
-    Table table{out, format, {"number", "tick", "client", "client_key", "request_id", "kind", "request"}};
+    Table table{out, format, {"number", "tick", "client", "kind", "request"}};
     for (std::uint64_t first = 1; out; first += entries_at_once) {
         const auto entries = run.file.journal(first, entries_at_once);
         if (!entries)
@@ -266,17 +266,18 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
         for (const storage::JournalEntry& entry : *entries) {
             v1::Request request;
             std::string json;
-            if (!request.ParseFromString(entry.origin.request) ||
-                !MessageToJsonString(request, &json, json_options).ok())
+            const bool parsed = request.ParseFromString(entry.origin.request);
+            // Who knows them could send the client's next command in its place.
+            request.clear_client_key();
+            request.clear_request_id();
+            if (!parsed || !MessageToJsonString(request, &json, json_options).ok())
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = run.file.path() + " is damaged: entry " + std::to_string(entry.number) +
                                           " of its journal is no request",
                                .violations = {}};
             table.number(entry.number)
                 .number(entry.tick)
-                .text(entry.origin.client)
-                .text(entry.origin.client_key)
-                .number(entry.origin.request_id)
+                .text(only_users ? storage::user_of(entry.origin) : entry.origin.client)
                 .text(kind_of(request))
                 .json(json)
                 .end_row();
@@ -328,7 +329,7 @@ Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::o
     case RunTable::Events:
         break;
     }
-    return write_events(run, out, wanted.format);
+    return write_events(run, out, wanted.format, wanted.only_users);
 }
 
 } // namespace evod::tables

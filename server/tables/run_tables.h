@@ -34,6 +34,7 @@ struct WantedTable {
     std::optional<std::uint64_t> generation =
         {};                              // of the population: whose beginning; nothing: the last that has begun
     std::optional<OrganismName> of = {}; // of the lineage: it and its ancestors, newest first; nothing: everyone
+    bool only_users = false; // of the events: who sent a command is the name of a token, without client and address
 };
 
 /// A run file that is held still, and what simulates again what it does not hold, until `stop` is asked for.

@@ -191,17 +191,17 @@ class RunFile:
     def events(self) -> Any:
         """The journal: the commands that were applied, each request as JSON."""
         rows = []
-        for number, tick, client, key, request_id, data in self._rows(
-            "SELECT number, tick, client, client_key, request_id, request FROM journal ORDER BY number"
-        ):
+        for number, tick, client, data in self._rows("SELECT number, tick, client, request FROM journal ORDER BY number"):
             try:
                 request = commands_pb2.Request.FromString(data)
             except google.protobuf.message.DecodeError:
                 raise DamagedData(f"{self.path} is damaged: entry {number} of its journal is no request") from None
+            request.ClearField("client_key")
+            request.ClearField("request_id")
             told = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
             kind = request.WhichOneof("request") or "unknown"
-            rows.append((number, tick, client, key, request_id & (1 << 64) - 1, kind, told))
-        names = ("number", "tick", "client", "client_key", "request_id", "kind", "request")
+            rows.append((number, tick, client, kind, told))
+        names = ("number", "tick", "client", "kind", "request")
         return pandas().DataFrame(rows, columns=names)
 
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:

@@ -23,7 +23,7 @@ class RetriesOf : public testing::Test {
         heard.clear();
     }
 
-    Retries retries{{.kept_per_key = 3, .keys_max = 2, .bytes_max = 1000}};
+    Retries retries{{.kept_per_key = 3, .keys_max = 2, .bytes_max = 1000, .evicted_max = 3}};
     std::vector<std::string> heard;
 };
 
@@ -81,14 +81,37 @@ TEST_F(RetriesOf, WhatCouldNotBeRunMayBeSentAgain) {
     EXPECT_EQ(begin("k", 1), Verdict::New);
 }
 
-TEST_F(RetriesOf, TheKeysLongestUnusedAreForgotten) {
+TEST_F(RetriesOf, EvictsTheKeyLongestUnused) {
     run("a", 1);
     run("b", 1);
     begin("a", 1); // used again
     run("c", 1);
     EXPECT_EQ(retries.key_count(), 2);
     EXPECT_EQ(begin("a", 1), Verdict::Known);
-    EXPECT_EQ(begin("b", 1), Verdict::New) << "it is a new key again";
+    EXPECT_EQ(begin("b", 1), Verdict::TooOld) << "its answer is gone, and it is not carried out again";
+    EXPECT_EQ(begin("b", 2), Verdict::New);
+}
+
+TEST_F(RetriesOf, EvictsKeysThatSentOneCommandFirst) {
+    run("steady", 1);
+    run("steady", 2);
+    for (int i = 0; i < 20; ++i)
+        run("one-shot " + std::to_string(i), 1);
+    EXPECT_EQ(begin("steady", 1), Verdict::Known);
+    EXPECT_EQ(begin("steady", 2), Verdict::Known);
+}
+
+TEST_F(RetriesOf, RemembersTheHighestIdsOfBoundedlyManyEvictedKeys) {
+    for (const char* key : {"a", "b", "c", "d", "e", "f"})
+        run(key, 7); // keeps e and f; of a to d, the last three are remembered
+    EXPECT_EQ(begin("b", 7), Verdict::TooOld);
+    EXPECT_EQ(begin("d", 3), Verdict::TooOld);
+    EXPECT_EQ(begin("a", 7), Verdict::New);
+}
+
+TEST_F(RetriesOf, KeepsUsersApart) {
+    EXPECT_NE(Retries::key_of("ada", "k"), Retries::key_of("bob", "k"));
+    EXPECT_NE(Retries::key_of("", "ak"), Retries::key_of("a", "k"));
 }
 
 TEST_F(RetriesOf, AKeyWithACommandBeingRunIsNotForgotten) {
