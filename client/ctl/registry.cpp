@@ -137,7 +137,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
 }
 
 std::string to_text(const v1::ParameterValue& value) {
-    switch (value.value_case()) {
+    switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
         return exact(value.real());
     case v1::ParameterValue::kCount:

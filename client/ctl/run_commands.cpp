@@ -138,7 +138,7 @@ void remove(const Common& common, const std::string& name) {
 void reset(const Common& common, std::optional<std::uint64_t> seed) {
     Caller caller{common};
     v1::Request request;
-    request.mutable_reset_world()->set_world(common.world);
+    request.mutable_reset_world()->set_world(common.world.empty() ? caller.world("").name() : common.world);
     if (seed) {
         request.mutable_reset_world()->set_seed(*seed);
     }

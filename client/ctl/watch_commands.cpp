@@ -254,7 +254,7 @@ std::string outcome_of(v1::Outcome outcome) {
 std::string text_of(const v1::Event& event) {
     const std::string where =
         (event.world().empty() ? "server" : event.world()) + " tick " + std::to_string(event.tick()) + ": ";
-    switch (event.event_case()) {
+    switch (event.kind_case()) {
     case v1::Event::kGenerationFinished:
         return where + text_of(line_of(event.generation_finished().statistics()));
     case v1::Event::kParametersChanged: {

@@ -68,6 +68,16 @@ std::string random_key() {
     return key;
 }
 
+std::string hexadecimal(std::string_view bytes) {
+    std::string digits;
+    digits.reserve(2 * bytes.size());
+    for (const char byte : bytes) {
+        digits += "0123456789abcdef"[static_cast<unsigned char>(byte) >> 4];
+        digits += "0123456789abcdef"[byte & 15];
+    }
+    return digits;
+}
+
 } // namespace
 
 /// The connection's thread and everything on it.
@@ -496,6 +506,9 @@ class Connection::Io {
             return;
         }
         sight.keyframe_requests = 0;
+        // As WorldInfo and Event have them, so that they can be compared.
+        decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
+        decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
         share([&] {
             const std::uint32_t island = decoded->about.island();
             pictures_[handle][island] = std::make_shared<const wire::Picture>(*std::move(decoded));

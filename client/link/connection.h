@@ -71,7 +71,7 @@ std::string to_text(const Endpoint& endpoint);
 // ---- answers ---------------------------------------------------------------------------------------------------
 
 inline bool accepted(const evod::v1::Response& response) {
-    return response.status().code() == evod::v1::CODE_OK;
+    return response.status().code() == evod::v1::CODE_UNSPECIFIED;
 }
 
 /// Whether worlds that live wait for the server's disk.
@@ -176,7 +176,8 @@ class Connection {
     Result<evod::v1::Response> wait_subscribed(SubscriptionHandle handle,
                                                std::chrono::milliseconds timeout = default_timeout);
 
-    /// The newest picture of an island that was not taken yet; null if there is none.
+    /// The newest picture of an island that was not taken yet; null if there is none. Its run_id and state_hash are
+    /// hexadecimal digits, as those of a WorldInfo.
     std::shared_ptr<const wire::Picture> take_picture(SubscriptionHandle handle, std::uint32_t island = 0);
     /// The newest of every island that has one, islands rising.
     std::vector<std::shared_ptr<const wire::Picture>> take_pictures(SubscriptionHandle handle);

@@ -279,6 +279,7 @@ void Session::say_hello() {
     hello.set_client_name(options_.client_name);
     hello.set_client_version(options_.client_version);
     hello.set_token(options_.token);
+    hello.set_frame_bytes_max(static_cast<std::uint32_t>(*wire::client_limits.control_bytes_max));
     to_send_.push_back(wire::encode_frame(wire::Channel::Control, message));
     write();
     expect_within(options_.connect_timeout, "no welcome from");
@@ -339,9 +340,8 @@ void Session::take_control(std::span<const std::byte> body) {
     } else if (!welcomed_) {
         take_first(*message);
     } else {
-        last_word_.reset();
-        if (message->has_response() && message->response().request_id() == 0) {
-            last_word_ = message->response().status();
+        if (message->has_goodbye()) {
+            goodbye_ = message->goodbye().status();
         }
         going_away_ = going_away_ || message->event().has_server_going_away();
         handlers_.received(*std::move(message));
@@ -349,10 +349,10 @@ void Session::take_control(std::span<const std::byte> body) {
 }
 
 void Session::take_first(const evod::v1::ServerMessage& message) {
-    if (message.has_response()) {
-        const auto code = message.response().status().code();
+    if (message.has_goodbye()) {
+        const auto code = message.goodbye().status().code();
         const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
-        end(refused(message.response().status(), "refused us", !later));
+        end(refused(message.goodbye().status(), "refused us", !later));
     } else if (!message.has_welcome()) {
         end({.reason = to_text(options_.server) + " is not an evod server: it did not begin with a welcome",
              .final = true});
@@ -369,8 +369,8 @@ void Session::take_first(const evod::v1::ServerMessage& message) {
 }
 
 Session::Ending Session::lost(const error_code& error) const {
-    if (last_word_) { // a token that was revoked is not known any more to whoever tries it again
-        return refused(*last_word_, "ended the session", last_word_->code() == evod::v1::CODE_UNAUTHENTICATED);
+    if (goodbye_) { // a token that was revoked is not accepted the next time either
+        return refused(*goodbye_, "ended the session", goodbye_->code() == evod::v1::CODE_UNAUTHENTICATED);
     }
     // Of TLS 1.3 a client is told only now that its certificate is not taken, and will not be the next time.
     const bool not_taken =

@@ -77,7 +77,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::deque<std::string> to_send_; // the first is being written
     bool welcomed_ = false, ended_ = false;
     bool going_away_ = false;                   // the server has said so
-    std::optional<evod::v1::Status> last_word_; // of no request: why the server ends it, if the end comes next
+    std::optional<evod::v1::Status> goodbye_; // why the server ends the session
 };
 
 } // namespace evod::link

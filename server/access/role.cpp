@@ -24,8 +24,8 @@ std::optional<Role> role_named(std::string_view name) {
 // A request without a line here is an error of the build: nothing is allowed by accident.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic error "-Wswitch"
-Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
-    using Case = v1::Request::RequestCase;
+Role role_needed(v1::Request::KindCase request, bool of_own_past) {
+    using Case = v1::Request::KindCase;
     switch (request) {
     case Case::kListWorlds:
     case Case::kGetParameters:
@@ -64,7 +64,7 @@ Role role_needed(v1::Request::RequestCase request, bool of_own_past) {
     case Case::kDeleteWorld:
     case Case::kForkWorld:
     case Case::kShutDown:
-    case Case::REQUEST_NOT_SET:
+    case Case::KIND_NOT_SET:
         return Role::Admin;
     }
     return Role::Admin;

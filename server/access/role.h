@@ -23,6 +23,6 @@ std::optional<Role> role_named(std::string_view name);
 /// seek it as viewers.
 ///
 /// request  of a kind this server knows.
-Role role_needed(v1::Request::RequestCase request, bool of_own_past);
+Role role_needed(v1::Request::KindCase request, bool of_own_past);
 
 } // namespace evod::access

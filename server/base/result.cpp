@@ -18,6 +18,8 @@ const char* name_of(RefusalCode code) {
         return "RESOURCE_EXHAUSTED";
     case RefusalCode::FailedPrecondition:
         return "FAILED_PRECONDITION";
+    case RefusalCode::Aborted:
+        return "ABORTED";
     case RefusalCode::Unimplemented:
         return "UNIMPLEMENTED";
     case RefusalCode::Unavailable:

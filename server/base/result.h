@@ -17,6 +17,7 @@ enum class RefusalCode {
     PermissionDenied = 7,
     ResourceExhausted = 8,
     FailedPrecondition = 9,
+    Aborted = 10,
     Unimplemented = 12,
     Unavailable = 14,
     DataLoss = 15,

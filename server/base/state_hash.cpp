@@ -16,4 +16,13 @@ std::string to_text(const StateHash& hash) {
     return text;
 }
 
+std::string to_bytes(const StateHash& hash) {
+    std::string bytes(16, '\0');
+    for (std::size_t i = 0; i < 8; ++i) {
+        bytes[7 - i] = static_cast<char>(hash.high >> (8 * i) & 0xff);
+        bytes[15 - i] = static_cast<char>(hash.low >> (8 * i) & 0xff);
+    }
+    return bytes;
+}
+
 } // namespace evod::base

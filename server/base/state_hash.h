@@ -32,6 +32,9 @@ struct StateHash {
 /// 32 lower-case hexadecimal digits, high word first.
 std::string to_text(const StateHash& hash);
 
+/// The same 16 bytes, the most significant first.
+std::string to_bytes(const StateHash& hash);
+
 /// Collects one entity's identity and fields. `kind` keeps entities of different kinds with equal ids apart.
 class EntityHash {
   public:

@@ -89,7 +89,6 @@ v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& s
         return protocol::refusing(asked.request_id, protocol::with_paths(bred.error(), "get_breeding"));
     v1::Response response;
     response.set_request_id(asked.request_id);
-    response.mutable_status()->set_code(v1::CODE_OK);
     *response.mutable_breeding() = protocol::to_proto(bred->record, bred->parameters);
     response.mutable_breeding()->set_generation(bred->generation);
     response.mutable_breeding()->set_island(bred->island);

@@ -33,7 +33,7 @@ base::Refusal no_such_subscription(const char* field, std::uint32_t subscription
 
 /// "set_parameters"
 std::string name_of(const v1::Request& request) {
-    return v1::Request::descriptor()->FindFieldByNumber(request.request_case())->name();
+    return v1::Request::descriptor()->FindFieldByNumber(request.kind_case())->name();
 }
 
 /// The same bytes for the same request.
@@ -50,7 +50,6 @@ std::string bytes_of(const v1::Request& request) {
 v1::Response response_to(std::uint64_t request_id) {
     v1::Response response;
     response.set_request_id(request_id);
-    response.mutable_status()->set_code(v1::CODE_OK);
     return response;
 }
 
@@ -109,7 +108,7 @@ tables::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
 
 /// Whether the world that a request names is one that its session has opened to look at the past.
 bool is_of_own_past(const Session& session, const v1::Request& request) {
-    switch (request.request_case()) {
+    switch (request.kind_case()) {
     case v1::Request::kRun:
         return session.pasts.contains(request.run().world());
     case v1::Request::kRunUntilTick:
@@ -192,7 +191,7 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         return refuse_it(refusal(
             base::RefusalCode::Unimplemented,
             "this server does not know the request: it may be older than the client; Describe tells what it knows"));
-    if (const auto needed = access::role_needed(request.request_case(), is_of_own_past(session, request));
+    if (const auto needed = access::role_needed(request.kind_case(), is_of_own_past(session, request));
         session.visitor().role < needed)
         return refuse_it(refusal(base::RefusalCode::PermissionDenied,
                                  name_of(request) + " needs the role " + access::name_of(needed) +
@@ -238,6 +237,11 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     const auto refused = [id](const base::Refusal& why) { return protocol::refusing(id, why); };
 
+    if (const auto unknown = protocol::unknown_field_of(request))
+        return session.answer(refused(
+            {.code = base::RefusalCode::Unimplemented,
+             .message = "this server does not know a field of the command: it may be older than the client",
+             .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}}}));
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
         count_limits_met(request, limit_counters_);
@@ -399,7 +403,7 @@ void Dispatcher::query(Session& session, v1::Request request) {
         if (asked)
             session.expect(bytes);
     };
-    switch (request.request_case()) {
+    switch (request.kind_case()) {
     case v1::Request::kListWorlds:
         return ask(session, id, [](const simulation::Laboratory& laboratory, v1::Response& response) {
             *response.mutable_worlds() = protocol::list_worlds(laboratory);
@@ -529,7 +533,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                     wanted->set_view(subscribe.view());
             },
             [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
-                if (response.status().code() != v1::CODE_OK)
+                if (response.status().code() != v1::CODE_UNSPECIFIED)
                     return;
                 if (full(subscriber))
                     return refuse(response, too_many);
@@ -551,7 +555,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             wanted->world = (*entry)->name;
         },
         [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
-            if (response.status().code() != v1::CODE_OK)
+            if (response.status().code() != v1::CODE_UNSPECIFIED)
                 return;
             if (full(subscriber))
                 return refuse(response, too_many);
@@ -635,7 +639,7 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
                 refuse(response, protocol::with_paths(entry.error(), name_of(request)));
         },
         [this, world, key = request.client_key()](Session& asking, v1::Response& response) {
-            if (response.status().code() == v1::CODE_OK &&
+            if (response.status().code() == v1::CODE_UNSPECIFIED &&
                 !leases_.renew(*world, Retries::key_of(asking.visitor().name, key)))
                 refuse(response, {.code = base::RefusalCode::FailedPrecondition,
                                   .message = "this client_key has no lease of that world: it gets one by "

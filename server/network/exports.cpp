@@ -66,7 +66,6 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
                 return asking->answer(refused(request_id, protocol::with_paths(part.error(), "export_run")));
             v1::Response response;
             response.set_request_id(request_id);
-            response.mutable_status()->set_code(v1::CODE_OK);
             v1::ExportPart& answer = *response.mutable_export_part();
             answer.set_export_id(id);
             answer.set_text(std::move(part->text));

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ namespace evod::network {
 namespace {
 
 constexpr std::size_t name_bytes_max = 64;
+constexpr std::uint32_t client_frame_bytes_min = 65'536; // every client takes at least this
 constexpr std::size_t batch_frames_max = 64;
 // Many parts of a picture, or a few that are short, are put together before they are handed to the system.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
@@ -62,7 +64,7 @@ v1::Role to_proto(access::Role role) {
 } // namespace
 
 void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response) {
-    if (response.status().code() == v1::CODE_OK)
+    if (response.status().code() == v1::CODE_UNSPECIFIED)
         return;
     const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
     log::debug({.session = session, .client = by, .code = code}, "session {}: {} is refused request {}: {}: {}",
@@ -79,7 +81,15 @@ SharedBytes encode_response(v1::Response response) {
     return encode_control(message);
 }
 
+SharedBytes encode_goodbye(const base::Refusal& why) {
+    v1::ServerMessage message;
+    *message.mutable_goodbye()->mutable_status() = protocol::to_proto(why);
+    return encode_control(message);
+}
+
 SharedBytes encode_event(v1::Event event) {
+    using namespace std::chrono;
+    event.set_time_ms(duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count());
     v1::ServerMessage message;
     *message.mutable_event() = std::move(event);
     return encode_control(message);
@@ -268,7 +278,7 @@ void Session::on_frame(const wire::Frame& frame) {
     }
     if (!message)
         return send_unasked(protocol::refusing(0, refusal(base::RefusalCode::InvalidArgument, message.error().what)));
-    switch (message->message_case()) {
+    switch (message->kind_case()) {
     case v1::ClientMessage::kRequest:
         host_.traffic.requests.add();
         host_.handle(*this, std::move(*message->mutable_request()));
@@ -280,7 +290,7 @@ void Session::on_frame(const wire::Frame& frame) {
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
                                                    "this session has had its hello already: send requests")));
         break;
-    case v1::ClientMessage::MESSAGE_NOT_SET:
+    case v1::ClientMessage::KIND_NOT_SET:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::Unimplemented,
                                                    "this server does not know the message: it may be older than "
                                                    "the client; Describe tells what it knows")));
@@ -297,18 +307,26 @@ void Session::on_hello(const v1::Hello& hello) {
     };
     check_length("hello.client_name", hello.client_name());
     check_length("hello.client_version", hello.client_version());
+    if (hello.frame_bytes_max() != 0 && hello.frame_bytes_max() < client_frame_bytes_min)
+        violations.push_back({"hello.frame_bytes_max", "0, or at least " + std::to_string(client_frame_bytes_min),
+                              std::to_string(hello.frame_bytes_max())});
     if (!violations.empty())
         return fail(protocol::invalid(std::move(violations)));
-    if (hello.protocol_version() != wire::protocol_version)
+    const std::uint32_t lowest = hello.protocol_version();
+    const std::uint32_t highest = std::max(lowest, hello.protocol_version_max());
+    if (wire::protocol_version < lowest || wire::protocol_version > highest)
         return fail({.code = base::RefusalCode::FailedPrecondition,
                      .message = "this server speaks another version of the protocol: use a client of that version",
                      .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
-                                     std::to_string(hello.protocol_version())}}});
+                                     highest == lowest ? std::to_string(lowest)
+                                                       : std::to_string(lowest) + " to " + std::to_string(highest)}}});
     auto visitor = host_.admit(hello.token(), neighbourhood_);
     if (!visitor)
         return fail(visitor.error());
     visitor_ = *std::move(visitor);
     greeted_ = true;
+    if (hello.frame_bytes_max() != 0)
+        frame_bytes_max_ = hello.frame_bytes_max();
     hello_timer_.cancel();
     reader_.set_limits(wire::server_limits);
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
@@ -342,7 +360,7 @@ void Session::fail(const base::Refusal& refused) {
     const std::string who = greeted_ ? by() : to_text(peer_);
     log::info({.session = number_, .client = who, .code = name_of(refused.code)}, "session {}: {} is closed: {}",
               number_, who, refused.message);
-    send_unasked(protocol::refusing(0, refused));
+    enqueue(encode_goodbye(refused), Kind::Unasked);
     finish();
 }
 
@@ -363,7 +381,16 @@ void Session::expect(std::ptrdiff_t bytes) {
 }
 
 void Session::answer(SharedBytes frame) {
-    enqueue(std::move(frame), Kind::Answer);
+    if (takes(frame->size()))
+        return enqueue(std::move(frame), Kind::Answer);
+    v1::ServerMessage too_large;
+    too_large.ParseFromString(frame->substr(wire::header_bytes));
+    enqueue(encode_response(protocol::refusing(
+                too_large.response().request_id(),
+                refusal(base::RefusalCode::ResourceExhausted,
+                        "the answer is " + std::to_string(frame->size() - wire::header_bytes) +
+                            " bytes long, the client takes " + std::to_string(frame_bytes_max_) + ": ask for less"))),
+            Kind::Answer);
 }
 
 void Session::answer(v1::Response response) {
@@ -379,7 +406,7 @@ void Session::send_unasked(const v1::Response& response) {
 
 void Session::event(const SharedBytes& frame) {
     // Once some are dropped the rest are too until that has been told, so that the gap is where it is said to be.
-    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max)
+    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size()))
         return enqueue(frame, Kind::Event);
     host_.limit_counters.met(Limit::QueuedEventBytes);
     count_dropped_events(1);

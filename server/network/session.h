@@ -28,6 +28,7 @@
 #include <array>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -193,6 +194,8 @@ class Session : public std::enable_shared_from_this<Session> {
     /// The same of this one. false: the budget does not allow it yet.
     bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
     void enqueue(SharedBytes frame, Kind kind);
+    /// Whether the client takes a frame of that size, header included.
+    bool takes(std::size_t frame_bytes) const { return frame_bytes - wire::header_bytes <= frame_bytes_max_; }
     void written(const Queued& queued);
     void wake_writer();
     void end();
@@ -204,6 +207,7 @@ class Session : public std::enable_shared_from_this<Session> {
     const std::string neighbourhood_;
     std::string client_;
     access::Visitor visitor_;
+    std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max(); // of a body that the client takes
     wire::FrameReader reader_{wire::hello_limits};
     Buffers::Own reader_bytes_, expected_bytes_;
     TokenBucket turns_to_send_;
@@ -242,5 +246,6 @@ void log_refusal(std::uint64_t session, const std::string& by, const v1::Respons
 SharedBytes encode_control(const v1::ServerMessage& message);
 SharedBytes encode_response(v1::Response response);
 SharedBytes encode_event(v1::Event event);
+SharedBytes encode_goodbye(const base::Refusal& why);
 
 } // namespace evod::network

@@ -17,7 +17,7 @@ namespace {
 v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
     v1::SnapshotFrame frame;
     frame.set_world(snapshot.world);
-    frame.set_run_id(to_text(snapshot.run_id));
+    frame.set_run_id(to_bytes(snapshot.run_id));
     frame.set_island(island.island);
     frame.set_island_count(snapshot.island_count);
     frame.set_width_px(island.width_px);
@@ -28,7 +28,7 @@ v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::Isl
     frame.set_simulated_s(snapshot.moment.simulated_s);
     frame.set_state(protocol::to_proto(snapshot.state));
     *frame.mutable_speed() = protocol::to_proto(snapshot.speed);
-    frame.set_state_hash(base::to_text(snapshot.hash));
+    frame.set_state_hash(base::to_bytes(snapshot.hash));
     frame.set_item_radius_px(snapshot.item_radius_px);
     simulation::LiveStatistics live = island.live;
     live.health_mean = simulation::mean_health(island.organisms.health, island.organisms.alive_count);

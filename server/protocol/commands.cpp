@@ -6,6 +6,9 @@
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world_name.h"
 
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/unknown_field_set.h>
+
 #include <cmath>
 #include <utility>
 
@@ -14,7 +17,7 @@ namespace {
 
 using base::Violation;
 using Violations = std::vector<Violation>;
-using RequestCase = v1::Request::RequestCase;
+using RequestCase = v1::Request::KindCase;
 
 constexpr const char* least_1 = "at least 1";
 
@@ -58,13 +61,19 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
     return command;
 }
 
+/// A command that destroys something names its world: an empty field may have been forgotten.
+void need_world(const std::string& world, const char* field, Violations& violations) {
+    if (world.empty())
+        violations.push_back({field, "the name of a world", "nothing"});
+}
+
 simulation::Command command_of(const v1::DeleteWorld& request, const Draws&, Violations& violations) {
-    if (request.world().empty())
-        violations.push_back({"delete_world.world", "the name of a world", "nothing"});
+    need_world(request.world(), "delete_world.world", violations);
     return simulation::DeleteWorld{lookup_name(request.world())};
 }
 
-simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws, Violations&) {
+simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws, Violations& violations) {
+    need_world(request.world(), "reset_world.world", violations);
     simulation::ResetWorld command{.world = lookup_name(request.world()), .seed = {}, .run_id = draws.run_id};
     if (request.has_seed())
         command.seed = base::Seed{request.seed()};
@@ -99,7 +108,7 @@ simulation::Command command_of(const v1::Resume& request, const Draws&, Violatio
 
 simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violations& violations) {
     simulation::SetSpeed command{.world = lookup_name(request.world()), .speed = {}};
-    switch (request.speed().speed_case()) {
+    switch (request.speed().kind_case()) {
     case v1::Speed::kRealTimeFactor: {
         const double factor = request.speed().real_time_factor();
         if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) // a NaN is in no range
@@ -113,7 +122,7 @@ simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violat
         if (!request.speed().max())
             violations.push_back({"set_speed.speed.max", "true", "false"});
         break;
-    case v1::Speed::SPEED_NOT_SET:
+    case v1::Speed::KIND_NOT_SET:
         violations.push_back({"set_speed.speed", "real_time_factor or max", "nothing"});
         break;
     }
@@ -229,7 +238,7 @@ void add_faults(const v1::ExportRun& request, Violations& violations) {
 } // namespace
 
 RequestKind kind_of(const v1::Request& request) {
-    switch (request.request_case()) {
+    switch (request.kind_case()) {
     case RequestCase::kCreateWorld:
     case RequestCase::kDeleteWorld:
     case RequestCase::kResetWorld:
@@ -271,7 +280,7 @@ RequestKind kind_of(const v1::Request& request) {
         return RequestKind::Lease;
     case RequestCase::kShutDown:
         return RequestKind::Server;
-    case RequestCase::REQUEST_NOT_SET:
+    case RequestCase::KIND_NOT_SET:
         break;
     }
     return RequestKind::Unknown;
@@ -283,7 +292,7 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
         violations.push_back({"client_key", "1 to " + std::to_string(client_key_bytes_max) + " bytes",
                               std::to_string(request.client_key().size()) + " bytes"});
     const simulation::Command command = [&]() -> simulation::Command {
-        switch (request.request_case()) {
+        switch (request.kind_case()) {
         case RequestCase::kCreateWorld:
             return command_of(request.create_world(), draws, violations);
         case RequestCase::kDeleteWorld:
@@ -316,6 +325,26 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
     if (!violations.empty())
         return invalid(std::move(violations));
     return command;
+}
+
+std::optional<std::string> unknown_field_of(const google::protobuf::Message& message) {
+    const google::protobuf::Reflection& fields = *message.GetReflection();
+    if (const auto& unknown = fields.GetUnknownFields(message); !unknown.empty())
+        return std::to_string(unknown.field(0).number());
+    std::vector<const google::protobuf::FieldDescriptor*> present;
+    fields.ListFields(message, &present);
+    for (const auto* field : present) {
+        if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE)
+            continue;
+        const int count = field->is_repeated() ? fields.FieldSize(message, field) : 1;
+        for (int i = 0; i < count; ++i) {
+            const auto& inner = field->is_repeated() ? fields.GetRepeatedMessage(message, field, i)
+                                                     : fields.GetMessage(message, field);
+            if (const auto path = unknown_field_of(inner))
+                return field->name() + "." + *path;
+        }
+    }
+    return std::nullopt;
 }
 
 std::vector<base::Violation> faults_of(const v1::Request& request) {

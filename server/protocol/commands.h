@@ -7,6 +7,7 @@
 #include "server/simulation/commands.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ RequestKind kind_of(const v1::Request& request);
 ///
 /// request  of RequestKind::Command.
 base::Result<simulation::Command> to_command(const v1::Request& request, const Draws& draws);
+
+/// Path and number of the first field that this server does not know, at any depth: "set_parameters.99". Such a command is
+/// refused, because without that field it might do something else than its sender meant.
+std::optional<std::string> unknown_field_of(const google::protobuf::Message& message);
 
 /// What is wrong with a request that only reads or subscribes, as far as the request alone tells.
 std::vector<base::Violation> faults_of(const v1::Request& request);

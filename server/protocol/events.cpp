@@ -117,7 +117,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                    [&](const auto&) { tell_world(*told.mutable_run_control_changed()); },
                },
                command);
-    if (told.event_case() == v1::Event::EVENT_NOT_SET)
+    if (told.kind_case() == v1::Event::KIND_NOT_SET)
         return std::nullopt;
     return told;
 }

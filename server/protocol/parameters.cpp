@@ -22,7 +22,7 @@ v1::ParameterEffect to_proto(base::Effect effect) {
 }
 
 simulation::ParameterValue to_value(const v1::ParameterValue& value) {
-    switch (value.value_case()) {
+    switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
         return value.real();
     case v1::ParameterValue::kCount:
@@ -30,7 +30,7 @@ simulation::ParameterValue to_value(const v1::ParameterValue& value) {
     case v1::ParameterValue::kFlag:
         return value.flag();
     case v1::ParameterValue::kChoice:
-    case v1::ParameterValue::VALUE_NOT_SET:
+    case v1::ParameterValue::KIND_NOT_SET:
         break;
     }
     return value.choice();
@@ -131,7 +131,7 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
     made.reserve(static_cast<std::size_t>(assignments.size()));
     bool complete = true;
     for (const v1::ParameterAssignment& assignment : assignments) {
-        if (assignment.value().value_case() == v1::ParameterValue::VALUE_NOT_SET) {
+        if (assignment.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             const auto* description = simulation::find_parameter(assignment.name());
             violations.push_back({std::string{field_prefix} + assignment.name(),
                                   description ? description->allowed() : "the name of a parameter, and a value",
@@ -171,7 +171,7 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
             return base::Violation{{}, "one value, as it can only change when a world is reset", "a scheduled one"};
         if (value.generation() < 2)
             return base::Violation{{}, "a generation from 2 on", std::to_string(value.generation())};
-        if (value.value().value_case() == v1::ParameterValue::VALUE_NOT_SET)
+        if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET)
             return base::Violation{{}, description->allowed(), "no value"};
         return simulation::fault_of({value.name(), to_value(value.value())});
     };

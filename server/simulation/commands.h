@@ -23,6 +23,8 @@ struct RunId {
 
 /// 32 lower-case hexadecimal digits.
 std::string to_text(const RunId& id);
+/// The same 16 bytes, the most significant first.
+std::string to_bytes(const RunId& id);
 
 /// Simulated seconds per second, 0.001 to 10,000; nullopt is as fast as the machine can.
 using Speed = std::optional<double>;

@@ -311,7 +311,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetSpeed& command) {
 Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command) {
     World& world = entry.world;
     if (command.expected_revision && *command.expected_revision != world.parameters().revision)
-        return Refusal{.code = RefusalCode::FailedPrecondition,
+        return Refusal{.code = RefusalCode::Aborted,
                        .message = "the parameters have been changed by someone else since: read them again, and set "
                                   "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),

@@ -211,7 +211,7 @@ class Play {
     bool is_through(const WatchingClient& client) const {
         if (client.closed()) {
             // Nobody is sent away without a reason, and who says no more gets all answers.
-            require(client.may_have_been_told_of_end() || client.may_have_stalled() || server_.going_away() ||
+            require(client.told_of_end() || client.may_have_stalled() || server_.going_away() ||
                     (client.finished() && (client.refused() || client.all_answered())));
             return true;
         }

@@ -90,8 +90,8 @@ void WatchingClient::said(const wire::Frame& frame) {
         }
         return;
     }
-    if (!message || message->message_case() == v1::ClientMessage::kHello ||
-        message->message_case() == v1::ClientMessage::MESSAGE_NOT_SET)
+    if (!message || message->kind_case() == v1::ClientMessage::kHello ||
+        message->kind_case() == v1::ClientMessage::KIND_NOT_SET)
         return owed(0, {});
     if (message->has_acknowledge_picture()) {
         const v1::AcknowledgePicture& acknowledged = message->acknowledge_picture();
@@ -148,7 +148,6 @@ bool WatchingClient::hear(std::size_t count) {
 
 void WatchingClient::heard(const wire::Frame& frame) {
     require(!told_of_end_);
-    may_be_reason_ = false;
     if (frame.channel == wire::Channel::Stream) {
         auto picture = wire::parse_body<v1::SnapshotFrame>(frame.body);
         require(welcomed_ && picture);
@@ -156,7 +155,7 @@ void WatchingClient::heard(const wire::Frame& frame) {
     }
     const auto message = wire::parse_body<v1::ServerMessage>(frame.body);
     require(message.has_value());
-    switch (message->message_case()) {
+    switch (message->kind_case()) {
     case v1::ServerMessage::kWelcome:
         require(greeted_ && !std::exchange(welcomed_, true));
         return;
@@ -165,7 +164,11 @@ void WatchingClient::heard(const wire::Frame& frame) {
     case v1::ServerMessage::kEvent:
         require(welcomed_);
         return heard(message->event());
-    case v1::ServerMessage::MESSAGE_NOT_SET:
+    case v1::ServerMessage::kGoodbye:
+        require(!message->goodbye().status().message().empty());
+        told_of_end_ = true;
+        return;
+    case v1::ServerMessage::KIND_NOT_SET:
         require(false);
     }
 }
@@ -173,17 +176,15 @@ void WatchingClient::heard(const wire::Frame& frame) {
 void WatchingClient::heard(const v1::Response& response) {
     const std::uint64_t id = response.request_id();
     require(v1::Code_IsValid(response.status().code()));
-    require(response.status().code() == v1::CODE_OK || !response.status().message().empty());
-    may_be_reason_ = id == 0 && response.status().code() != v1::CODE_OK;
+    require(response.status().code() == v1::CODE_UNSPECIFIED || !response.status().message().empty());
     const auto found = outstanding_.find(id);
     if (found == outstanding_.end() || !welcomed_) {
-        require(may_be_reason_);
-        told_of_end_ = true;
+        require(welcomed_ && id == 0 && response.has_status()); // of what could not be read
         return;
     }
     const Asked asked = std::move(found->second);
     outstanding_.erase(found);
-    if (response.status().code() != v1::CODE_OK)
+    if (response.status().code() != v1::CODE_UNSPECIFIED)
         require(response.answer_case() == v1::Response::ANSWER_NOT_SET && !response.has_applied_tick());
     else if (!ids_are_mixed_)
         granted(asked, response);
@@ -191,7 +192,7 @@ void WatchingClient::heard(const v1::Response& response) {
 
 void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
     const v1::Request& request = asked.request;
-    require(role_ >= access::role_needed(request.request_case(), false));
+    require(role_ >= access::role_needed(request.kind_case(), false));
     bool once = true;
     if (protocol::kind_of(request) == protocol::RequestKind::Command) {
         require(response.has_applied_tick());

@@ -60,8 +60,6 @@ class WatchingClient {
     bool all_answered() const { return outstanding_.empty(); }
     /// It has been told why its session ends, or that the server goes.
     bool told_of_end() const { return told_of_end_; }
-    /// The last that it heard may have been that.
-    bool may_have_been_told_of_end() const { return told_of_end_ || may_be_reason_; }
 
     std::uint64_t next_request_id() { return ++request_id_; }
     /// The picture that was heard last for the subscription that is `wanted` among all, if there is one.
@@ -99,8 +97,7 @@ class WatchingClient {
     std::string unsent_;
     wire::FrameReader said_{wire::hello_limits}, heard_{wire::client_limits};
     bool greeted_ = false, welcomed_ = false, finished_ = false, closed_ = false;
-    bool told_of_end_ = false;   // it is certain
-    bool may_be_reason_ = false; // the last response; or it answers what could not be read
+    bool told_of_end_ = false;
     bool ids_are_mixed_ = false, may_have_stalled_ = false;
     runtime::Clock::time_point all_heard_;                    // when it had last read everything
     std::optional<runtime::Clock::time_point> refused_since_; // what it says is not heard any more

@@ -34,7 +34,7 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             async with evod.aio.local(seed=1, data=data) as lab:
                 kinds = asked_kinds(lab)
                 await walk_all(lab)
-        self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields))
+        self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields))
 
     async def test_many_things_go_on_at_once(self):
         async with evod.aio.local(seed=42) as lab:
@@ -71,7 +71,7 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
                     async with asyncio.timeout(0.05):
                         await anext(events)
                 await world.pause()
-                self.assertEqual((await anext(events)).WhichOneof("event"), "run_control_changed")
+                self.assertEqual((await anext(events)).WhichOneof("kind"), "run_control_changed")
 
     async def test_it_goes_on_across_a_kill(self):
         with tempfile.TemporaryDirectory() as data:

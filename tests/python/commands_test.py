@@ -40,7 +40,7 @@ class Commands(unittest.TestCase):
         with tempfile.TemporaryDirectory() as data, evod.local(seed=1, data=data) as lab:
             kinds = asked_kinds(lab)
             wait_for(walk_all(lab))
-        self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields))
+        self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields))
 
     def test_every_parameter_reads_and_sets_as_an_attribute(self):
         world = self.lab.create_world("attributes")

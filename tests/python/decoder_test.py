@@ -232,7 +232,7 @@ class Decoder(Told):
             body = message.SerializeToString()
             core.received(b"EV\1\2" + struct.pack("<I", len(body)) + body)
             said = self.sent(core)
-            return len(subscription.arrived), [message.request.WhichOneof("request") or "acknowledged" for message in said]
+            return len(subscription.arrived), [message.request.WhichOneof("kind") or "acknowledged" for message in said]
 
         self.assertEqual(come(keyframe), (1, []))  # is acknowledged when it is taken
         deltas[0].checksum ^= 1
@@ -298,7 +298,7 @@ class Streams(Told):
         self.assertEqual([message.request.request_id for message in self.sent(core)], [3])
         core.lost(evod.NoConnection("gone"))
         core.opened()
-        self.assertEqual([message.WhichOneof("message") for message in self.sent(core)], ["hello"])
+        self.assertEqual([message.WhichOneof("kind") for message in self.sent(core)], ["hello"])
         welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=9))
         core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
         again = self.sent(core)

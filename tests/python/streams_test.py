@@ -95,8 +95,8 @@ class Generations(unittest.TestCase):
         other = self.lab.create_world("other")
         self.world.pause()
         other.delete()
-        self.assertEqual(next(events).WhichOneof("event"), "run_control_changed")
-        kinds = [event.WhichOneof("event") for _, event in zip(range(3), everything)]
+        self.assertEqual(next(events).WhichOneof("kind"), "run_control_changed")
+        kinds = [event.WhichOneof("kind") for _, event in zip(range(3), everything)]
         self.assertEqual(kinds, ["world_created", "run_control_changed", "world_deleted"])
 
 

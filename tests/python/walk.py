@@ -9,7 +9,7 @@ def asked_kinds(lab):
     request = core.request
 
     def ask(message, **how):
-        kinds.add(message.WhichOneof("request"))
+        kinds.add(message.WhichOneof("kind"))
         return request(message, **how)
 
     core.request = ask

@@ -55,7 +55,7 @@ class Client(past.Client):
         self.hello(token=token)
         self.first = self.control()
         self.welcome = self.first.welcome if self.first.HasField("welcome") else None
-        self.refusal = self.first.response.status if self.first.HasField("response") else None
+        self.refusal = self.first.goodbye.status if self.first.HasField("goodbye") else None
 
 
 class Access(past.Case):
@@ -86,7 +86,7 @@ class Access(past.Case):
 
 class Roles(Access):
     def test_every_request_has_its_least_role(self):
-        requests = [field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields]
+        requests = [field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields]
         self.assertEqual(sorted(requests), sorted(LEAST))
         for role, name in NAMES.items():
             self.token(name, role)
@@ -228,7 +228,7 @@ class Tokens(Access):
             lap()
             revoked = time.monotonic()
             message = goes.control()
-            self.assertEqual((message.response.request_id, message.response.status.code), (0, UNAUTHENTICATED))
+            self.assertEqual(message.goodbye.status.code, UNAUTHENTICATED)
             goes.assert_closed()
             self.assertLess(time.monotonic() - revoked, 2)
             return anna
@@ -276,7 +276,7 @@ class Tokens(Access):
         for hello in (dict(protocol_version=2), dict(client_version="v" * 65), dict(client_name="n" * 65)):
             with plain.Client(server, hello=False) as stranger:
                 stranger.hello(token=secret, **hello)
-                refusals.append(stranger.control().response.status)
+                refusals.append(stranger.control().goodbye.status)
         client.hello(token=secret)
         refusals.append(client.response(0).status)
         body = session_pb2.ClientMessage(hello=session_pb2.Hello(token=secret)).SerializeToString()
@@ -284,7 +284,7 @@ class Tokens(Access):
             client.send_body(damaged)
             refusals.append(client.response(0).status)
         client.socket.sendall(body)  # without its header
-        refusals.append(client.response(0).status)
+        refusals.append(client.goodbye())
         client.assert_closed()
         for refusal in refusals:
             self.assertTrue(refusal.message)
@@ -376,7 +376,7 @@ class Tls(Access):
         for one in (client, other, failing):  # what is cut off raises, and is no end
             one.socket.suppress_ragged_eofs = False
         failing.socket.sendall(b"not a frame")
-        self.assertEqual(failing.control().response.status.code, 3)
+        self.assertEqual(failing.control().goodbye.status.code, 3)
         self.assertEqual(failing.socket.recv(1), b"")
         client.call(subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
         client.call(shut_down=c.ShutDown())

@@ -34,7 +34,7 @@ class Breeding(export_test.Runs):
         return client.call(get_breeding=ask(**wanted)).breeding
 
     def parameters(self, bred):
-        return {p.name: getattr(p.value, p.value.WhichOneof("value")) for p in bred.parameters}
+        return {p.name: getattr(p.value, p.value.WhichOneof("kind")) for p in bred.parameters}
 
     def organisms(self, *words):
         """Rows of the table by generation, island and organism."""

@@ -56,7 +56,7 @@ class Attacked(unittest.TestCase):
         control.call(run_until_tick=c.RunUntilTick(world="w", tick=tick))
         picture = viewer.next_picture(lambda one: viewer.decoder.decode(one) is not None and one.tick == tick)
         stepped = control.run_to(tick, "w")
-        self.assertEqual(picture.state_hash, stepped.state_hash)
+        self.assertEqual(picture.state_hash.hex(), stepped.state_hash)
         return stepped
 
     def attacked(self, kind, number, at_least_s=3.0, memory_back_bytes=MEMORY_BACK_BYTES, enough=lambda counts: True):

@@ -77,7 +77,7 @@ class Case(access.Access):
         return plain.Client(server, over=over)
 
     def told_and_closed(self, client, code, words):
-        status = client.response(0).status
+        status = client.goodbye()
         self.assertEqual(status.code, code)
         self.assertIn(words, status.message)
         client.assert_closed()

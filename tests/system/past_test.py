@@ -135,9 +135,9 @@ class OpenPast(Case):
         viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=past, rate_hz=60))
         self.assertEqual(viewer.next_picture().tick, 249)
         viewer.call(run_until_tick=c.RunUntilTick(world=past, tick=250))
-        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 250).state_hash, self.hashes[250])
+        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 250).state_hash.hex(), self.hashes[250])
         viewer.call(seek=c.Seek(world=past, to=at(tick=121)))
-        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 121).state_hash, self.hashes[121])
+        self.assertEqual(viewer.next_picture(lambda picture: picture.tick == 121).state_hash.hex(), self.hashes[121])
         statistics = viewer.call(get_statistics=c.GetStatistics(world=past)).statistics
         self.assertEqual({row.generation for row in statistics.last}, {1})
         self.assertEqual(len(viewer.call(get_history=c.GetHistory(world=past)).history.generations), 2)
@@ -332,7 +332,7 @@ class Replay(Case):
         self.assertEqual(viewer.wait_world(lambda there: there.tick == 421).state_hash, self.hashes[421])
         for tick in (0, 250, 120):
             self.assertEqual(viewer.call(seek=c.Seek(to=at(tick=tick))).world.tick, tick)
-        viewer.call(c.CODE_FAILED_PRECONDITION, reset_world=c.ResetWorld())
+        viewer.call(c.CODE_FAILED_PRECONDITION, reset_world=c.ResetWorld(world="w"))
 
     def test_a_replay_writes_nothing(self):
         before = pathlib.Path(self.run_file).read_bytes()

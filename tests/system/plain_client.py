@@ -38,7 +38,7 @@ from delta_decoder import KINDS, Decoder, TilesDecoder  # noqa: E402
 import waiting  # noqa: E402
 from waiting import until  # noqa: E402
 
-OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 12, 14
+OK, INVALID, NOT_FOUND, EXISTS, EXHAUSTED, PRECONDITION, ABORTED, UNIMPLEMENTED, UNAVAILABLE = 0, 3, 5, 6, 8, 9, 10, 12, 14
 
 
 class Server:
@@ -71,11 +71,12 @@ class Client:
         """over: a socket that is connected already."""
         self.key, self.request_id = key or secrets.token_hex(8), 0
         self.events, self.pictures, self.responses = [], [], {}
+        self.farewell = None  # the status of a Goodbye
         self.socket = over or self.connected(server, come_from)
         if hello:
             self.hello()
             greeting = self.control()
-            while waiting.LATE_HELLO in greeting.response.status.message:
+            while waiting.LATE_HELLO in greeting.goodbye.status.message:
                 self.socket.close()
                 self.socket = self.connected(server, come_from)
                 self.hello()
@@ -139,6 +140,9 @@ class Client:
         message = session_pb2.ServerMessage.FromString(body)
         if message.HasField("event"):
             self.events.append(message.event)
+        elif message.HasField("goodbye"):
+            assert self.farewell is None, "said goodbye twice"
+            self.farewell = message.goodbye.status
         else:
             assert message.HasField("response")
             response = message.response
@@ -158,6 +162,12 @@ class Client:
         while request_id not in self.responses:
             self.step()
         return self.responses.pop(request_id)
+
+    def goodbye(self):
+        """The status with which the server ends the session."""
+        while self.farewell is None:
+            self.step()
+        return self.farewell
 
     def call(self, expected=OK, **request):
         response = self.response(self.ask(**request))
@@ -184,7 +194,7 @@ class Client:
         while True:
             while self.events:
                 event = self.events.pop(0)
-                if event.WhichOneof("event") == kind and condition(event):
+                if event.WhichOneof("kind") == kind and condition(event):
                     return event
             self.step()
 
@@ -305,10 +315,10 @@ class WithServer(unittest.TestCase):
 class Handshake(WithServer):
     def refused(self, client, code, words):
         message = client.control()
-        self.assertEqual((message.response.request_id, message.response.status.code), (0, code))
-        self.assertIn(words, message.response.status.message)
+        self.assertEqual(message.goodbye.status.code, code)
+        self.assertIn(words, message.goodbye.status.message)
         client.assert_closed()
-        return message.response.status
+        return message.goodbye.status
 
     def raw(self, data):
         client = self.enterContext(Client(self.server, hello=False))
@@ -363,6 +373,24 @@ class Handshake(WithServer):
         self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
                          [("hello.protocol_version", "1", "2")])
 
+    def test_a_range_of_versions_is_welcome(self):
+        client = self.enterContext(Client(self.server, hello=False))
+        client.hello(protocol_version=1, protocol_version_max=7, features=["none that exists"])
+        self.assertEqual(client.control().welcome.protocol_version, 1)
+
+    def test_frames_keep_to_what_the_client_takes(self):
+        small = self.enterContext(Client(self.server, hello=False))
+        small.hello(frame_bytes_max=65535)
+        status = self.refused(small, INVALID, "frame_bytes_max")
+        self.assertEqual([v.field for v in status.violations], ["hello.frame_bytes_max"])
+        client = self.enterContext(Client(self.server, hello=False))
+        client.hello(frame_bytes_max=65536)
+        self.assertTrue(client.control().HasField("welcome"))
+        world = self.new_world(population_size=2000, island_width_px=6000.0, island_height_px=6000.0)
+        refused = client.call(EXHAUSTED, get_population=c.GetPopulation(world=world))
+        self.assertIn("the client takes 65536", refused.status.message)
+        client.call(list_worlds=c.ListWorlds())  # the session goes on
+
     def test_long_names_are_refused_each(self):
         client = self.enterContext(Client(self.server, hello=False))
         client.hello(client_name="n" * 65, client_version="v" * 65)
@@ -401,8 +429,8 @@ class Handshake(WithServer):
         began = time.monotonic()
         client.socket.sendall(b"EV\x01\x01\x08\x00\x00\x00")  # and then nothing
         message = client.control()
-        self.assertEqual((message.response.request_id, message.response.status.code), (0, PRECONDITION))
-        self.assertIn("did not come whole", message.response.status.message)
+        self.assertEqual(message.goodbye.status.code, PRECONDITION)
+        self.assertIn("did not come whole", message.goodbye.status.message)
         client.assert_closed()
         self.assertGreater(time.monotonic() - began, self.client.welcome.limits.frame_timeout_s - 0.5)
         patient.call(list_worlds=c.ListWorlds())  # who says nothing at all may stay
@@ -441,6 +469,19 @@ class Requests(WithServer):
         self.assertEqual(self.client.response(0).status.code, UNIMPLEMENTED)
         self.client.call(list_worlds=c.ListWorlds())
 
+    def test_an_unknown_field_refuses_a_command_and_no_query(self):
+        world = self.new_world()
+        unknown = b"\xfa\x3e\x02\x08\x01"  # field 1007, two bytes
+        pause = c.Pause(world=world).SerializeToString() + unknown
+        head = c.Request(request_id=7, client_key="k").SerializeToString()
+        inner = head + b"\x7a" + bytes([len(pause)]) + pause  # 15: pause
+        self.client.send_body(b"\x12" + bytes([len(inner)]) + inner)
+        status = self.client.response(7).status
+        self.assertEqual((status.code, [v.field for v in status.violations]), (UNIMPLEMENTED, ["pause.1007"]))
+        query = c.Request(request_id=8, list_worlds=c.ListWorlds()).SerializeToString() + unknown
+        self.client.send_body(b"\x12" + bytes([len(query)]) + query)
+        self.assertEqual(self.client.response(8).status.code, OK)
+
     def test_a_body_that_is_no_message_is_refused_and_the_session_lives(self):
         for body in (b"\xff\xff\xff", b"\x12\x7f", os.urandom(100), b"\x12\x06\x12\x04\xff\xfe\xfd\xfc"):
             self.client.send_body(body)
@@ -451,7 +492,7 @@ class Requests(WithServer):
 
     def test_a_frame_too_long_is_told_and_closed(self):
         self.client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", (1 << 20) + 1))
-        status = self.client.response(0).status
+        status = self.client.goodbye()
         self.assertEqual(status.code, INVALID)
         self.assertIn("1048576", status.message)
         self.client.assert_closed()
@@ -460,7 +501,7 @@ class Requests(WithServer):
         self.client.send(session_pb2.ClientMessage(request=c.Request(request_id=1, list_worlds=c.ListWorlds())))
         self.client.socket.sendall(b"xx" * 100)
         self.assertEqual(self.client.response(1).status.code, OK)
-        self.assertEqual(self.client.response(0).status.code, INVALID)
+        self.assertEqual(self.client.goodbye().code, INVALID)
         self.client.assert_closed()
 
     def test_noise_never_ends_the_server(self):
@@ -536,7 +577,7 @@ class Requests(WithServer):
             self.assertTrue(p.name and p.help and p.kind and p.effect, p.name)
 
     def test_an_unknown_world_is_not_found_by_any_request(self):
-        for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields:
+        for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields:
             kind = getattr(c, field.message_type.name)
             if "world" not in kind.DESCRIPTOR.fields_by_name:
                 continue
@@ -931,11 +972,11 @@ class Parameters(WithServer):
         revision = self.get().revision
         answer = self.client.call(set_parameters=set_parameters(self.world, expected_revision=revision, food_health=1.0))
         self.assertGreater(answer.parameters.revision, revision)
-        status = self.client.call(PRECONDITION, set_parameters=set_parameters(
+        status = self.client.call(ABORTED, set_parameters=set_parameters(
             self.world, expected_revision=revision, food_health=2.0)).status
         self.assertEqual([(v.field, v.allowed, v.got) for v in status.violations],
                          [("set_parameters.expected_revision", str(answer.parameters.revision), str(revision))])
-        self.client.call(PRECONDITION, set_parameters=set_parameters(self.world, expected_revision=0, food_health=2.0))
+        self.client.call(ABORTED, set_parameters=set_parameters(self.world, expected_revision=0, food_health=2.0))
         self.assertEqual(as_dict(self.get())["food_health"].value.real, 1)
 
 
@@ -1060,7 +1101,7 @@ class Events(WithServer):
             self.watcher.step()
             while self.watcher.events:
                 event = self.watcher.events.pop(0)
-                kinds.append(event.WhichOneof("event"))
+                kinds.append(event.WhichOneof("kind"))
                 if kinds[-1] == "generation_finished":
                     statistics = event.generation_finished.statistics
                     self.assertEqual([s.island for s in statistics], [0, 1, 2])
@@ -1117,8 +1158,9 @@ class Pictures(WithServer):
         subscription = self.subscribe(world)
         picture = self.viewer.next_picture()
         info = self.client.world(world)
-        for field in ("tick", "generation", "generation_tick", "simulated_s", "state", "state_hash", "run_id"):
+        for field in ("tick", "generation", "generation_tick", "simulated_s", "state"):
             self.assertEqual(getattr(picture, field), getattr(info, field), field)
+        self.assertEqual((picture.state_hash.hex(), picture.run_id.hex()), (info.state_hash, info.run_id))
         self.assertEqual((picture.world, picture.island, picture.island_count), (world, 0, 1))
         self.assertEqual((picture.width_px, picture.height_px, picture.item_radius_px), (1280, 720, 4))
         self.assertEqual((picture.codec, picture.subscription_id), (stream_pb2.CODEC_COLUMNS, subscription.subscription_id))
@@ -1157,7 +1199,7 @@ class Pictures(WithServer):
         self.assertEqual(ticks, sorted(ticks))
         # At 30 a second, and a few out of turn: of 40 ticks, which are 2/3 s, some 20 are shown.
         self.assertLess(len(ticks), 30 * (time.monotonic() - began) + 8)
-        self.assertEqual((picture.state, picture.state_hash), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
+        self.assertEqual((picture.state, picture.state_hash.hex()), (w.RUN_STATE_PAUSED, self.client.world(world).state_hash))
         self.viewer.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.viewer.pictures, [])  # it stands still: nothing more
 
@@ -1176,7 +1218,7 @@ class Pictures(WithServer):
         for request in ({"run_until_tick": c.RunUntilTick(world=world, tick=3)}, {"reset_world": c.ResetWorld(world=world)},
                         {"set_speed": c.SetSpeed(world=world, speed=w.Speed(max=True))}):
             answer = self.client.call(**request).world
-            self.viewer.next_picture(lambda p: p.run_id == answer.run_id and p.speed == answer.speed)
+            self.viewer.next_picture(lambda p: p.run_id.hex() == answer.run_id and p.speed == answer.speed)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=9))
         self.viewer.next_picture(lambda p: p.tick == 9 and p.state == w.RUN_STATE_PAUSED)
 
@@ -1299,7 +1341,7 @@ class Deltas(WithServer):
             picture, seen = self.next()
             deltas += picture.base_sequence > 0
             if picture.base_sequence > 0:
-                self.assertEqual((picture.world, picture.run_id, picture.width_px), ("", "", 0))
+                self.assertEqual((picture.world, picture.run_id, picture.width_px), ("", b"", 0))
             of_hash = shown.setdefault((picture.state_hash, picture.island), {})
             of_hash[kinds[picture.subscription_id]] = seen
             if len(of_hash) == 3:
@@ -1324,8 +1366,9 @@ class Deltas(WithServer):
         self.client.run_to(30, world)
         info = self.client.world(world)
         picture, _ = self.next(lambda p: p.tick == 30)
-        for field in ("tick", "generation", "generation_tick", "simulated_s", "state_hash"):
+        for field in ("tick", "generation", "generation_tick", "simulated_s"):
             self.assertEqual(getattr(picture, field), getattr(info, field), field)
+        self.assertEqual(picture.state_hash.hex(), info.state_hash)
 
     def test_everybody_takes_a_keyframe_now_and_then(self):
         world = self.new_world()
@@ -1345,7 +1388,7 @@ class Deltas(WithServer):
         self.next(lambda p: p.base_sequence > 0)
         again = self.client.call(reset_world=c.ResetWorld(world=world)).world
         picture, _ = self.next(lambda p: p.generation_tick == 0 and p.base_sequence == 0)
-        self.assertEqual(picture.run_id, again.run_id)
+        self.assertEqual(picture.run_id.hex(), again.run_id)
 
     def test_a_keyframe_comes_when_it_is_asked_for_even_if_the_world_stands_still(self):
         world = self.new_world()
@@ -1811,10 +1854,10 @@ class Queries(WithServer):
             self.assertEqual(all_of_them.choices[i], one.choice)
             self.assertEqual(list(all_of_them.forces[:, i]), [one.force_x, one.force_y])
             self.assertEqual(list(all_of_them.targets[:, i]), [numpy.float32(one.target_x_px), numpy.float32(one.target_y_px)])
-            self.assertEqual(one.choice == w.CHOICE_NONE, not one.alive)
+            self.assertEqual(one.choice == w.CHOICE_UNSPECIFIED, not one.alive)
             if one.choice == w.CHOICE_WANDER:
                 self.assertEqual((one.target_x_px, one.target_y_px), (one.x_px, one.y_px))
-            elif one.choice != w.CHOICE_NONE:  # what it acts on is as far as it sees, or nearer
+            elif one.choice != w.CHOICE_UNSPECIFIED:  # what it acts on is as far as it sees, or nearer
                 seen = one.genes[4 if one.choice == w.CHOICE_SEEK else 5]
                 self.assertLessEqual(math.hypot(one.target_x_px - one.x_px, one.target_y_px - one.y_px), seen + 0.01)
         return all_of_them
@@ -1828,11 +1871,11 @@ class Queries(WithServer):
         later = self.compare_with_organisms(world, 1)
         self.assertEqual((later.genes == at_first.genes).all(), True)
         self.assertEqual(list(later.founders), list(range(50, 100)))
-        self.assertEqual(set(later.choices), {w.CHOICE_NONE, w.CHOICE_WANDER, w.CHOICE_SEEK, w.CHOICE_FLEE},
+        self.assertEqual(set(later.choices), {w.CHOICE_UNSPECIFIED, w.CHOICE_WANDER, w.CHOICE_SEEK, w.CHOICE_FLEE},
                          "some have died, and the living do everything that there is")
         self.client.run_to(360, world)
         over = self.population(world, 1)  # nobody is about to do anything in the generation that is over
-        self.assertEqual(set(over.choices), {w.CHOICE_NONE})
+        self.assertEqual(set(over.choices), {w.CHOICE_UNSPECIFIED})
         self.assertFalse(over.forces.any() or over.targets.any())
         self.client.run_to(361, world)
         bred = self.compare_with_organisms(world, 1)
@@ -1848,7 +1891,7 @@ class Queries(WithServer):
         world = self.new_world(fitness="gene_sum")
         told = self.population(world)
         self.assertEqual(told.genes.shape, (6, 50))
-        self.assertEqual(set(told.choices), {w.CHOICE_NONE})
+        self.assertEqual(set(told.choices), {w.CHOICE_UNSPECIFIED})
         self.assertEqual(self.client.call(get_motion=c.GetMotion(world=world)).motion.body_count, 0)
 
     def test_organisms_do_what_they_are_said_to_be_about_to_do(self):
@@ -2073,8 +2116,8 @@ class Documentation(unittest.TestCase):
         self.assertEqual(blocks[0][:8], b"EV\x01\x01\x08\0\0\0")
         hello = session_pb2.ClientMessage.FromString(blocks[0][8:])
         self.assertEqual((hello.hello.protocol_version, hello.hello.client_name), (1, "me"))
-        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xcc\0\0\0")
-        self.assertEqual(len(blocks[1]), 8 + 0xcc)
+        self.assertEqual(blocks[1][:8], b"EV\x01\x02\xac\0\0\0")
+        self.assertEqual(len(blocks[1]), 8 + 0xac)
         picture = stream_pb2.SnapshotFrame.FromString(blocks[1][8:])
         self.assertEqual((picture.world, picture.tick, picture.dropped_count), ("default", 120, 3))
         self.assertEqual(picture.checksum, checksum(picture))
@@ -2092,9 +2135,9 @@ class Documentation(unittest.TestCase):
 
     def test_it_tells_of_every_request_and_event(self):
         text = open(protocol_path, encoding="utf-8").read()
-        for field in c.Request.DESCRIPTOR.oneofs_by_name["request"].fields:
+        for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields:
             self.assertIn(f"`{field.message_type.name}`", text)
-        for field in stream_pb2.Event.DESCRIPTOR.oneofs_by_name["event"].fields:
+        for field in stream_pb2.Event.DESCRIPTOR.oneofs_by_name["kind"].fields:
             self.assertIn(f"`{field.name}`", text)
 
 

@@ -57,7 +57,7 @@ class Client:
     def __init__(self, server, key):
         self.key = key
         greeting = self.greeted(server)
-        while waiting.LATE_HELLO in greeting.response.status.message:
+        while waiting.LATE_HELLO in greeting.goodbye.status.message:
             self.socket.close()
             greeting = self.greeted(server)
         assert greeting.HasField("welcome")
@@ -391,7 +391,7 @@ class Recovery(unittest.TestCase):
             first_run = client.world().run_id
             client.call(1, run_until_tick=c.RunUntilTick(tick=100))
             until(lambda: client.world().tick == 100, "tick 100")
-            reset = client.call(2, reset_world=c.ResetWorld())
+            reset = client.call(2, reset_world=c.ResetWorld(world="default"))
             second_run = client.world().run_id
             client.call(3, delete_world=c.DeleteWorld(world="default"))
             client.call(4, create_world=c.CreateWorld(name="default", seed=9))
@@ -413,7 +413,7 @@ class Recovery(unittest.TestCase):
             first = early.call(1, **set_parameter("food_health", 7.0))
             self.assertEqual(first.status.code, 0)
             client.call(1, **set_parameter("food_health", 9.0))
-            client.call(2, reset_world=c.ResetWorld())
+            client.call(2, reset_world=c.ResetWorld(world="default"))
             newest = client.call(3, **set_parameter("food_health", 11.0))
         server.kill()
         server = self.serve()

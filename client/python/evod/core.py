@@ -40,7 +40,7 @@ class Pending:
 
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
-        self.kind: str = request.WhichOneof("request") or ""
+        self.kind: str = request.WhichOneof("kind") or ""
         self.sent = False  # in this session
         self.response: commands_pb2.Response | None = None
         self.error: Error | None = None
@@ -55,7 +55,7 @@ class Subscription:
 
     def __init__(self, request: commands_pb2.Request) -> None:
         self.request = request
-        self.world: str = getattr(request, request.WhichOneof("request") or "").world
+        self.world: str = getattr(request, request.WhichOneof("kind") or "").world
         self.server_id: int | None = None  # in this session, once accepted
         self.pending: Pending | None = None
         self.refused: Error | None = None  # the server's last word
@@ -248,17 +248,22 @@ class Core:
                     self._outgoing += pending.frame
 
     def _take_control(self, message: session_pb2.ServerMessage) -> None:
-        kind = message.WhichOneof("message")
+        kind = message.WhichOneof("kind")
         if not self.connected:
             self._take_first(message, kind)
         elif kind == "response":
             self._take_response(message.response)
         elif kind == "event":
             self._take_event(message.event)
+        elif kind == "goodbye":
+            error = refusal(message.goodbye.status)
+            if error.code == commands_pb2.CODE_UNAUTHENTICATED:
+                self.failed = NoConnection(error.message, error.code, error.violations)
+            raise NoConnection(error.message, error.code, error.violations)
 
     def _take_first(self, message: session_pb2.ServerMessage, kind: str | None) -> None:
-        if kind == "response":
-            error = refusal(message.response.status)
+        if kind == "goodbye":
+            error = refusal(message.goodbye.status)
             refused = NoConnection(
                 f"the server at {self._server} refused us: {error.message}", error.code, error.violations
             )
@@ -280,11 +285,6 @@ class Core:
         self._send_waiting()
 
     def _take_response(self, response: commands_pb2.Response) -> None:
-        if response.request_id == 0:  # the session ends, and this is why
-            error = refusal(response.status)
-            if error.code == commands_pb2.CODE_UNAUTHENTICATED:
-                self.failed = NoConnection(error.message, error.code, error.violations)
-            raise NoConnection(error.message, error.code, error.violations)
         self._in_flight.discard(response.request_id)
         self._first.discard(response.request_id)
         pending = self._pending.get(response.request_id)
@@ -309,7 +309,7 @@ class Core:
     def _take_subscription(self, pending: Pending, response: commands_pb2.Response) -> None:
         server_id = response.subscription.subscription_id
         subscription = next((known for known in self._live_subscriptions() if known.pending is pending), None)
-        if response.status.code != commands_pb2.CODE_OK:
+        if response.status.code != commands_pb2.CODE_UNSPECIFIED:
             if subscription is not None:
                 subscription.pending, subscription.refused = None, refusal(response.status)
         elif subscription is None:

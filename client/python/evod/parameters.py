@@ -278,7 +278,7 @@ class Parameters(Mapping[str, Parameter]):
 
 
 def value_of(message: world_pb2.ParameterValue) -> Value:
-    value: Value = getattr(message, message.WhichOneof("value") or "real")
+    value: Value = getattr(message, message.WhichOneof("kind") or "real")
     return value
 
 

@@ -59,14 +59,14 @@ class FrameDecoder:
         live = world_pb2.LiveStatistics()  # of its own, so that the picture does not hold the whole message
         live.CopyFrom(message.live)
         return Frame(
-            **self._same,
+            **{**self._same, "run_id": self._same["run_id"].hex()},
             island=message.island,
             tick=message.tick,
             generation=message.generation,
             generation_tick=message.generation_tick,
             simulated_s=message.simulated_s,
             state=message.state,
-            state_hash=message.state_hash,
+            state_hash=message.state_hash.hex(),
             live=live,
             ticks_per_s=message.ticks_per_s,
             slowed=message.slowed,

@@ -59,7 +59,7 @@ DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "dens
 def answer_to(request: c.Request) -> Plan[c.Response]:
     """Error: it was refused."""
     response: c.Response = yield request
-    if response.status.code != c.CODE_OK:
+    if response.status.code != c.CODE_UNSPECIFIED:
         raise refusal(response.status)
     return response
 
@@ -224,7 +224,7 @@ class Desk:
                 changed = False
                 while not changed:
                     event = yield from next_event(subscription)
-                    changed = event.WhichOneof("event") not in ("generation_finished", "migration", "extinction")
+                    changed = event.WhichOneof("kind") not in ("generation_finished", "migration", "extinction")
         finally:
             self.core.unsubscribe(subscription)
 
@@ -323,7 +323,7 @@ class GenerationStream:
             yield from self._take((yield from next_event(self._subscription)))
 
     def _take(self, event: stream_pb2.Event) -> Plan[None]:
-        kind = event.WhichOneof("event")
+        kind = event.WhichOneof("kind")
         if kind == "events_dropped":
             yield from self._look()
         elif event.run_id != self.info.run_id:

@@ -199,7 +199,7 @@ class RunFile:
             request.ClearField("client_key")
             request.ClearField("request_id")
             told = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
-            kind = request.WhichOneof("request") or "unknown"
+            kind = request.WhichOneof("kind") or "unknown"
             rows.append((number, tick, client, kind, told))
         names = ("number", "tick", "client", "kind", "request")
         return pandas().DataFrame(rows, columns=names)

@@ -109,7 +109,7 @@ void ParametersPanel::build(Context& context) {
 // ---- the server ------------------------------------------------------------------------------------------------
 
 void ParametersPanel::follow(const Context& context) {
-    using Kind = evod::v1::Event::EventCase;
+    using Kind = evod::v1::Event::KindCase;
     const Watch& watch = context.watch;
     if (watch.world() != world_ || watch.control().run_id() != run_id_) {
         world_ = watch.world();
@@ -127,13 +127,13 @@ void ParametersPanel::follow(const Context& context) {
     place_number_ = watch.place_number();
     connected_count_ = connected_count;
     for (const evod::v1::Event& event : watch.events()) {
-        if (event.event_case() == Kind::kEventsDropped) {
+        if (event.kind_case() == Kind::kEventsDropped) {
             stale_ = true;
         } else if (event.world() != watch.name()) {
             continue;
-        } else if (event.event_case() == Kind::kParametersChanged && edits_.known()) {
+        } else if (event.kind_case() == Kind::kParametersChanged && edits_.known()) {
             stale_ = !edits_.see(event.parameters_changed()) || stale_;
-        } else if (event.event_case() == Kind::kGenerationFinished) {
+        } else if (event.kind_case() == Kind::kGenerationFinished) {
             stale_ = stale_ || edits_.has_pending(); // it holds now
         }
     }

@@ -70,9 +70,9 @@ void WorldsPanel::ask(Watch& watch, Clock::time_point now) {
 }
 
 void WorldsPanel::hear(const Watch& watch) {
-    using Kind = evod::v1::Event::EventCase;
+    using Kind = evod::v1::Event::KindCase;
     for (const evod::v1::Event& event : watch.events()) {
-        switch (event.event_case()) {
+        switch (event.kind_case()) {
         case Kind::kRunControlChanged:
         case Kind::kRunTerminated:
         case Kind::kWorldCreated:

@@ -129,7 +129,7 @@ void put_forces(const wire::OrganismPicture& organisms, const Positions& at, con
             continue;
         }
         const evod::v1::Choice choice = population.choice(id);
-        if (choice == evod::v1::CHOICE_NONE) {
+        if (choice == evod::v1::CHOICE_UNSPECIFIED) {
             continue;
         }
         const Colour colour = colour_of(choice);

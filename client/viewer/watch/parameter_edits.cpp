@@ -60,10 +60,10 @@ constexpr std::string_view field_prefix = "set_parameters.";
 // ---- values ----------------------------------------------------------------------------------------------------
 
 bool same(const ParameterValue& a, const ParameterValue& b) {
-    if (a.value_case() != b.value_case()) {
+    if (a.kind_case() != b.kind_case()) {
         return false;
     }
-    switch (a.value_case()) {
+    switch (a.kind_case()) {
     case ParameterValue::kReal:
         return a.real() == b.real();
     case ParameterValue::kCount:
@@ -72,14 +72,14 @@ bool same(const ParameterValue& a, const ParameterValue& b) {
         return a.flag() == b.flag();
     case ParameterValue::kChoice:
         return a.choice() == b.choice();
-    case ParameterValue::VALUE_NOT_SET:
+    case ParameterValue::KIND_NOT_SET:
         break;
     }
     return true;
 }
 
 std::string to_text(const ParameterValue& value) {
-    switch (value.value_case()) {
+    switch (value.kind_case()) {
     case ParameterValue::kReal:
         return number_text(value.real());
     case ParameterValue::kCount:
@@ -357,7 +357,7 @@ bool ParameterEdits::answered(const evod::v1::Response* response) {
         return false;
     }
     forget_refusal();
-    const bool done = response != nullptr && response->status().code() == evod::v1::CODE_OK;
+    const bool done = response != nullptr && response->status().code() == evod::v1::CODE_UNSPECIFIED;
     if (done) {
         take_done();
         if (response->has_parameters()) {

@@ -163,7 +163,7 @@ std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
 std::optional<std::vector<std::uint32_t>> living(const Population& population, const wire::Picture* picture) {
     std::vector<std::uint32_t> ids;
     for (std::uint32_t id = 0; id < population.size(); ++id) {
-        if (population.choice(id) != evod::v1::CHOICE_NONE) {
+        if (population.choice(id) != evod::v1::CHOICE_UNSPECIFIED) {
             ids.push_back(id);
         }
     }

@@ -177,7 +177,7 @@ std::optional<evod::v1::Request> RunControl::answered(const evod::v1::Response* 
     resuming_ = resuming_ && !resumed;
     pausing_ = pausing_ && unanswered_count_ > 0;
     const std::uint64_t step_ticks = pausing_ ? 0 : std::exchange(held_step_, 0);
-    if (response == nullptr || response->status().code() != evod::v1::CODE_OK || !response->has_world()) {
+    if (response == nullptr || response->status().code() != evod::v1::CODE_UNSPECIFIED || !response->has_world()) {
         // Not done, or nobody knows: ask how things stand.
         if (!known()) {
             return std::nullopt;

@@ -444,26 +444,26 @@ void Watch::take_worlds(const evod::v1::WorldList& worlds) {
 }
 
 void Watch::take_event(const evod::v1::Event& event) {
-    using Kind = evod::v1::Event::EventCase;
-    if (event.event_case() == Kind::kServerGoingAway) {
+    using Kind = evod::v1::Event::KindCase;
+    if (event.kind_case() == Kind::kServerGoingAway) {
         notices_.push_back("The server is going away");
-    } else if (event.event_case() == Kind::kStorageChanged) {
+    } else if (event.kind_case() == Kind::kStorageChanged) {
         const bool was_trouble = !shown_storage(storage_).empty();
         storage_ = event.storage_changed().storage();
         if (was_trouble && shown_storage(storage_).empty()) {
             notices_.push_back("Run files can be written again");
         }
-    } else if (event.event_case() == Kind::kEventsDropped) {
+    } else if (event.kind_case() == Kind::kEventsDropped) {
         ask_state();
-    } else if (event.event_case() == Kind::kWorldDeleted && event.world() == forked_) {
+    } else if (event.kind_case() == Kind::kWorldDeleted && event.world() == forked_) {
         forked_.clear();
-    } else if (event.event_case() == Kind::kWorldCreated && refusal()) {
+    } else if (event.kind_case() == Kind::kWorldCreated && refusal()) {
         look_at(wanted_.world, wanted_.island); // perhaps the one that was missing
     }
     if (!control_.known() || event.world() != control_.world()) {
         return;
     }
-    switch (event.event_case()) {
+    switch (event.kind_case()) {
     case Kind::kGenerationFinished:
         last_generation_.assign(event.generation_finished().statistics().begin(),
                                 event.generation_finished().statistics().end());

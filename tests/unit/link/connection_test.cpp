@@ -74,12 +74,12 @@ TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsOnlyFull) {
     {
         FakeSession session = server.accept();
         session.read();
-        session.refuse(0, v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
+        session.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
     }
     FakeSession session = server.accept();
     EXPECT_THAT(connection.status().reason, HasSubstr("RESOURCE_EXHAUSTED: 16 sessions are open"));
     session.read();
-    session.refuse(0, v1::CODE_INVALID_ARGUMENT, "the client name is too long");
+    session.say_goodbye(v1::CODE_INVALID_ARGUMENT, "the client name is too long");
     EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
     EXPECT_THAT(connection.status().reason, HasSubstr("INVALID_ARGUMENT: the client name is too long"));
 }
@@ -279,7 +279,7 @@ TEST(Reconnection, TellsTheServersLastWord) {
         EXPECT_THAT(connection.status().reason, HasSubstr("closed the connection"));
         EXPECT_FALSE(connection.status().refusal);
         second.welcome();
-        second.refuse(0, v1::CODE_RESOURCE_EXHAUSTED, "this client takes nothing");
+        second.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "this client takes nothing");
     }
     FakeSession third = server.accept();
     EXPECT_THAT(connection.status().reason, HasSubstr("ended the session: RESOURCE_EXHAUSTED: this client takes"));
@@ -293,7 +293,7 @@ TEST(Reconnection, DoesNotFollowARevokedToken) {
     Connection connection{server.options()};
     {
         FakeSession session = server.accept_and_welcome();
-        session.refuse(0, v1::CODE_UNAUTHENTICATED, "the token has been revoked");
+        session.say_goodbye(v1::CODE_UNAUTHENTICATED, "the token has been revoked");
     }
     EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
     const ConnectionStatus status = connection.status();

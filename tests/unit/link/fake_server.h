@@ -67,6 +67,12 @@ class FakeSession {
         message.mutable_response()->mutable_status()->set_message(why);
         send(message);
     }
+    void say_goodbye(v1::Code code, const std::string& why) {
+        v1::ServerMessage message;
+        message.mutable_goodbye()->mutable_status()->set_code(code);
+        message.mutable_goodbye()->mutable_status()->set_message(why);
+        send(message);
+    }
     void send_event(std::uint64_t tick) {
         v1::ServerMessage message;
         message.mutable_event()->set_tick(tick);

@@ -217,7 +217,7 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
     std::set<int> cases;
     for (const auto& kind : kinds) {
         const auto event = to_proto(simulation::Event{"w", {1, 2}, 3, kind}, laboratory);
-        cases.insert(event.event_case());
+        cases.insert(event.kind_case());
         EXPECT_EQ(event.world(), "w");
         EXPECT_EQ(event.tick(), 3);
         EXPECT_EQ(event.run_id().size(), 32);
@@ -242,7 +242,7 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
           simulation::Command{simulation::CancelChange{"w", 4}}}) {
         const auto event = event_of(command, planned, "karl", laboratory);
         ASSERT_TRUE(event);
-        cases.insert(event->event_case());
+        cases.insert(event->kind_case());
         auto unset = unset_in(*event);
         for (const char* part : {"change_planned.change.", "change_cancelled.change."})
             for (const char* other :
@@ -258,9 +258,9 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
     for (const auto& command : commands) {
         const auto event = event_of(command, applied, "somebody", laboratory);
         ASSERT_TRUE(event);
-        cases.insert(event->event_case());
+        cases.insert(event->kind_case());
     }
-    cases.insert(event_of(simulation::Storage{}).event_case());
+    cases.insert(event_of(simulation::Storage{}).kind_case());
     EXPECT_FALSE(event_of(simulation::SetParameters{"w", {}, true, {}}, applied, "", laboratory)) << "a dry run";
     // All but the two that the network itself tells.
     EXPECT_EQ(static_cast<int>(cases.size()) + 2, v1::Event::descriptor()->oneof_decl(0)->field_count());
@@ -512,12 +512,36 @@ TEST(Requests, WhatIsLeftOutIsDrawnAndWhatIs0IsKept) {
     EXPECT_EQ(std::get<simulation::CreateWorld>(*to_command(request, draws)).run_id, draws.run_id);
     request.mutable_create_world()->set_seed(0);
     EXPECT_EQ(std::get<simulation::CreateWorld>(*to_command(request, draws)).seed, base::Seed{0});
-    request.mutable_reset_world();
+    request.mutable_reset_world()->set_world("w");
     EXPECT_FALSE(std::get<simulation::ResetWorld>(*to_command(request, draws)).seed);
     request.mutable_set_parameters();
     EXPECT_FALSE(std::get<simulation::SetParameters>(*to_command(request, draws)).expected_revision);
     request.mutable_set_parameters()->set_expected_revision(0);
     EXPECT_EQ(std::get<simulation::SetParameters>(*to_command(request, draws)).expected_revision, 0);
+}
+
+TEST(Requests, ThatDestroyNameTheirWorld) {
+    v1::Request request;
+    request.set_client_key("k");
+    request.mutable_reset_world();
+    const auto reset = to_command(request, draws);
+    ASSERT_FALSE(reset);
+    EXPECT_EQ(reset.error().violations.at(0).field, "reset_world.world");
+    request.mutable_delete_world();
+    const auto deleted = to_command(request, draws);
+    ASSERT_FALSE(deleted);
+    EXPECT_EQ(deleted.error().violations.at(0).field, "delete_world.world");
+}
+
+TEST(Requests, NameTheirFirstUnknownFieldAtAnyDepth) {
+    v1::Request request;
+    v1::ParameterAssignment& assignment = *request.mutable_set_parameters()->add_parameters();
+    assignment.mutable_value()->set_real(1);
+    EXPECT_EQ(unknown_field_of(request), std::nullopt);
+    assignment.GetReflection()->MutableUnknownFields(&assignment)->AddVarint(99, 1);
+    EXPECT_EQ(unknown_field_of(request), "set_parameters.parameters.99");
+    request.GetReflection()->MutableUnknownFields(&request)->AddVarint(200, 1);
+    EXPECT_EQ(unknown_field_of(request), "200");
 }
 
 // ---- words -----------------------------------------------------------------------------------------------------

@@ -254,7 +254,7 @@ TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
     EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);
     SetParameters stale = set({{"food_health", 30.0}});
     stale.expected_revision = 5;
-    EXPECT_EQ(code_of(stale), RefusalCode::FailedPrecondition);
+    EXPECT_EQ(code_of(stale), RefusalCode::Aborted);
     EXPECT_TRUE(entry().world.parameters().requested == before);
     EXPECT_EQ(entry().world.parameters().revision, 1u);
 }

@@ -112,7 +112,7 @@ std::optional<double> BreedingRecord::number(const char* name) const {
     if (value == nullptr) {
         return std::nullopt;
     }
-    switch (value->value_case()) {
+    switch (value->kind_case()) {
     case evod::v1::ParameterValue::kReal:
         return value->real();
     case evod::v1::ParameterValue::kCount:

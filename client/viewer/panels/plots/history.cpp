@@ -29,18 +29,18 @@ void History::set_gene_names(const std::vector<std::string>& names) {
 }
 
 void History::see_event(const evod::v1::Event& event) {
-    using Kind = evod::v1::Event::EventCase;
-    if (event.event_case() == Kind::kEventsDropped) {
+    using Kind = evod::v1::Event::KindCase;
+    if (event.kind_case() == Kind::kEventsDropped) {
         look_again();
     }
     if (event.world() != world_ || world_.empty()) {
         return;
     }
-    if (event.event_case() == Kind::kWorldReset) {
+    if (event.kind_case() == Kind::kWorldReset) {
         see_run(event.world_reset().world());
-    } else if (event.event_case() == Kind::kWorldCreated) {
+    } else if (event.kind_case() == Kind::kWorldCreated) {
         see_run(event.world_created().world());
-    } else if (event.event_case() == Kind::kGenerationFinished && event.run_id() == run_id_) {
+    } else if (event.kind_case() == Kind::kGenerationFinished && event.run_id() == run_id_) {
         add(event.generation_finished().statistics());
         if (!missing_) {
             whole_until_ = table_.last_without_gap(whole_until_);

@@ -33,7 +33,7 @@ inline evod::v1::SnapshotFrame known_picture() {
     frame.set_height_px(600);
     wire::encode(scene, frame);
     frame.set_world("default");
-    frame.set_run_id("00112233445566778899aabbccddeeff");
+    frame.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
     frame.set_island_count(1);
     frame.set_tick(36'034);
     frame.set_generation(16);

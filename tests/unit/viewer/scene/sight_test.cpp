@@ -100,7 +100,7 @@ struct SightTest : testing::Test {
         until([&] { return session->unread_bytes() > 0; });
         return session->read_request();
     }
-    void show(std::uint64_t generation, std::uint64_t tick, const std::string& run_id = "a",
+    void show(std::uint64_t generation, std::uint64_t tick, const std::string& run_id = "\xaa",
               std::uint32_t subscription_id = 7, std::uint32_t born = 3, const std::string& world = "default") {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(1000);
@@ -132,7 +132,7 @@ struct SightTest : testing::Test {
         message.mutable_response()->set_request_id(request.request_id());
         auto& told = *message.mutable_response()->mutable_statistics()->mutable_world();
         told.set_name(world);
-        told.set_run_id("a");
+        told.set_run_id("aa");
         told.set_state(evod::v1::RUN_STATE_RUNNING);
         told.add_gene_names("impulse");
         told.add_gene_names("food_radius");

@@ -59,7 +59,7 @@ wire::Picture picture_of(std::vector<std::uint32_t> ids) {
 TEST(Living, AreThoseWhoAreAboutToDoSomething) {
     Population population{2};
     auto page = page_of(0, 4, 4);
-    (*page.mutable_choices())[2] = evod::v1::CHOICE_NONE;
+    (*page.mutable_choices())[2] = evod::v1::CHOICE_UNSPECIFIED;
     ASSERT_EQ(population.add(page), std::nullopt);
     EXPECT_THAT(living(population, nullptr), Optional(ElementsAre(0, 1, 3)));
 }
@@ -67,7 +67,7 @@ TEST(Living, AreThoseWhoAreAboutToDoSomething) {
 TEST(Living, AreThoseInThePictureOnceTheGenerationIsOver) {
     Population population{2};
     auto page = page_of(0, 4, 4);
-    page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_NONE));
+    page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_UNSPECIFIED));
     ASSERT_EQ(population.add(page), std::nullopt);
     wire::Picture picture = picture_of({1, 3});
     EXPECT_THAT(living(population, &picture), Optional(ElementsAre(1, 3)));

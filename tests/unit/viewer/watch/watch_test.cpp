@@ -49,7 +49,7 @@ struct WatchTest : testing::Test {
         frame.set_height_px(100);
         wire::encode({}, frame);
         frame.set_world(world);
-        frame.set_run_id("a");
+        frame.set_run_id("\xaa");
         frame.set_subscription_id(subscription_id);
         frame.set_island(island);
         frame.set_island_count(3);
@@ -62,7 +62,7 @@ struct WatchTest : testing::Test {
     static evod::v1::WorldInfo info(const std::string& name, evod::v1::RunState state) {
         evod::v1::WorldInfo world;
         world.set_name(name);
-        world.set_run_id("a");
+        world.set_run_id("aa");
         world.set_state(state);
         return world;
     }
@@ -346,7 +346,7 @@ TEST_F(WatchTest, WithoutAConnectionItDoesNotSayThatTheWorldRuns) {
         answer_statistics(session, session.read_request());
         until(watch, [&] { return watch.state_words() == "running"; });
         EXPECT_EQ(watch.no_connection(), "");
-        session.refuse(0, evod::v1::CODE_UNAUTHENTICATED, "the token has been revoked");
+        session.say_goodbye(evod::v1::CODE_UNAUTHENTICATED, "the token has been revoked");
     }
     until(watch, [&] { return watch.state_words() == "no connection"; });
     ASSERT_NE(watch.picture(), nullptr) << "the last is still shown";
