@@ -72,7 +72,8 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
         return Visitor{};
     if (trouble_)
         return refusal(RefusalCode::Unavailable,
-                       "the server cannot tell at present who may come in: its log says why, to whoever runs it");
+                       "the server cannot tell at present who may come in: its log says why, to whoever runs it",
+                       base::Reason::AuthenticationUnavailable);
     const Digest digest = digest_of(token);
     const Token* known = token.empty() ? nullptr : find(tokens_, digest);
     if (known != nullptr) {
@@ -80,16 +81,18 @@ Result<Visitor> Gate::admit(const std::string& token, const std::string& address
         return Visitor{known->name, known->role, digest};
     }
     if (token.empty())
-        return refusal(
-            RefusalCode::Unauthenticated,
-            "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them");
+        return refusal(RefusalCode::Unauthenticated,
+                       "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them",
+                       base::Reason::TokenMissing);
     if (const auto before = failures_.find(address); before != failures_.end() && now < before->second.not_before) {
         const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
         return refusal(RefusalCode::ResourceExhausted,
-                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s");
+                       "a login from this address has failed: try again in " + std::to_string(wait.count()) + " s",
+                       base::Reason::LoginTooSoon);
     }
     fail(address, now);
-    return refusal(RefusalCode::Unauthenticated, "this server does not know the token: ask whoever runs it for one");
+    return refusal(RefusalCode::Unauthenticated, "this server does not know the token: ask whoever runs it for one",
+                   base::Reason::TokenUnknown);
 }
 
 } // namespace evod::access

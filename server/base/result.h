@@ -24,6 +24,62 @@ enum class RefusalCode {
     Unauthenticated = 16,
 };
 
+/// Which documented situation it was, for programs; the numbers are those of evod.v1.Reason.
+enum class Reason {
+    Unspecified = 0,
+    FieldInvalid = 10,
+    FieldUnknown = 11,
+    RequestUnknown = 12,
+    MessageUnreadable = 13,
+    RequestIdReused = 14,
+    RequestTooOld = 15,
+    RoleTooLow = 16,
+    RequestsInFlightMax = 17,
+    ServerBusy = 18,
+    ServerGoingAway = 19,
+    StorageFailing = 20,
+    AnswerTooLarge = 21,
+    WorldNotFound = 30,
+    WorldExists = 31,
+    WorldsMax = 32,
+    WorldIsReplay = 33,
+    WorldIsLive = 34,
+    RunEnded = 35,
+    NothingToResume = 36,
+    NoLease = 37,
+    RevisionChanged = 38,
+    PlannedChangesMax = 39,
+    PlannedChangeNotFound = 40,
+    ResetImpossible = 41,
+    IslandNotFound = 42,
+    OrganismNotFound = 43,
+    RunsNotKept = 50,
+    MomentNotFound = 51,
+    SeekSuperseded = 52,
+    PastsMax = 53,
+    ExportsMax = 54,
+    ExportNotFound = 55,
+    ExportEnded = 56,
+    NotBredYet = 57,
+    ModelVersionDiffers = 58,
+    RunFileDamaged = 59,
+    SubscriptionNotFound = 70,
+    SubscriptionsMax = 71,
+    NoView = 72,
+    FrameInvalid = 80,
+    FrameLate = 81,
+    ProtocolVersion = 82,
+    HelloMissing = 83,
+    HelloRepeated = 84,
+    TlsRequired = 85,
+    TokenMissing = 86,
+    TokenUnknown = 87,
+    TokenRevoked = 88,
+    LoginTooSoon = 89,
+    AuthenticationUnavailable = 90,
+    SessionsMax = 91,
+};
+
 /// The code as users read it: "INVALID_ARGUMENT".
 const char* name_of(RefusalCode code);
 
@@ -39,11 +95,12 @@ struct Refusal {
     RefusalCode code = RefusalCode::InvalidArgument;
     std::string message; // one sentence
     std::vector<Violation> violations;
+    Reason reason = Reason::Unspecified;
 };
 
 /// A refusal that is not about a field.
-inline Refusal refusal(RefusalCode code, std::string message) {
-    return {.code = code, .message = std::move(message), .violations = {}};
+inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Reason::Unspecified) {
+    return {.code = code, .message = std::move(message), .violations = {}, .reason = reason};
 }
 
 /// The refusal as one text: the message, then a line per violation.

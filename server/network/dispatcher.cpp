@@ -28,7 +28,8 @@ namespace {
 base::Refusal no_such_subscription(const char* field, std::uint32_t subscription_id) {
     return {.code = base::RefusalCode::NotFound,
             .message = "this session has no such subscription",
-            .violations = {{field, "one of this session's", std::to_string(subscription_id)}}};
+            .violations = {{field, "one of this session's", std::to_string(subscription_id)}},
+            .reason = base::Reason::SubscriptionNotFound};
 }
 
 /// "set_parameters"
@@ -173,7 +174,8 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
 
 base::Refusal Dispatcher::busy() {
     limit_counters_.met(Limit::MailboxCommands);
-    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again");
+    return refusal(base::RefusalCode::ResourceExhausted, "the server is busy: its mailbox is full; try again",
+                   base::Reason::ServerBusy);
 }
 
 void Dispatcher::handle(Session& session, v1::Request request) {
@@ -181,8 +183,9 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         session.send_unasked(protocol::refusing(request.request_id(), refused));
     };
     if (going_away_)
-        return refuse_it(
-            refusal(base::RefusalCode::Unavailable, "the server is going away: send it again when it is back"));
+        return refuse_it(refusal(base::RefusalCode::Unavailable,
+                                 "the server is going away: send it again when it is back",
+                                 base::Reason::ServerGoingAway));
     const auto kind = protocol::kind_of(request);
     if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace))
         log::trace({.session = session.number(), .client = session.by()}, "session {}: {} asks {}, request {}",
@@ -190,7 +193,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     if (kind == protocol::RequestKind::Unknown)
         return refuse_it(refusal(
             base::RefusalCode::Unimplemented,
-            "this server does not know the request: it may be older than the client; Describe tells what it knows"));
+            "this server does not know the request: it may be older than the client; Describe tells what it knows",
+            base::Reason::RequestUnknown));
     if (const auto needed = access::role_needed(request.kind_case(), is_of_own_past(session, request));
         session.visitor().role < needed)
         return refuse_it(refusal(base::RefusalCode::PermissionDenied,
@@ -202,7 +206,8 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     if (!session.admit_request())
         return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
                                  std::to_string(requests_in_flight_max) +
-                                     " requests of this session are unanswered already: wait for an answer"));
+                                     " requests of this session are unanswered already: wait for an answer",
+                                 base::Reason::RequestsInFlightMax));
     switch (kind) {
     case protocol::RequestKind::Command:
         return command(session, request);
@@ -241,7 +246,8 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         return session.answer(refused(
             {.code = base::RefusalCode::Unimplemented,
              .message = "this server does not know a field of the command: it may be older than the client",
-             .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}}}));
+             .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
+             .reason = base::Reason::FieldUnknown}));
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
         count_limits_met(request, limit_counters_);
@@ -260,13 +266,15 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     case Retries::Verdict::Different:
         return session.answer(refused({.code = base::RefusalCode::InvalidArgument,
                                        .message = "this client_key has used the request_id for another request",
-                                       .violations = {{"request_id", "a new one", std::to_string(id)}}}));
+                                       .violations = {{"request_id", "a new one", std::to_string(id)}},
+                                       .reason = base::Reason::RequestIdReused}));
     case Retries::Verdict::TooOld:
         limit_counters_.met(Limit::RetriesKept);
         return session.answer(refused(
             refusal(base::RefusalCode::FailedPrecondition,
                     "the request is older than those whose answers are kept, so it may have been run: it is not run "
-                    "again; see what holds now, and ask anew with a higher request_id")));
+                    "again; see what holds now, and ask anew with a higher request_id",
+                    base::Reason::RequestTooOld)));
     case Retries::Verdict::New:
         break;
     }
@@ -490,7 +498,8 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             return refuse_it(no_such_subscription("set_view.subscription_id", subscription_id));
         if (!found->second.view)
             return refuse_it(refusal(base::RefusalCode::FailedPrecondition,
-                                     "the subscription has no view: its pictures are not made of tiles"));
+                                     "the subscription has no view: its pictures are not made of tiles",
+                                     base::Reason::NoView));
         v1::Response response = response_to(id);
         response.mutable_subscription()->set_subscription_id(subscription_id);
         response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
@@ -505,9 +514,10 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             limit_counters_.met(Limit::Subscriptions);
         return is;
     };
-    const auto too_many =
-        refusal(base::RefusalCode::ResourceExhausted, "this session has " + std::to_string(subscriptions_max) +
-                                                          " subscriptions already: unsubscribe from one first");
+    const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
+                                  "this session has " + std::to_string(subscriptions_max) +
+                                      " subscriptions already: unsubscribe from one first",
+                                  base::Reason::SubscriptionsMax);
     const std::string name = name_of(request);
     if (request.has_subscribe_snapshots()) {
         auto wanted = std::make_shared<SnapshotSubscription>();
@@ -644,7 +654,8 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
                 refuse(response, {.code = base::RefusalCode::FailedPrecondition,
                                   .message = "this client_key has no lease of that world: it gets one by "
                                              "run_until_tick, if the world runs",
-                                  .violations = {{"client_key", "that of the run_until_tick", key}}});
+                                  .violations = {{"client_key", "that of the run_until_tick", key}},
+                                  .reason = base::Reason::NoLease});
         });
 }
 

@@ -31,7 +31,8 @@ void Exports::begin(Session& session, std::uint64_t request_id, const storage::P
         limit_counters_.met(Limit::Exports);
         return session.answer(
             refused(request_id, refusal(RefusalCode::ResourceExhausted,
-                                        std::to_string(exports_max) + " exports are under way already: try again")));
+                                        std::to_string(exports_max) + " exports are under way already: try again",
+                                        base::Reason::ExportsMax)));
     }
     Export begun{++last_id_, std::make_unique<runtime::ExportThread>(run, wanted)};
     ask(session, request_id, exports_.emplace(session.number(), std::move(begun)).first->second);
@@ -44,10 +45,12 @@ void Exports::go_on(Session& session, std::uint64_t request_id, const v1::Contin
             refused(request_id, {.code = RefusalCode::NotFound,
                                  .message = "this session has no such export under way: begin one",
                                  .violations = {{"continue_export.export_id", "the id of the export under way",
-                                                 std::to_string(request.export_id())}}}));
+                                                 std::to_string(request.export_id())}},
+                                 .reason = base::Reason::ExportNotFound}));
     if (found->second.asked)
         return session.answer(refused(request_id, refusal(RefusalCode::FailedPrecondition,
-                                                          "the part before has not been answered yet: wait for it")));
+                                                          "the part before has not been answered yet: wait for it",
+                                                          base::Reason::ExportEnded)));
     ask(session, request_id, found->second);
 }
 

@@ -293,7 +293,8 @@ void Server::mind_tokens() {
     for (const auto& [number, session] : sessions)
         if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
             session->fail(refusal(base::RefusalCode::Unauthenticated,
-                                  "the token has been revoked: ask whoever runs the server for another"));
+                                  "the token has been revoked: ask whoever runs the server for another",
+                                  base::Reason::TokenRevoked));
 }
 
 void Server::relieve() {
@@ -317,8 +318,9 @@ void Server::accepted(tcp::socket socket) {
     ++connections_;
     host_.traffic.connections.add();
     if (going_away_)
-        return session->start(
-            refusal(base::RefusalCode::Unavailable, "the server is going away: connect again when it is back"));
+        return session->start(refusal(base::RefusalCode::Unavailable,
+                                      "the server is going away: connect again when it is back",
+                                      base::Reason::ServerGoingAway));
     const auto is_neighbour = [&](const auto& other) {
         return other.second->neighbourhood() == session->neighbourhood();
     };
@@ -338,7 +340,8 @@ void Server::accepted(tcp::socket socket) {
                                        address_full ? "there are " + std::to_string(bounds.sessions_per_address_max) +
                                                           " sessions from this address already: end one of them first"
                                                     : "the server has " + std::to_string(bounds.sessions_max) +
-                                                          " sessions already: try again when one has ended"));
+                                                          " sessions already: try again when one has ended",
+                                       base::Reason::SessionsMax));
             else
                 --connections_; // it is closed without a word
             return;
@@ -347,7 +350,8 @@ void Server::accepted(tcp::socket socket) {
         sessions_.erase(silent);
         if (may_be_told)
             first->fail(refusal(base::RefusalCode::ResourceExhausted,
-                                "the place was needed, and no hello had come: connect again, and send one at once"));
+                                "the place was needed, and no hello had come: connect again, and send one at once",
+                                base::Reason::SessionsMax));
         else
             first->close();
     }

@@ -151,9 +151,10 @@ void Session::start(const std::optional<base::Refusal>& refused) {
     hello_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
         if (const auto self = weak.lock(); self && !error && !self->greeted_) {
             self->host_.limit_counters.met(Limit::HelloTimeout);
-            self->fail(refusal(base::RefusalCode::FailedPrecondition, "no hello came within " +
-                                                                          std::to_string(hello_timeout.count()) +
-                                                                          " s: connect again, and send one first"));
+            self->fail(refusal(base::RefusalCode::FailedPrecondition,
+                               "no hello came within " + std::to_string(hello_timeout.count()) +
+                                   " s: connect again, and send one first",
+                               base::Reason::HelloMissing));
             if (!self->begun_)
                 self->close(); // TLS has not begun: it cannot be told
         }
@@ -170,7 +171,8 @@ asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
     if (const auto error = co_await line_.begin(); error == Line::not_tls())
         fail(refusal(base::RefusalCode::FailedPrecondition,
-                     "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls"));
+                     "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls",
+                     base::Reason::TlsRequired));
     else if (error) {
         if (!ended_) // otherwise whoever ended it has said why
             log::info({.session = number_, .client = to_text(peer_)}, "session {}: {} is closed: TLS: {}", number_,
@@ -200,7 +202,7 @@ asio::awaitable<void> Session::read() {
             if (!frame) {
                 if (frame.error().beyond == wire::Beyond::FrameBytes)
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
-                fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what));
+                fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
                 break;
             }
             if (!*frame)
@@ -237,7 +239,8 @@ void Session::mind_frame(bool one_came) {
             self->host_.limit_counters.met(Limit::FrameTimeout);
             self->fail(refusal(base::RefusalCode::FailedPrecondition,
                                "a frame did not come whole within " + std::to_string(frame_timeout.count()) +
-                                   " s: connect again, and send each in one go"));
+                                   " s: connect again, and send each in one go",
+                               base::Reason::FrameLate));
         }
     });
 }
@@ -271,13 +274,16 @@ void Session::on_frame(const wire::Frame& frame) {
         host_.limit_counters.met(Limit::MessageDepth);
     if (!greeted_) {
         if (!message)
-            return fail(refusal(base::RefusalCode::InvalidArgument, message.error().what));
+            return fail(
+                refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable));
         if (!message->has_hello())
-            return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a hello"));
+            return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a hello",
+                                base::Reason::HelloMissing));
         return on_hello(message->hello());
     }
     if (!message)
-        return send_unasked(protocol::refusing(0, refusal(base::RefusalCode::InvalidArgument, message.error().what)));
+        return send_unasked(protocol::refusing(
+            0, refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable)));
     switch (message->kind_case()) {
     case v1::ClientMessage::kRequest:
         host_.traffic.requests.add();
@@ -288,12 +294,14 @@ void Session::on_frame(const wire::Frame& frame) {
         break;
     case v1::ClientMessage::kHello:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
-                                                   "this session has had its hello already: send requests")));
+                                                   "this session has had its hello already: send requests",
+                                                   base::Reason::HelloRepeated)));
         break;
     case v1::ClientMessage::KIND_NOT_SET:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::Unimplemented,
                                                    "this server does not know the message: it may be older than "
-                                                   "the client; Describe tells what it knows")));
+                                                   "the client; Describe tells what it knows",
+                                                   base::Reason::RequestUnknown)));
         break;
     }
 }
@@ -319,7 +327,8 @@ void Session::on_hello(const v1::Hello& hello) {
                      .message = "this server speaks another version of the protocol: use a client of that version",
                      .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
                                      highest == lowest ? std::to_string(lowest)
-                                                       : std::to_string(lowest) + " to " + std::to_string(highest)}}});
+                                                       : std::to_string(lowest) + " to " + std::to_string(highest)}},
+                     .reason = base::Reason::ProtocolVersion});
     auto visitor = host_.admit(hello.token(), neighbourhood_);
     if (!visitor)
         return fail(visitor.error());
@@ -389,7 +398,8 @@ void Session::answer(SharedBytes frame) {
                 too_large.response().request_id(),
                 refusal(base::RefusalCode::ResourceExhausted,
                         "the answer is " + std::to_string(frame->size() - wire::header_bytes) +
-                            " bytes long, the client takes " + std::to_string(frame_bytes_max_) + ": ask for less"))),
+                            " bytes long, the client takes " + std::to_string(frame_bytes_max_) + ": ask for less",
+                        base::Reason::AnswerTooLarge))),
             Kind::Answer);
 }
 

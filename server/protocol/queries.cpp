@@ -12,11 +12,13 @@
 namespace evod::protocol {
 namespace {
 
-base::Refusal no_such(const char* what, std::string field, std::uint64_t count, std::uint64_t got) {
+base::Refusal no_such(const char* what, std::string field, std::uint64_t count, std::uint64_t got,
+                      base::Reason reason) {
     return {.code = base::RefusalCode::NotFound,
             .message = std::string{"there is no such "} + what,
-            .violations = {
-                {std::move(field), count == 0 ? "none" : "0 to " + std::to_string(count - 1), std::to_string(got)}}};
+            .violations = {{std::move(field), count == 0 ? "none" : "0 to " + std::to_string(count - 1),
+                            std::to_string(got)}},
+            .reason = reason};
 }
 
 /// An island of a world, by the names of a query.
@@ -31,7 +33,7 @@ base::Result<Found> find_island(const simulation::Laboratory& laboratory, const 
         return entry.error();
     const auto islands = (*entry)->world.islands();
     if (island >= islands.size())
-        return no_such("island", field, islands.size(), island);
+        return no_such("island", field, islands.size(), island, base::Reason::IslandNotFound);
     return Found{(*entry)->world, islands[island]};
 }
 
@@ -91,7 +93,7 @@ base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& labora
         return found.error();
     const auto born = static_cast<std::uint64_t>(found->island.born().genes.cols());
     if (query.organism() >= born)
-        return no_such("organism", "get_organism.organism", born, query.organism());
+        return no_such("organism", "get_organism.organism", born, query.organism(), base::Reason::OrganismNotFound);
     return organism_info(found->world, found->island, query.organism());
 }
 
@@ -101,7 +103,8 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
         return entry.error();
     const simulation::World& world = (*entry)->world;
     if (query.has_island() && query.island() >= world.islands().size())
-        return no_such("island", "get_history.island", world.islands().size(), query.island());
+        return no_such("island", "get_history.island", world.islands().size(), query.island(),
+                       base::Reason::IslandNotFound);
 
     HistoryPart answer;
     if (query.has_island())
@@ -146,7 +149,7 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
     const auto count = static_cast<std::size_t>(born.genes.cols());
     const std::size_t first = query.first_organism();
     if (first >= count)
-        return no_such("organism", "get_population.first_organism", count, first);
+        return no_such("organism", "get_population.first_organism", count, first, base::Reason::OrganismNotFound);
     const base::Range ids{first, std::min(count, first + population_rows_max)};
     PopulationRows answer{.generation = world.moment().generation,
                           .generation_tick = world.moment().generation_tick,
@@ -221,7 +224,8 @@ base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, con
         return entry.error();
     const auto island_count = static_cast<std::uint32_t>((*entry)->world.islands().size());
     if (request.has_island() && request.island() >= island_count)
-        return no_such("island", "subscribe_snapshots.island", island_count, request.island());
+        return no_such("island", "subscribe_snapshots.island", island_count, request.island(),
+                       base::Reason::IslandNotFound);
     return Watched{(*entry)->name, island_count};
 }
 

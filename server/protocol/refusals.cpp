@@ -9,11 +9,30 @@ namespace {
 // Enough of them to mend a request; a hostile one should not be answered with megabytes.
 constexpr std::size_t violations_told_max = 200;
 
+/// Of a refusal without one, where its code has a single reason.
+base::Reason reason_of(const base::Refusal& refusal) {
+    if (refusal.reason != base::Reason::Unspecified)
+        return refusal.reason;
+    switch (refusal.code) {
+    case base::RefusalCode::InvalidArgument:
+        return base::Reason::FieldInvalid;
+    case base::RefusalCode::PermissionDenied:
+        return base::Reason::RoleTooLow;
+    case base::RefusalCode::Unavailable:
+        return base::Reason::StorageFailing;
+    case base::RefusalCode::DataLoss:
+        return base::Reason::RunFileDamaged;
+    default:
+        return base::Reason::Unspecified;
+    }
+}
+
 } // namespace
 
 v1::Status to_proto(const base::Refusal& refusal) {
     v1::Status status;
     status.set_code(static_cast<v1::Code>(refusal.code));
+    status.set_reason(static_cast<v1::Reason>(reason_of(refusal)));
     status.set_message(quotable(refusal.message, 2000));
     for (const base::Violation& violation : refusal.violations) {
         if (static_cast<std::size_t>(status.violations_size()) == violations_told_max) {

@@ -19,7 +19,8 @@ namespace {
 Refusal over() {
     return {.code = RefusalCode::FailedPrecondition,
             .message = "the export is over, or was given up because nobody went on with it: begin it again",
-            .violations = {}};
+            .violations = {},
+            .reason = base::Reason::ExportEnded};
 }
 
 } // namespace

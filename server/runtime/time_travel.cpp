@@ -22,7 +22,9 @@ Refusal within(Refusal refused, const std::string& field) {
 }
 
 Refusal superseded() {
-    return refusal(RefusalCode::FailedPrecondition, "superseded by a later seek: seek again if this moment is still wanted");
+    return refusal(RefusalCode::FailedPrecondition,
+                   "superseded by a later seek: seek again if this moment is still wanted",
+                   base::Reason::SeekSuperseded);
 }
 
 Refusal owner_gone() {
@@ -30,7 +32,7 @@ Refusal owner_gone() {
 }
 
 Refusal closed_since() {
-    return refusal(RefusalCode::NotFound, "the past has been closed: open it again");
+    return refusal(RefusalCode::NotFound, "the past has been closed: open it again", base::Reason::WorldNotFound);
 }
 
 } // namespace
@@ -107,7 +109,8 @@ Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
         return look->second.past;
     if (!recorder_)
         return refusal(RefusalCode::FailedPrecondition,
-                       "this server keeps no runs, so nothing tells of their past: start it without --keep-nothing");
+                       "this server keeps no runs, so nothing tells of their past: start it without --keep-nothing",
+                       base::Reason::RunsNotKept);
     return storage::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
 }
 
@@ -142,7 +145,8 @@ void TimeTravel::stop_waiting() {
 void TimeTravel::set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
                          storage::KnownUntil known, std::uint64_t owner, Arrived arrived, const Departed& departed) {
     if (departing_.size() + journeys_.size() >= journeys_max)
-        return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again"));
+        return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again",
+                               base::Reason::PastsMax));
     const std::uint64_t number = ++last_journey_;
     departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
@@ -253,7 +257,8 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
                                               ? "this session looks at " + std::to_string(pasts_max) +
                                                     " pasts already: close one first"
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
-                                                    " pasts already: try again when one of them is closed"));
+                                                    " pasts already: try again when one of them is closed",
+                                          base::Reason::PastsMax));
     const std::string name = (*origin)->is_look_back() ? (*origin)->recording->past_of : (*origin)->name;
     const std::string world = (*origin)->name;
     const auto past = past_of(world);
@@ -297,7 +302,8 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
                     .message =
                         "this world lives and cannot be taken to another moment: open its "
                         "past, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
-                    .violations = {}});
+                    .violations = {},
+                    .reason = base::Reason::WorldIsLive});
     const std::string& past_of = (*entry)->recording->past_of;
     const std::string origin = past_of.empty() ? name : past_of;
     const auto known_now = known_of(origin, looks_.find(name)->second.past.run_id());
@@ -349,7 +355,8 @@ Result<std::string> TimeTravel::close(const ClosePast& request) {
     if (look == looks_.end() || look->second.owner == 0)
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "there is no such look at the past",
-                       .violations = {{"world", "one that was opened with OpenPast", request.world}}};
+                       .violations = {{"world", "one that was opened with OpenPast", request.world}},
+                       .reason = base::Reason::WorldNotFound};
     give_up(look->second.journey, closed_since());
     laboratory_.dismiss(request.world);
     looks_.erase(look);

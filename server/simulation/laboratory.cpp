@@ -37,8 +37,10 @@ std::optional<Refusal> refusal_if_terminated(const World& world) {
     const evolution::Outcome outcome = world.outcome();
     if (outcome == evolution::Outcome::Running)
         return std::nullopt;
-    return refusal(RefusalCode::FailedPrecondition, std::string{"the run has ended by "} + criterion(outcome) +
-                                                        ": change that parameter to go on, or reset the world");
+    return refusal(RefusalCode::FailedPrecondition,
+                   std::string{"the run has ended by "} + criterion(outcome) +
+                       ": change that parameter to go on, or reset the world",
+                   base::Reason::RunEnded);
 }
 
 /// What happened in the past happens again; only how it is looked at can be changed.
@@ -49,7 +51,7 @@ std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
     if (!changes_what_happens || !entry.recording)
         return std::nullopt;
     return refusal(RefusalCode::FailedPrecondition,
-                   "this world shows what has been, and that cannot be changed: fork it");
+                   "this world shows what has been, and that cannot be changed: fork it", base::Reason::WorldIsReplay);
 }
 
 std::string ids_of(const std::vector<PlannedChange>& planned) {
@@ -79,8 +81,10 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
                        .message = "this cannot be planned",
                        .violations = std::move(violations)};
     if (world.planned().size() >= planned_changes_max)
-        return refusal(RefusalCode::ResourceExhausted, "there are " + std::to_string(planned_changes_max) +
-                                                           " planned changes already: cancel one first");
+        return refusal(RefusalCode::ResourceExhausted,
+                       "there are " + std::to_string(planned_changes_max) +
+                           " planned changes already: cancel one first",
+                       base::Reason::PlannedChangesMax);
     return std::nullopt;
 }
 
@@ -162,12 +166,13 @@ Refusal Laboratory::not_found(std::string_view name) const {
         if (!entry->is_look_back())
             names += (names.empty() ? "" : ", ") + entry->name;
     if (names.empty())
-        return refusal(RefusalCode::NotFound, "there is no world: create one");
+        return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
     if (name.empty())
-        return refusal(RefusalCode::NotFound, "say which world: there are " + names);
+        return refusal(RefusalCode::NotFound, "say which world: there are " + names, base::Reason::WorldNotFound);
     return Refusal{.code = RefusalCode::NotFound,
                    .message = "there is no world of that name",
-                   .violations = {{"world", names, std::string{name}}}};
+                   .violations = {{"world", names, std::string{name}}},
+                   .reason = base::Reason::WorldNotFound};
 }
 
 Result<const Entry*> Laboratory::find(std::string_view name) const {
@@ -200,12 +205,14 @@ std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
         if (entry->name == name)
             return Refusal{.code = RefusalCode::AlreadyExists,
                            .message = "there is a world of that name already",
-                           .violations = {{"name", "a name that is free", name}}};
+                           .violations = {{"name", "a name that is free", name}},
+                           .reason = base::Reason::WorldExists};
         worlds += !entry->is_look_back();
     }
     if (worlds >= worlds_max)
         return refusal(RefusalCode::ResourceExhausted,
-                       "there are " + std::to_string(worlds_max) + " worlds already: delete one first");
+                       "there are " + std::to_string(worlds_max) + " worlds already: delete one first",
+                       base::Reason::WorldsMax);
     return std::nullopt;
 }
 
@@ -237,13 +244,15 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "the run cannot begin with what its schedule has in generation 1 and the parameters "
                                   "asked for: change those that are not scheduled, or create another world",
-                       .violations = beginning.error().violations};
+                       .violations = beginning.error().violations,
+                       .reason = base::Reason::ResetImpossible};
     if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty())
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message =
                            "the world was given its first population, with which a run with the parameters asked "
                            "for cannot begin: change them back, or create another world",
-                       .violations = std::move(faults)};
+                       .violations = std::move(faults),
+                       .reason = base::Reason::ResetImpossible};
     entry.world.reset(command.seed.value_or(entry.world.seed()));
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;
@@ -298,7 +307,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
         return *refused;
     if (!has_goal(entry.control))
         return refusal(RefusalCode::FailedPrecondition,
-                       "there is nothing to resume: tell the world how far to run with start or run");
+                       "there is nothing to resume: tell the world how far to run with start or run",
+                       base::Reason::NothingToResume);
     go_on(entry.control);
     return applied_now(entry);
 }
@@ -315,7 +325,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
                        .message = "the parameters have been changed by someone else since: read them again, and set "
                                   "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
-                                       std::to_string(*command.expected_revision)}}};
+                                       std::to_string(*command.expected_revision)}},
+                       .reason = base::Reason::RevisionChanged};
     if (command.at)
         if (auto refused = refusal_of_plan(world, command))
             return *refused;
@@ -346,15 +357,18 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
     if (!applied.planned)
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "no change waits under that id: it was made, dropped or cancelled, or never planned",
-                       .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}}};
+                       .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}},
+                       .reason = base::Reason::PlannedChangeNotFound};
     return applied;
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
     if (command.at_generation)
-        return refusal(RefusalCode::FailedPrecondition, "how a generation began is known to the file of a run only, "
-                                                        "and there is none: fork the world as it is now, or "
-                                                        "start the server without --keep-nothing");
+        return refusal(RefusalCode::FailedPrecondition,
+                       "how a generation began is known to the file of a run only, "
+                       "and there is none: fork the world as it is now, or "
+                       "start the server without --keep-nothing",
+                       base::Reason::RunsNotKept);
     return fork(command, entry.world);
 }
 

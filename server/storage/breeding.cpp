@@ -19,7 +19,8 @@ Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std:
     const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
     return {.code = RefusalCode::NotFound,
             .message = std::string{"no such "} + field + " has bred in this run: there are " + there_are,
-            .violations = {{field, there_are, std::to_string(got)}}};
+            .violations = {{field, there_are, std::to_string(got)}},
+            .reason = base::Reason::MomentNotFound};
 }
 
 /// The generation of the parents.
@@ -28,7 +29,8 @@ Result<std::uint64_t> generation_of(RunFile& file, const WantedBreeding& wanted)
     if (last <= first)
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "no generation of this run has bred yet: it is in its first",
-                       .violations = {}};
+                       .violations = {},
+                       .reason = base::Reason::NotBredYet};
     const std::uint64_t generation = wanted.generation.value_or(std::clamp(wanted.seen_from, first + 1, last) - 1);
     if (generation < first || generation >= last)
         return no_such("generation", first, last - 1, generation);

@@ -22,7 +22,8 @@ base::Result<simulation::World> world_at(RunFile& origin, std::optional<std::uin
                              .violations = {{"generation",
                                              std::to_string(origin.identity().first_generation) + " to " +
                                                  std::to_string(origin.last_generation()),
-                                             std::to_string(*generation)}}};
+                                             std::to_string(*generation)}},
+                             .reason = base::Reason::MomentNotFound};
     auto there = Rerun::at(origin, *generation, executor);
     if (!there)
         return there.error();

@@ -27,7 +27,8 @@ std::string range_text(std::uint64_t first, std::uint64_t last) {
 Refusal no_such(const char* field, const std::string& there_are, std::uint64_t got) {
     return {.code = RefusalCode::NotFound,
             .message = std::string{"the run has no such "} + field + ": there are " + there_are,
-            .violations = {{field, there_are, std::to_string(got)}}};
+            .violations = {{field, there_are, std::to_string(got)}},
+            .reason = base::Reason::MomentNotFound};
 }
 
 Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulation::Recording& there) {

@@ -74,7 +74,8 @@ Result<Rerun> Rerun::at(RunFile& file, std::uint64_t generation, base::Executor&
     if (!rerun && rerun.error().code == RefusalCode::NotFound)
         return Refusal{.code = RefusalCode::NotFound,
                        .message = file.path() + " holds no generation " + std::to_string(generation),
-                       .violations = {}};
+                       .violations = {},
+                       .reason = base::Reason::MomentNotFound};
     while (rerun && rerun->world().moment().generation < generation)
         if (rerun->world().generation_over())
             rerun->turn_over(executor);
@@ -105,7 +106,8 @@ Result<Rerun> Rerun::before(RunFile& file, std::uint64_t tick, base::Executor& e
     if (tick < file.identity().first_tick || tick > file.last_tick())
         return Refusal{.code = RefusalCode::NotFound,
                        .message = file.path() + " does not tell of tick " + std::to_string(tick),
-                       .violations = {}};
+                       .violations = {},
+                       .reason = base::Reason::MomentNotFound};
     return before(file, file.generation_at(tick), tick, simulation::World::history_generations_kept, executor);
 }
 

@@ -73,7 +73,8 @@ void write_organism(Table& table, const evolution::NextGeneration& born, std::si
 Refusal no_such(base::Violation violation) {
     return {.code = base::RefusalCode::NotFound,
             .message = "the run file holds no such organism",
-            .violations = {std::move(violation)}};
+            .violations = {std::move(violation)},
+            .reason = base::Reason::OrganismNotFound};
 }
 
 /// Why a generation that has begun cannot be told of; nothing if it can.
@@ -241,7 +242,8 @@ Result<void> write_population(const RunSource& run, std::ostream& out, Table::Fo
         return Refusal{.code = base::RefusalCode::NotFound,
                        .message = run.file.path() + " does not hold the beginning of that generation",
                        .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
-                                       std::to_string(generation)}}};
+                                       std::to_string(generation)}},
+                       .reason = base::Reason::MomentNotFound};
     if (auto refused = out_of_reach(run.file, "generation", generation))
         return *refused;
     const auto whole = storage::GenerationReader{run.file, run.executor, run.stop}.read(generation);

@@ -469,6 +469,35 @@ class Requests(WithServer):
         self.assertEqual(self.client.response(0).status.code, UNIMPLEMENTED)
         self.client.call(list_worlds=c.ListWorlds())
 
+    def test_refusals_tell_programs_the_reason(self):
+        world = self.new_world(generation_limit=1)
+        nowhere = "no_such_world"
+        for reason, request in (
+                ("FIELD_INVALID", {"run": c.Run(world=world, generations=0)}),
+                ("FIELD_INVALID", {"reset_world": c.ResetWorld()}),
+                ("WORLD_NOT_FOUND", {"pause": c.Pause(world=nowhere)}),
+                ("WORLD_NOT_FOUND", {"get_parameters": c.GetParameters(world=nowhere)}),
+                ("WORLD_EXISTS", {"create_world": c.CreateWorld(name=world)}),
+                ("NOTHING_TO_RESUME", {"resume": c.Resume(world=world)}),
+                ("REVISION_CHANGED", {"set_parameters": set_parameters(world, expected_revision=99, food_health=1.0)}),
+                ("PLANNED_CHANGE_NOT_FOUND", {"cancel_change": c.CancelChange(world=world, id=5)}),
+                ("NO_LEASE", {"renew_lease": c.RenewLease(world=world)}),
+                ("ISLAND_NOT_FOUND", {"get_motion": c.GetMotion(world=world, island=9)}),
+                ("ORGANISM_NOT_FOUND", {"get_organism": c.GetOrganism(world=world, organism=10**6)}),
+                ("WORLD_IS_LIVE", {"seek": c.Seek(world=world, to=c.RunMoment(tick=1))}),
+                ("RUNS_NOT_KEPT", {"open_past": c.OpenPast(world=world)}),
+                ("SUBSCRIPTION_NOT_FOUND", {"unsubscribe": c.Unsubscribe(subscription_id=77)}),
+                ("EXPORT_NOT_FOUND", {"continue_export": c.ContinueExport(export_id=3)})):
+            status = self.client.response(self.client.ask(**request)).status
+            self.assertEqual(c.Reason.Name(status.reason), "REASON_" + reason, status)
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world))
+        self.client.wait_world(lambda x: x.state == w.RUN_STATE_TERMINATED, world)
+        status = self.client.call(PRECONDITION, run=c.Run(world=world)).status
+        self.assertEqual(status.reason, c.REASON_RUN_ENDED)
+        self.client.send_body(b"\xff\xff\xff")
+        self.assertEqual(self.client.response(0).status.reason, c.REASON_MESSAGE_UNREADABLE)
+
     def test_an_unknown_field_refuses_a_command_and_no_query(self):
         world = self.new_world()
         unknown = b"\xfa\x3e\x02\x08\x01"  # field 1007, two bytes

@@ -30,6 +30,8 @@ class Error(Exception):
 
     #: The server's ``evod.v1`` Code, or what it would have said; None where no server was heard.
     code: int | None
+    #: The server's ``evod.v1`` Reason: which documented situation it was; 0 where none was given.
+    reason: int = 0
     #: One sentence.
     message: str
     #: Every field that is at fault, not only the first.
@@ -68,7 +70,9 @@ class DamagedData(Error):
 
 def refusal(status: commands_pb2.Status) -> Error:
     """The error that a status which is not OK tells of."""
-    return Error(status.message, status.code, (Violation(v.field, v.allowed, v.got) for v in status.violations))
+    error = Error(status.message, status.code, (Violation(v.field, v.allowed, v.got) for v in status.violations))
+    error.reason = status.reason
+    return error
 
 
 def wrong_argument(field: str, allowed: str, got: object, message: str = "the request is wrong") -> Error:

@@ -546,6 +546,17 @@ TEST(Requests, NameTheirFirstUnknownFieldAtAnyDepth) {
 
 // ---- words -----------------------------------------------------------------------------------------------------
 
+TEST(Refusals, HaveTheReasonsOfTheProtocol) {
+    EXPECT_EQ(static_cast<int>(base::Reason::SessionsMax), v1::Reason_MAX);
+    EXPECT_EQ(static_cast<int>(base::Reason::WorldNotFound), v1::REASON_WORLD_NOT_FOUND);
+    EXPECT_EQ(static_cast<int>(base::Reason::RunFileDamaged), v1::REASON_RUN_FILE_DAMAGED);
+    EXPECT_EQ(static_cast<int>(base::Reason::NoView), v1::REASON_NO_VIEW);
+    EXPECT_EQ(static_cast<int>(base::Reason::AnswerTooLarge), v1::REASON_ANSWER_TOO_LARGE);
+    EXPECT_EQ(to_proto(refusal(base::RefusalCode::InvalidArgument, "")).reason(), v1::REASON_FIELD_INVALID);
+    EXPECT_EQ(to_proto(refusal(base::RefusalCode::NotFound, "", base::Reason::PastsMax)).reason(),
+              v1::REASON_PASTS_MAX);
+}
+
 TEST(Refusals, QuoteNothingThatHarms) {
     EXPECT_EQ(quotable("a\nb\x1b[31m"), "a?b?[31m");
     EXPECT_EQ(quotable("a\xc2\x9b[31m é\xc2\xa0\xc2"), "a?[31m é\xc2\xa0\xc2") << "U+009B begins an escape, too";
