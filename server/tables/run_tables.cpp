@@ -149,7 +149,7 @@ Wanted parents_of(const Wanted& wanted, const std::vector<storage::Family>& fami
 
 /// The command's name as the protocol spells it: "set_parameters".
 std::string kind_of(const v1::Request& request) {
-    const auto* kinds = v1::Request::descriptor()->FindOneofByName("request");
+    const auto* kinds = v1::Request::descriptor()->FindOneofByName("kind");
     const auto* kind = v1::Request::GetReflection()->GetOneofFieldDescriptor(request, kinds);
     return kind == nullptr ? std::string{"unknown"} : kind->name();
 }

@@ -148,7 +148,7 @@ class Play {
         v1::ClientMessage message;
         v1::Request& request = *message.mutable_request();
         const auto how = script_.take();
-        const auto& kinds = *v1::Request::descriptor()->FindOneofByName("request");
+        const auto& kinds = *v1::Request::descriptor()->FindOneofByName("kind");
         if (const int kind = script_.take() % (kinds.field_count() + 1); kind < kinds.field_count())
             fill(*request.GetReflection()->MutableMessage(&request, kinds.field(kind)), script_);
         if (request.has_create_world() && how / 64 != 3)

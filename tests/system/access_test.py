@@ -157,7 +157,7 @@ class Roles(Access):
         past_world = viewer.call(open_past=c.OpenPast()).world.name
         for request in ({"run_until_tick": c.RunUntilTick(world=past_world, tick=20)},
                         {"seek": c.Seek(world=past_world, to=c.RunMoment(tick=40))},
-                        {"set_speed": c.SetSpeed(world=past_world, speed=plain.plain.w.Speed(max=True))},
+                        {"set_speed": c.SetSpeed(world=past_world, speed=plain.w.Speed(max=True))},
                         {"pause": c.Pause(world=past_world)}, {"run": c.Run(world=past_world)},
                         {"resume": c.Resume(world=past_world)}, {"close_past": c.ClosePast(world=past_world)}):
             other.call(PERMISSION_DENIED, **request)

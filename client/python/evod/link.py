@@ -98,6 +98,8 @@ class Link:
                     raise self.core.loss or NoConnection(f"no welcome from {self.server}")
                 end = back_by if end is None else min(end, back_by)
             if deadline is not None and now >= deadline:
+                if self._absence.since is not None and self.core.loss:
+                    raise self.core.loss
                 raise Timeout(f"no answer within {timeout_s:g} s")
             remaining_s = None if end is None else max(0.0, end - now)
             if self._reading:

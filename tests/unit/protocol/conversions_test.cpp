@@ -371,7 +371,7 @@ TEST(Conversions, WhatIsWrongWithAScheduleIsNamed) {
 const Draws draws{.seed = base::Seed{1}, .run_id = {2, 3}};
 
 TEST(Requests, EveryOneIsOfAKind) {
-    const auto& requests = *v1::Request::descriptor()->FindOneofByName("request");
+    const auto& requests = *v1::Request::descriptor()->FindOneofByName("kind");
     for (int i = 0; i < requests.field_count(); ++i) {
         v1::Request request;
         request.GetReflection()->MutableMessage(&request, requests.field(i));
@@ -425,7 +425,7 @@ void poison_doubles(v1::Request& request, Message& part, double poison, int& poi
 }
 
 TEST(Requests, NoNumberInThemMayBeNoneOrInfinite) {
-    const auto& requests = *v1::Request::descriptor()->FindOneofByName("request");
+    const auto& requests = *v1::Request::descriptor()->FindOneofByName("kind");
     int poisoned = 0;
     for (const double poison : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                                 -std::numeric_limits<double>::infinity()}) {

@@ -354,7 +354,7 @@ TEST_F(PlannedTest, WhatCannotBePlannedIsRefusedAndNothingWaits) {
     EXPECT_THAT(field(set("no_such", 3u, generation(3))), HasSubstr("set_parameters.no_such"));
     SetParameters other = set("food_health", 1.0, tick(16));
     other.expected_revision = 7;
-    EXPECT_EQ(refused(other).code, base::RefusalCode::FailedPrecondition);
+    EXPECT_EQ(refused(other).code, base::RefusalCode::Aborted);
     other.expected_revision = 1;
     other.dry_run = true;
     EXPECT_EQ(plan(other), 0u) << "would be accepted";

@@ -309,14 +309,14 @@ TEST_F(SightTest, WhatWasAskedOfThePresentIsNotWaitedForInThePast) {
     const auto unanswered = next_request();
     EXPECT_EQ(unanswered.get_population().world(), "default");
     look_at_the_past();
-    show(4, 100, "a", 8, 3, "default@3");
+    show(4, 100, "\xaa", 8, 3, "default@3");
     const auto request = answer_page(3, 4);
     EXPECT_EQ(request.get_population().world(), "default@3");
     until([&] { return sight.population() != nullptr; });
 }
 
 TEST_F(SightTest, AlsoThePastOfALargeIslandIsStreamedInPart) {
-    show(4, 100, "a", 7, Sight::streamed_in_part_min);
+    show(4, 100, "\xaa", 7, Sight::streamed_in_part_min);
     const auto view_asked = [&](const std::string& world) {
         for (;;) {
             const auto request = next_request();
@@ -329,14 +329,14 @@ TEST_F(SightTest, AlsoThePastOfALargeIslandIsStreamedInPart) {
     };
     view_asked("default");
     look_at_the_past();
-    show(4, 101, "a", 8, Sight::streamed_in_part_min, "default@3");
+    show(4, 101, "\xaa", 8, Sight::streamed_in_part_min, "default@3");
     view_asked("default@3");
 }
 
 TEST_F(SightTest, SmallIslandsAreShownWholeAndOfLargeOnesWhatIsSeen) {
     show(4, 100);
     EXPECT_EQ(session->unread_bytes(), 0u);
-    show(4, 101, "a", 7, Sight::streamed_in_part_min);
+    show(4, 101, "\xaa", 7, Sight::streamed_in_part_min);
     std::optional<evod::v1::View> seen, overview;
     std::uint32_t unsubscribed = 0;
     while (!seen || !overview) {
