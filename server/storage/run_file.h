@@ -188,6 +188,8 @@ class RunFile {
     void bring_up_to_format_4();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
+    /// Whether the file has the tables of its format, and nothing else: no trigger, view or index that others made.
+    base::Result<void> check_schema();
     base::Result<void> check_checkpoints(const EndMark& found);
     base::Result<std::vector<StoredCheckpoint>> checkpoints_where(const std::string& condition,
                                                                   const std::vector<std::int64_t>& where);
