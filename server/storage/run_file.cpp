@@ -1,5 +1,6 @@
 #include "server/storage/run_file.h"
 
+#include "server/files/regular_file.h"
 #include "server/simulation/experiment.h"
 #include "server/storage/checkpoint.h"
 #include "server/storage/data_folder.h"
@@ -418,7 +419,10 @@ Result<void> expect_file_with_one_name(const std::string& path) {
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is a link, and what it leads to may be another server's: put a copy in its place, or "
                               "name the folder of the file itself with --data");
-    if (S_ISREG(status.st_mode) && status.st_nlink > 1)
+    if (!S_ISREG(status.st_mode))
+        return refusal(RefusalCode::InvalidArgument,
+                       path + ": this is " + std::string{files::other_than_file(status.st_mode)} + ", not a run file");
+    if (status.st_nlink > 1)
         return refusal(RefusalCode::FailedPrecondition,
                        path + " has another name, a hard link, under which another server may write to it: remove "
                               "that name, or put a copy in the place of this one");
@@ -486,8 +490,10 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     const auto status = std::filesystem::status(path, error);
     if (!exists(status))
         return refusal(RefusalCode::NotFound, path + ": there is no such file");
-    if (is_directory(status))
-        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file");
+    struct stat about {};
+    if (::stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode))
+        return refusal(RefusalCode::InvalidArgument,
+                       path + ": this is " + std::string{files::other_than_file(about.st_mode)} + ", not a run file");
     if (auto there = expect_bytes(path); !there)
         return there.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
