@@ -1,6 +1,7 @@
 #include "server/runtime/time_travel.h"
 
 #include "server/base/inline_executor.h"
+#include "server/base/within_memory.h"
 
 #include <algorithm>
 #include <memory>
@@ -147,7 +148,8 @@ void TimeTravel::set_out(const storage::Past& past, const std::optional<storage:
     departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
         base::InlineExecutor executor;
-        const auto departure = std::make_shared<Result<storage::Departure>>(past.depart(to, known, executor));
+        const auto departure = std::make_shared<Result<storage::Departure>>(
+            base::within_memory([&] { return past.depart(to, known, executor); }));
         return [this, number, departure] { depart(number, std::move(*departure)); };
     });
 }
