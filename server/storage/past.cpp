@@ -63,7 +63,7 @@ Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulat
 } // namespace
 
 Result<Past> Past::of_file(const std::string& path) {
-    const auto file = RunFile::open_read_only(path);
+    const auto file = RunFile::open_checked(path);
     if (!file)
         return file.error();
     if (auto refused = (*file)->other_model())

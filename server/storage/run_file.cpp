@@ -4,6 +4,7 @@
 #include "server/simulation/experiment.h"
 #include "server/storage/checkpoint.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/write_ahead_log.h"
 
 #include <sys/stat.h>
 
@@ -436,6 +437,8 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
         return there.error();
     if (auto one = expect_file_with_one_name(path); !one)
         return one.error();
+    if (auto sound = check_log(path, LogIndex::Unread); !sound) // past a damaged frame SQLite would read nothing
+        return sound.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
     if (auto read = file->read_identity(); !read)
         return read.error();
@@ -508,6 +511,12 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     if (!read)
         return read.error();
     return file;
+}
+
+Result<std::unique_ptr<RunFile>> RunFile::open_checked(const std::string& path) {
+    if (auto sound = check_log(path, LogIndex::Read); !sound)
+        return sound.error();
+    return open_read_only(path);
 }
 
 void RunFile::create_tables() {

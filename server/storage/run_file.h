@@ -75,6 +75,8 @@ class RunFile {
     static base::Result<void> remove(const std::string& path);
     /// To be looked at, while a server writes to it too.
     static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
+    /// The same, unless its write-ahead log is damaged; not where this process has the file open already.
+    static base::Result<std::unique_ptr<RunFile>> open_checked(const std::string& path);
 
     const std::string& path() const { return path_; }
     const RunIdentity& identity() const { return identity_; }
