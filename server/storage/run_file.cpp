@@ -1271,9 +1271,9 @@ std::uint64_t RunFile::last_tick() {
     // A generation that was bred is written down once its first tick is over; the run's first is there before.
     const std::string bred =
         "SELECT max(first_tick + 1) FROM generation WHERE generation > " + std::to_string(identity_.first_generation);
-    for (const char* sql :
-         {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
-          bred.c_str(), "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
+    for (const char* sql : {"SELECT tick FROM journal ORDER BY number DESC LIMIT 1", "SELECT max(tick) FROM state_hash",
+                            "SELECT max(first_tick) FROM generation", bred.c_str(),
+                            "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
         last = std::max(last, database_.number(sql));
     if (format_ >= 2)
         last = std::max(last, database_.number("SELECT max(tick) FROM checkpoint"));
