@@ -22,11 +22,19 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <iostream>
+#include <memory>
+#include <new>
+#include <system_error>
 #include <thread>
 
 namespace {
@@ -62,10 +70,62 @@ int fail(const std::string& why) {
     return 1;
 }
 
+/// Whether standard output is a log, for end_of_exception().
+std::atomic<bool> is_logging = false;
+
 void begin_log(ServeOptions& options) {
-    options.log_begun = true;
+    options.log_begun = is_logging = true;
     log::begin(log::level_named(options.log_level),
                options.log_format == "json" ? log::Format::Json : log::Format::Text);
+}
+
+/// Exit status of a program for which there was not enough memory.
+constexpr int exit_out_of_memory = 3;
+
+/// Given back before the last message is written, which needs some memory itself.
+std::unique_ptr<char[]> memory_for_last_message;
+
+/// The end of a program that an exception leaves. Memory that is not there is no fault of the program: what was
+/// answered is on the disk, and the program can be started again.
+[[noreturn]] void end_of_exception() {
+    static std::atomic<std::thread::id> ending;
+    std::thread::id nobody;
+    if (!ending.compare_exchange_strong(nobody, std::this_thread::get_id())) {
+        while (ending != std::this_thread::get_id()) {
+            ::pause(); // another thread ends the program
+        }
+        static constexpr char text[] = "evod: out of memory\n"; // the last message had too little, too
+        (void)!::write(STDERR_FILENO, text, sizeof text - 1);
+        std::_Exit(exit_out_of_memory);
+    }
+    const char* what = nullptr;
+    try {
+        if (const auto error = std::current_exception()) {
+            std::rethrow_exception(error);
+        }
+        std::abort();
+    } catch (const std::bad_alloc&) {
+        memory_for_last_message.reset();
+        what = "out of memory";
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::resource_unavailable_try_again && error.code() != std::errc::not_enough_memory) {
+            std::cerr << "evod: " << error.what() << '\n';
+            std::abort();
+        }
+        memory_for_last_message.reset();
+        what = "out of memory, or of threads";
+    } catch (const std::exception& error) {
+        std::cerr << "evod: " << error.what() << '\n';
+        std::abort();
+    } catch (...) {
+        std::abort();
+    }
+    if (is_logging) {
+        log::error("{}: evod ends; runs go on where they were when it is started again", what);
+    } else {
+        std::cerr << "evod: " << what << '\n';
+    }
+    std::_Exit(exit_out_of_memory);
 }
 
 /// As many file descriptors as the system allows: what is usual, 1,024, is soon taken by connections.
@@ -300,6 +360,11 @@ void add_replay_command(Command& app, ServeOptions& options) {
 } // namespace
 
 int main(int argument_count, char** arguments) {
+    constexpr std::size_t last_message_bytes = 1 << 20;
+    memory_for_last_message = std::make_unique<char[]>(last_message_bytes);
+    std::set_terminate(end_of_exception);
+    // A file that may not become larger (ulimit -f) is a disk that fails, and no reason to end.
+    std::signal(SIGXFSZ, SIG_IGN);
     // The server reports a malformed message to its sender. Protocol Buffers would log each one besides, and any client
     // could fill the log.
     google::protobuf::SetLogHandler(nullptr);

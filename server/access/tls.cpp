@@ -1,5 +1,7 @@
 #include "server/access/tls.h"
 
+#include "server/files/regular_file.h"
+
 #include <openssl/ssl.h>
 
 #include <sys/stat.h>
@@ -16,6 +18,8 @@ using base::RefusalCode;
 using base::Result;
 
 namespace {
+
+constexpr std::size_t pem_bytes_max = 4 << 20; // all authorities that a system knows take some 200 KiB
 
 Refusal refusal(std::string message) {
     return {.code = RefusalCode::FailedPrecondition, .message = std::move(message), .violations = {}};
@@ -37,22 +41,31 @@ Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
     auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
     SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
-    boost::system::error_code error;
-    const auto wrong = [&](const char* option, const std::string& file) {
-        return refusal(std::string{option} + ": " + file + " cannot be used: " + error.message());
+    // Hands what a file holds to `use`.
+    const auto load = [](const char* option, const std::string& file, const auto& use) -> Result<void> {
+        const auto text = files::read_file(file, "a PEM file", pem_bytes_max);
+        if (!text)
+            return refusal(std::string{option} + ": " + text.error().message);
+        boost::system::error_code error;
+        use(boost::asio::buffer(*text), error);
+        if (error)
+            return refusal(std::string{option} + ": " + file + " cannot be used: " + error.message());
+        return {};
     };
-    context->use_certificate_chain_file(files.certificate, error);
-    if (error)
-        return wrong("--tls-cert", files.certificate);
-    context->use_private_key_file(files.key, ssl::context::pem, error);
-    if (error)
-        return wrong("--tls-key", files.key);
+    auto loaded = load("--tls-cert", files.certificate,
+                       [&](const auto& pem, auto& error) { context->use_certificate_chain(pem, error); });
+    if (loaded)
+        loaded = load("--tls-key", files.key,
+                      [&](const auto& pem, auto& error) { context->use_private_key(pem, ssl::context::pem, error); });
+    if (!loaded)
+        return loaded.error();
     if (SSL_CTX_check_private_key(context->native_handle()) != 1)
         return refusal("--tls-key: " + files.key + " is not the key of " + files.certificate);
     if (!files.client_ca.empty()) {
-        context->load_verify_file(files.client_ca, error);
-        if (error)
-            return wrong("--tls-client-ca", files.client_ca);
+        loaded = load("--tls-client-ca", files.client_ca,
+                      [&](const auto& pem, auto& error) { context->add_certificate_authority(pem, error); });
+        if (!loaded)
+            return loaded.error();
         context->set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert);
     }
     return context;

@@ -1,5 +1,7 @@
 #include "server/access/token_file.h"
 
+#include "server/files/regular_file.h"
+
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
 #include <openssl/sha.h>
@@ -180,25 +182,18 @@ Result<Tokens> parse_tokens(std::string_view text) {
 
 Result<Tokens> read_tokens(const std::string& folder) {
     const std::string path = token_file_of(folder);
-    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW)};
-    if (!file.open())
-        return errno == ENOENT ? Result<Tokens>{Tokens{}} : cannot("read", path);
-    struct stat about {};
-    if (::fstat(*file, &about) != 0)
-        return cannot("read", path);
-    if (!S_ISREG(about.st_mode) || about.st_uid != ::geteuid() || (about.st_mode & 077) != 0)
+    const auto file = files::RegularFile::open(path, "a file of tokens", files::Links::Refused);
+    if (!file)
+        return file.error().code == RefusalCode::NotFound ? Result<Tokens>{Tokens{}} : file.error();
+    const struct stat& about = file->about();
+    if (about.st_uid != ::geteuid() || (about.st_mode & 077) != 0)
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is not for its owner alone, so it cannot be believed: chown it to the user who runs "
                               "evod, and chmod 600");
-    std::string text(file_bytes_max + 1, '\0');
-    std::size_t bytes = 0;
-    for (ssize_t more = 1; more > 0 && bytes < text.size(); bytes += static_cast<std::size_t>(more)) {
-        more = ::read(*file, text.data() + bytes, text.size() - bytes);
-        if (more < 0)
-            return cannot("read", path);
-    }
-    text.resize(bytes);
-    auto tokens = parse_tokens(text);
+    const auto text = file->read(file_bytes_max);
+    if (!text)
+        return text.error();
+    auto tokens = parse_tokens(*text);
     if (!tokens)
         return refusal(tokens.error().code, path + " is damaged: " + tokens.error().message);
     return tokens;

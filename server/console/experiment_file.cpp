@@ -1,34 +1,20 @@
 #include "server/console/experiment_file.h"
 
+#include "server/files/regular_file.h"
 #include "server/simulation/world_name.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace evod::console {
 namespace {
 
-constexpr std::uintmax_t file_bytes_max = 1 << 20;
+constexpr std::size_t file_bytes_max = 1 << 20;
 
 } // namespace
 
 base::Result<std::string> load_text(const std::string& path, const std::string& kind) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error))
-        return refusal(base::RefusalCode::NotFound, path + ": this is a folder, not " + kind);
-    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes > file_bytes_max)
-        return refusal(base::RefusalCode::InvalidArgument, path + ": too large for " + kind + " (1 MiB at most)");
-    std::ifstream file{path, std::ios::binary};
-    std::ostringstream text;
-    if (file)
-        text << file.rdbuf();
-    if (!file)
-        return refusal(base::RefusalCode::NotFound, path + ": cannot be read: " + std::strerror(errno));
-    return text.str();
+    return files::read_file(path, kind, file_bytes_max);
 }
 
 base::Result<simulation::Experiment> load_experiment(const std::string& path) {

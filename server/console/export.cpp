@@ -97,7 +97,7 @@ Result<void> export_to(const ExportOptions& options) {
     std::error_code error;
     if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error))
         return wrong_option("--output", "another file than the run file itself", options.output);
-    const auto file = RunFile::open_read_only(options.run);
+    const auto file = RunFile::open_checked(options.run);
     if (!file)
         return file.error();
     if (auto held = (*file)->hold_still(); !held)

@@ -19,7 +19,7 @@ int fork(const ForkOptions& options) {
     if (!simulation::is_world_name(options.name))
         return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
     // Only read, so a server may be writing it.
-    const auto origin = storage::RunFile::open_read_only(options.run_file);
+    const auto origin = storage::RunFile::open_checked(options.run_file);
     if (!origin)
         return fail(to_text(origin.error()));
     if (const auto held = (*origin)->hold_still(); !held) // what is thinned meanwhile is still there

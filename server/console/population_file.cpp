@@ -1,12 +1,10 @@
 #include "server/console/population_file.h"
 
 #include "proto/wire/population_csv.h"
+#include "server/files/regular_file.h"
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <memory>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -14,17 +12,21 @@ namespace evod::console {
 
 using base::RefusalCode;
 
+namespace {
+
+constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million organisms take some 70 MB
+
+} // namespace
+
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
                                                           const simulation::Parameters& parameters) {
     if (path.empty())
         return simulation::FirstPopulation{};
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error))
-        return refusal(RefusalCode::NotFound, path + ": this is a folder, not a population file");
-    std::ifstream file{path, std::ios::binary};
-    if (!file)
-        return refusal(RefusalCode::NotFound, path + ": cannot be read: " + std::strerror(errno));
-    const auto islands = wire::read_population(file);
+    auto text = files::read_file(path, "a population file", population_bytes_max);
+    if (!text)
+        return text.error();
+    std::istringstream csv{*std::move(text)};
+    const auto islands = wire::read_population(csv);
     if (!islands)
         return refusal(RefusalCode::InvalidArgument, path + ": " + islands.error().what);
     static_assert(wire::population_genes == evolution::gene_count);

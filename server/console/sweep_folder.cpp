@@ -1,6 +1,7 @@
 #include "server/console/sweep_folder.h"
 
 #include "server/console/new_file.h"
+#include "server/files/regular_file.h"
 #include "server/simulation/model_version.h"
 #include "server/storage/build.h"
 #include "server/tables/columns.h"
@@ -22,6 +23,7 @@ using base::Result;
 using evolution::Outcome;
 
 constexpr std::string_view end_mark = "# ended by ";
+constexpr std::size_t provenance_bytes_max = 8 << 20; // a sweep file of 1 MiB, each line as a comment, and the rest
 constexpr std::array<std::pair<Outcome, std::string_view>, 4> outcome_names{
     {{Outcome::TargetFitness, "target_fitness"},
      {Outcome::Extinction, "extinction"},
@@ -68,13 +70,6 @@ std::string provenance_of(const Sweep& sweep) {
     return text;
 }
 
-std::string text_of(const std::string& path) {
-    std::ifstream file{path, std::ios::binary};
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// What a folder says of itself that is not so for this sweep.
 base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
@@ -111,6 +106,9 @@ Result<void> make_folder(const std::string& path) {
 
 /// The last line of a part that is whole.
 std::optional<std::string> last_line(const std::string& part) {
+    std::error_code error;
+    if (!fs::is_regular_file(part, error))
+        return std::nullopt;
     std::ifstream file{part, std::ios::binary | std::ios::ate};
     if (!file)
         return std::nullopt;
@@ -186,8 +184,11 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
         if (auto written = file.finish(); !written)
             return written.error();
     }
-    if (const std::string there = text_of(of_sweep); there != provenance)
-        return other_sweep(path, there, sweep);
+    const auto there = files::read_file(of_sweep, "what evod sweep wrote", provenance_bytes_max);
+    if (!there)
+        return there.error();
+    if (*there != provenance)
+        return other_sweep(path, *there, sweep);
     if (auto made = make_folder(path + "/parts"); !made)
         return made.error();
     return SweepFolder{path, sweep};

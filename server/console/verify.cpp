@@ -53,7 +53,7 @@ int verify(const VerifyOptions& options) {
         std::cerr << "evod verify: " << base::to_text(why) << '\n';
         return 1;
     };
-    const auto file = storage::RunFile::open_read_only(options.run);
+    const auto file = storage::RunFile::open_checked(options.run);
     if (!file)
         return fail(file.error());
 

@@ -1,5 +1,6 @@
 #include "server/network/breedings.h"
 
+#include "server/base/within_memory.h"
 #include "server/protocol/breeding.h"
 #include "server/protocol/refusals.h"
 #include "server/runtime/worker_pool.h"
@@ -84,7 +85,7 @@ void Breedings::begin(Asked asked) {
 }
 
 v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& stop) {
-    const auto bred = breeding_of(asked.request, asked.run, stop);
+    const auto bred = base::within_memory([&] { return breeding_of(asked.request, asked.run, stop); });
     if (!bred)
         return protocol::refusing(asked.request_id, protocol::with_paths(bred.error(), "get_breeding"));
     v1::Response response;

@@ -324,8 +324,12 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
         told->frame = encode_response(std::move(response));
         if (!applied) {
             told->refused = applied.error();
-            if (applied.error().code == base::RefusalCode::ResourceExhausted)
-                limit_counters_.met(request.has_set_parameters() ? Limit::PlannedChanges : Limit::Worlds);
+            if (applied.error().code == base::RefusalCode::ResourceExhausted) {
+                if (request.has_set_parameters())
+                    limit_counters_.met(Limit::PlannedChanges);
+                else if (laboratory.is_full()) // or memory did not suffice
+                    limit_counters_.met(Limit::Worlds);
+            }
         } else if (demand_.events_wanted()) {
             told->event = protocol::event_of(applied_command, *applied, from.by, laboratory);
         }

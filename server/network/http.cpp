@@ -1,10 +1,10 @@
 #include "server/network/http.h"
 
+#include "server/network/detached.h"
 #include "server/network/limits.h"
 #include "server/network/no_throw.h"
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
@@ -92,9 +92,9 @@ void Http::start() {
             counters_.met(Limit::HttpConnections);
         if (closed_ || connections_.size() >= 2 * http_connections_max)
             return;
-        asio::co_spawn(context_, serve(std::move(socket), full), asio::detached);
+        asio::co_spawn(context_, serve(std::move(socket), full), detached);
     };
-    asio::co_spawn(context_, listener_.accept(accepted), asio::detached);
+    asio::co_spawn(context_, listener_.accept(accepted), detached);
 }
 
 void Http::close() {

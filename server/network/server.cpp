@@ -1,6 +1,7 @@
 #include "server/network/server.h"
 
 #include "server/log/log.h"
+#include "server/network/detached.h"
 #include "server/network/limits.h"
 #include "server/network/random_ids.h"
 #include "server/protocol/commands.h"
@@ -11,7 +12,6 @@
 #include "server/runtime/worker_pool.h"
 
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 
 #include <malloc.h>
@@ -257,7 +257,7 @@ void Server::run() {
     });
     look_around();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
-                   asio::detached);
+                   detached);
     if (http_)
         http_->start();
     context_.run();

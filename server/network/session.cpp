@@ -1,13 +1,13 @@
 #include "server/network/session.h"
 
 #include "server/log/log.h"
+#include "server/network/detached.h"
 #include "server/network/no_throw.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/detached.hpp>
 #include <google/protobuf/wire_format_lite.h>
 
 #include <netinet/tcp.h>
@@ -140,9 +140,9 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
 void Session::start(const std::optional<base::Refusal>& refused) {
     coroutines_ = 2;
     asio::co_spawn(
-        line_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, asio::detached);
+        line_.socket().get_executor(), [self = shared_from_this()] { return self->read(); }, detached);
     asio::co_spawn(
-        line_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, asio::detached);
+        line_.socket().get_executor(), [self = shared_from_this()] { return self->write(); }, detached);
     if (refused) {
         fail(*refused);
         return;

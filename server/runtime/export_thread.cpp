@@ -1,5 +1,6 @@
 #include "server/runtime/export_thread.h"
 
+#include "server/base/within_memory.h"
 #include "server/runtime/worker_pool.h"
 
 #include <pthread.h>
@@ -103,7 +104,7 @@ Result<void> ExportThread::write(const std::stop_token& stop) {
 
 void ExportThread::work(const std::stop_token& stop) {
     pthread_setname_np(pthread_self(), "export"); // as `top -H` shows it
-    const Result<void> written = write(stop);
+    const Result<void> written = base::within_memory([&] { return write(stop); });
     if (written)
         give({.text = std::move(text_), .last = true}, stop);
     Reply reply;

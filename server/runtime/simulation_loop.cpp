@@ -1,5 +1,6 @@
 #include "server/runtime/simulation_loop.h"
 
+#include "server/base/within_memory.h"
 #include "server/log/log.h"
 
 #include <algorithm>
@@ -26,6 +27,13 @@ std::uint32_t ticks_a_look(Clock::duration tick) {
     constexpr std::int64_t most = 100;
     return static_cast<std::uint32_t>(
         tick.count() > 0 ? std::clamp<std::int64_t>(SimulationLoop::between_looks / tick, 1, most) : 1);
+}
+
+/// Whether it builds a world, and changes nothing before that is done.
+bool builds_a_world(const simulation::Command& command) {
+    return std::holds_alternative<simulation::CreateWorld>(command) ||
+           std::holds_alternative<simulation::ResetWorld>(command) ||
+           std::holds_alternative<simulation::ForkWorld>(command);
 }
 
 bool changes_something(const simulation::Command& command) {
@@ -209,6 +217,8 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
 base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
     if (auto refused = refusal_of(command))
         return *refused;
+    if (builds_a_world(command))
+        return base::within_memory([&] { return laboratory_.apply(command); });
     return laboratory_.apply(command);
 }
 
@@ -217,12 +227,20 @@ void SimulationLoop::fork(CommandMail& mail) {
     const auto before = run_of(command);
     const simulation::Entry* origin = entry_in(command);
     auto refused = refusal_of(command);
+    const auto fork_at_opening = [&](bool with_what_was_asked_since) {
+        return base::within_memory([&] {
+            return laboratory_.fork(command, origin->world.at_its_opening(executor_, with_what_was_asked_since));
+        });
+    };
     if (origin && !refused && !command.at_generation && origin->world.moment().generation_tick == 0)
-        return answer(mail, laboratory_.fork(command, origin->world.at_its_opening(executor_, true)), before);
+        return answer(mail, fork_at_opening(true), before);
     if (!origin || refused || !command.at_generation)
-        return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : laboratory_.apply(command), before);
+        return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : base::within_memory([&] {
+                          return laboratory_.apply(command);
+                      }),
+                      before);
     if (*command.at_generation == origin->world.moment().generation)
-        return answer(mail, laboratory_.fork(command, origin->world.at_its_opening(executor_)), before);
+        return answer(mail, fork_at_opening(false), before);
     // Others are served meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));

@@ -1,6 +1,7 @@
 #include "server/runtime/time_travel.h"
 
 #include "server/base/inline_executor.h"
+#include "server/base/within_memory.h"
 
 #include <algorithm>
 #include <memory>
@@ -69,7 +70,8 @@ void TimeTravel::show(Replay replay) {
 void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival) {
     simulation::RunControl control;
     control.endless = control.paused = true;
-    looks_.emplace(name, Look{past, arrival.rerun.changes(), owner, {}, false, 0});
+    const storage::ComingChanges& changes = arrival.rerun.changes();
+    looks_.emplace(name, Look{past, changes, changes.last_entry(), owner, {}, false, 0});
     laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
         name, past.run_id(), control, std::move(arrival.rerun).take(), 0, false, std::move(arrival.there)}));
     (void)entry_of(name)->world.take_events(); // of the way there
@@ -151,7 +153,8 @@ void TimeTravel::set_out(const storage::Past& past, const std::optional<storage:
     departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
         base::InlineExecutor executor;
-        const auto departure = std::make_shared<Result<storage::Departure>>(past.depart(to, known, executor));
+        const auto departure = std::make_shared<Result<storage::Departure>>(
+            base::within_memory([&] { return past.depart(to, known, executor); }));
         return [this, number, departure] { depart(number, std::move(*departure)); };
     });
 }
@@ -233,6 +236,7 @@ void TimeTravel::travel(const std::function<bool()>& stop) {
 
 void TimeTravel::arrive_in(simulation::Entry& entry, Look& look, Arrival arrival) {
     look.changes = arrival.rerun.changes();
+    look.entries_read = look.changes.last_entry();
     look.refreshed = {};
     entry.world = std::move(arrival.rerun).take();
     entry.recording = std::move(arrival.there);
@@ -416,8 +420,8 @@ std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
 
 void TimeTravel::ask_for_news(const std::string& name, Look& look) {
     look.being_read = true;
-    reader_.ask([this, name, past = look.past]() -> PastReader::Then {
-        return [this, name, news = past.news()] {
+    reader_.ask([this, name, past = look.past, after = look.entries_read]() -> PastReader::Then {
+        return [this, name, news = base::within_memory([&] { return past.news(after); })] {
             const auto look_on = looks_.find(name);
             if (look_on == looks_.end())
                 return;
@@ -429,11 +433,13 @@ void TimeTravel::ask_for_news(const std::string& name, Look& look) {
 }
 
 void TimeTravel::go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news) {
-    if (news.there.last_tick <= entry.recording->last_tick)
+    // Asked for before the look was taken to another moment, the news may begin after what is known there.
+    if (news.there.last_tick <= entry.recording->last_tick || news.after_entry > look.entries_read)
         return;
     // Commands may have come since the last time.
     if (!look.changes.extend(news.path, news.changes))
         return;
+    look.entries_read = std::max(look.entries_read, news.last_entry);
     look.changes.make_due(entry.world);
     const std::string past_of = entry.recording->past_of;
     entry.recording = news.there;

@@ -76,6 +76,7 @@ class TimeTravel {
     struct Look {
         storage::Past past;
         storage::ComingChanges changes;
+        std::uint64_t entries_read = 0; // of the journal, into `changes`
         std::uint64_t owner = 0; // 0: nobody's, there for good
         Clock::time_point refreshed;
         bool being_read = false;   // what it has come to

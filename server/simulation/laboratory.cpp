@@ -200,30 +200,31 @@ Result<Applied> Laboratory::apply(const Command& command) {
 }
 
 std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
-    std::size_t worlds = 0;
-    for (const auto& entry : entries_) {
+    for (const auto& entry : entries_)
         if (entry->name == name)
             return Refusal{.code = RefusalCode::AlreadyExists,
                            .message = "there is a world of that name already",
                            .violations = {{"name", "a name that is free", name}},
                            .reason = base::Reason::WorldExists};
-        worlds += !entry->is_look_back();
-    }
-    if (worlds >= worlds_max)
+    if (is_full())
         return refusal(RefusalCode::ResourceExhausted,
                        "there are " + std::to_string(worlds_max) + " worlds already: delete one first",
                        base::Reason::WorldsMax);
     return std::nullopt;
 }
 
+bool Laboratory::is_full() const {
+    return std::ranges::count_if(entries_, [](const auto& entry) { return !entry->is_look_back(); }) >=
+           static_cast<std::ptrdiff_t>(worlds_max);
+}
+
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
     if (auto refused = refusal_of(command.name))
         return *refused;
-    entries_.push_back(std::make_unique<Entry>(
+    auto entry = std::make_unique<Entry>(
         Entry{command.name, command.run_id, RunControl{},
-              World{command.parameters, command.seed, command.first_population, command.schedule}}));
-    entries_.back()->storage = storage_;
-    return Applied{.world = command.name, .tick = 0, .parameters = {}};
+              World{command.parameters, command.seed, command.first_population, command.schedule}});
+    return add(std::move(entry));
 }
 
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
@@ -253,12 +254,14 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
                            "for cannot begin: change them back, or create another world",
                        .violations = std::move(faults),
                        .reason = base::Reason::ResetImpossible};
+    Applied applied = applied_now(entry);
     entry.world.reset(command.seed.value_or(entry.world.seed()));
     entry.run_id = command.run_id;
     const Speed speed = entry.control.speed;
     entry.control = {};
     entry.control.speed = speed;
-    return applied_now(entry);
+    applied.tick = entry.world.moment().tick;
+    return applied;
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
@@ -377,10 +380,14 @@ Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
         return *refused;
     (void)world.take_events(); // were told of its origin
     world.become_fork();
-    const std::uint64_t tick = world.moment().tick;
-    entries_.push_back(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
-    entries_.back()->storage = storage_;
-    return Applied{.world = command.name, .tick = tick, .parameters = {}};
+    return add(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
+}
+
+Applied Laboratory::add(std::unique_ptr<Entry> entry) {
+    entry->storage = storage_;
+    Applied applied = applied_now(*entry);
+    entries_.push_back(std::move(entry)); // last: nothing is left undone where memory does not suffice
+    return applied;
 }
 
 void Laboratory::set_storage(const Storage& storage) {

@@ -89,7 +89,8 @@ struct Applied {
 
 class Laboratory {
   public:
-    /// Applies a command now, between two ticks; a refusal has changed nothing.
+    /// Applies a command now, between two ticks; a refusal has changed nothing. CreateWorld, ResetWorld and ForkWorld
+    /// throw std::bad_alloc, having changed nothing, where memory does not suffice for the new world.
     base::Result<Applied> apply(const Command& command);
 
     /// Takes in a world that comes from elsewhere; its name is free.
@@ -114,6 +115,9 @@ class Laboratory {
     base::Result<Entry*> find(std::string_view name);
     base::Result<const Entry*> find(std::string_view name) const;
 
+    /// Whether there are worlds_max worlds; looks at the past are not counted.
+    bool is_full() const;
+
     /// In order of creation.
     std::span<const std::unique_ptr<Entry>> entries() const { return entries_; }
 
@@ -133,6 +137,7 @@ class Laboratory {
     base::Result<Applied> carry_out(Entry& entry, const SetParameters&);
     base::Result<Applied> carry_out(Entry& entry, const CancelChange&);
     base::Result<Applied> carry_out(Entry& entry, const ForkWorld&);
+    Applied add(std::unique_ptr<Entry> entry);
     /// Why there can be no new world of that name; nothing if there can.
     std::optional<base::Refusal> refusal_of(const std::string& name) const;
     base::Refusal not_found(std::string_view name) const;

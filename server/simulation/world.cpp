@@ -13,8 +13,11 @@
 
 namespace evod::simulation {
 World::World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule)
+    : World{ParameterSet{parameters, parameters, 1}, seed, std::move(first_population), std::move(schedule)} {}
+
+World::World(ParameterSet parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule)
     : seed_{seed}
-    , parameters_{parameters, parameters, 1}
+    , parameters_{std::move(parameters)}
     , first_population_{std::move(first_population)}
     , schedule_{std::move(schedule)} {
     begin_run();
@@ -66,13 +69,9 @@ base::Result<Parameters> World::beginning() const {
 }
 
 void World::reset(base::Seed seed) {
-    seed_ = seed;
-    parameters_.active = parameters_.requested = beginning().value();
-    planned_.clear();
-    planned_count_ = 0;
-    history_.clear();
-    events_.clear();
-    begin_run();
+    const Parameters first = beginning().value();
+    World fresh{ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_};
+    *this = std::move(fresh);
 }
 
 void World::begin_run() {

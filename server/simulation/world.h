@@ -103,7 +103,8 @@ class World {
     /// generation 1. Refused if they do not go together.
     base::Result<Parameters> beginning() const;
     /// Begins the run again with its beginning(), its schedule, and the same first population if one was given, which a
-    /// world with those parameters can have.
+    /// world with those parameters can have. Throws std::bad_alloc, having changed nothing, where memory does not
+    /// suffice for the world beside the one that it replaces.
     void reset(base::Seed seed);
 
     /// One tick; before it, if a generation has ended, the breeding of the next. Not to be called while outcome() is
@@ -165,6 +166,7 @@ class World {
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
   private:
+    World(ParameterSet parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule);
     void begin_run();
     void make_islands();
     /// What is planned for the generation that is about to be bred.

@@ -1,6 +1,7 @@
 #include "server/storage/archive.h"
 
 #include "server/log/log.h"
+#include "server/storage/write_ahead_log.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -48,7 +49,7 @@ Result<void> finish_replacing(const DataFolder& folder, const std::string& path)
     const std::string next = DataFolder::next_file_of(path);
     std::error_code error;
     if (std::filesystem::exists(path, error)) {
-        auto old = RunFile::open_read_only(path);
+        auto old = RunFile::open_checked(path); // its end mark may be in the log
         if (!old)
             return old.error();
         const auto over = is_over(**old);
@@ -127,6 +128,10 @@ void Archive::remember(const std::vector<std::string>& paths) {
 }
 
 Result<void> Archive::bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor) {
+    // With relaxed durability the index may be on the disk before the log, should the machine fail.
+    const auto index = options.durability == Durability::Full ? LogIndex::Read : LogIndex::Unread;
+    if (auto sound = check_log(path, index); !sound)
+        return sound.error();
     auto file = RunFile::open(path, options);
     if (!file)
         return file.error();

@@ -64,7 +64,7 @@ Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulat
 } // namespace
 
 Result<Past> Past::of_file(const std::string& path) {
-    const auto file = RunFile::open_read_only(path);
+    const auto file = RunFile::open_checked(path);
     if (!file)
         return file.error();
     if (auto refused = (*file)->other_model())
@@ -118,14 +118,18 @@ Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownU
     return Departure{std::move(there), *to, *std::move(from)};
 }
 
-Result<PastNews> Past::news() const {
+Result<PastNews> Past::news(std::uint64_t after_entry) const {
     const auto file = open();
     if (!file)
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held.error();
-    PastNews news{.there = recording_of(**file), .path = (*file)->path(), .changes = {}};
-    auto changes = parameter_changes(**file);
+    PastNews news{.there = recording_of(**file),
+                  .path = (*file)->path(),
+                  .after_entry = after_entry,
+                  .last_entry = std::max(after_entry, (*file)->last_journal_entry()),
+                  .changes = {}};
+    auto changes = parameter_changes(**file, after_entry);
     if (!changes)
         return changes.error();
     news.changes = *std::move(changes);

@@ -43,8 +43,9 @@ struct KnownUntil {
 
 /// What a run that goes on has come to.
 struct PastNews {
-    simulation::Recording there; // past_of is left empty
-    std::string path;            // of its file
+    simulation::Recording there;                   // past_of is left empty
+    std::string path;                              // of its file
+    std::uint64_t after_entry = 0, last_entry = 0; // of the journal, between which the changes were looked for
     std::vector<ParameterChange> changes;
 };
 
@@ -70,7 +71,8 @@ class Past {
     base::Result<Departure> depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
                                    base::Executor& executor) const;
 
-    base::Result<PastNews> news() const;
+    /// after_entry  the journal's entries up to this one are known, and are not read again.
+    base::Result<PastNews> news(std::uint64_t after_entry) const;
 
     /// Its file, wherever it is now, to be read.
     base::Result<std::unique_ptr<RunFile>> open() const;

@@ -36,8 +36,8 @@ std::optional<simulation::Command> command_of(const std::string& request) {
 
 } // namespace
 
-Result<std::vector<ParameterChange>> parameter_changes(RunFile& file) {
-    const auto journal = file.journal();
+Result<std::vector<ParameterChange>> parameter_changes(RunFile& file, std::uint64_t after_entry) {
+    const auto journal = file.journal(after_entry + 1);
     if (!journal)
         return journal.error();
     std::vector<ParameterChange> changes;

@@ -23,7 +23,9 @@ struct ParameterChange {
 };
 
 /// Those of a file's journal, in order of ticks. Refused where an entry is no command, or earlier than the one before.
-base::Result<std::vector<ParameterChange>> parameter_changes(RunFile& file);
+///
+/// after_entry  the entries up to this one are not read.
+base::Result<std::vector<ParameterChange>> parameter_changes(RunFile& file, std::uint64_t after_entry = 0);
 
 /// What was asked of a world's parameters from some moment on, and when.
 class ComingChanges {
@@ -45,6 +47,8 @@ class ComingChanges {
     /// Makes those that came after the tick at which the world is now, up to the journal's entry `last`; none any more
     /// once there is a fault.
     void make_due(simulation::World& world, std::uint64_t last = ~std::uint64_t{0});
+    /// Number of the last entry of the journal that asked for one that was taken in.
+    std::uint64_t last_entry() const { return last_entry_; }
     /// That a change cannot have been accepted with the parameters that held then: the file is damaged.
     const std::optional<base::Refusal>& fault() const { return fault_; }
 

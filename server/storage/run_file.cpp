@@ -1,8 +1,10 @@
 #include "server/storage/run_file.h"
 
+#include "server/files/regular_file.h"
 #include "server/simulation/experiment.h"
 #include "server/storage/checkpoint.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/write_ahead_log.h"
 
 #include <sys/stat.h>
 
@@ -10,6 +12,8 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <ranges>
+#include <set>
 #include <utility>
 
 namespace evod::storage {
@@ -91,6 +95,93 @@ std::string statistics_table(const char* table) {
         sql += name + (std::is_floating_point_v<decltype(value)> ? " REAL" : " INTEGER") + " NOT NULL, ";
     });
     return sql + "checksum INTEGER NOT NULL, PRIMARY KEY (generation, island)) STRICT;";
+}
+
+/// Every table of the present format.
+void create_all_tables(Database& database) {
+    database.run(R"(
+CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE first_population (island INTEGER PRIMARY KEY, organism_count INTEGER NOT NULL, chromosomes BLOB NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE parameters (number INTEGER PRIMARY KEY, revision INTEGER NOT NULL, active TEXT NOT NULL,
+    requested TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE journal (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, client TEXT NOT NULL,
+    client_key TEXT NOT NULL, request_id INTEGER NOT NULL, request BLOB NOT NULL, answer BLOB NOT NULL,
+    endless INTEGER NOT NULL, until_generation INTEGER, until_tick INTEGER, paused INTEGER NOT NULL, speed REAL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE generation (generation INTEGER PRIMARY KEY, first_tick INTEGER NOT NULL, simulated_s REAL NOT NULL,
+    parameters INTEGER NOT NULL, generations_over INTEGER NOT NULL, stagnant INTEGER NOT NULL,
+    best_fitness REAL NOT NULL, last_best_fitness REAL NOT NULL, last_died_out INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE population (generation INTEGER NOT NULL, island INTEGER NOT NULL, organism_count INTEGER NOT NULL,
+    elite_count INTEGER NOT NULL, survivor_count INTEGER NOT NULL, clamped_count INTEGER NOT NULL,
+    chromosomes BLOB NOT NULL, parents BLOB NOT NULL, checksum INTEGER NOT NULL,
+    PRIMARY KEY (generation, island)) STRICT;
+CREATE TABLE outcome (generation INTEGER NOT NULL, island INTEGER NOT NULL, fitness BLOB NOT NULL,
+    lived_ticks BLOB NOT NULL, cause BLOB NOT NULL, checksum INTEGER NOT NULL,
+    PRIMARY KEY (generation, island)) STRICT;
+CREATE TABLE state_hash (tick INTEGER PRIMARY KEY, low INTEGER NOT NULL, high INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE thinned (number INTEGER PRIMARY KEY, keep_every INTEGER NOT NULL, until_generation INTEGER NOT NULL,
+    until_tick INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEGER NOT NULL,
+    journal_entries INTEGER NOT NULL, generations INTEGER NOT NULL, links INTEGER NOT NULL,
+    checksum INTEGER NOT NULL) STRICT;
+)");
+    database.run(statistics_table("statistics").c_str());
+    database.run(statistics_table(inherited_statistics).c_str());
+    database.run(checkpoint_table);
+    database.run(part_table);
+    database.run(founders_table);
+    database.run(account_table_ddl().c_str());
+}
+
+/// A row of SQLite's table sqlite_schema.
+struct SchemaRow {
+    std::string type, name, table, sql;
+    friend auto operator<=>(const SchemaRow&, const SchemaRow&) = default;
+};
+using Schema = std::set<SchemaRow>;
+
+constexpr const char* all_of_schema = "SELECT type, name, tbl_name, sql FROM sqlite_schema";
+
+SchemaRow read_schema_row(const Statement& row) {
+    return {.type = row.text(0), .name = row.text(1), .table = row.text(2), .sql = row.text(3)};
+}
+
+/// Files from before a world could be given its first population do not have this table.
+constexpr std::string_view optional_table = "first_population";
+
+/// What a file of that format has in sqlite_schema. The text of every table has been the same in all formats that had
+/// it.
+Schema schema_of_format(std::int64_t format) {
+    static const Schema present = [] {
+        Database database{":memory:", Database::Mode::Write};
+        create_all_tables(database);
+        Schema schema;
+        for (Statement rows{database, all_of_schema}; rows.row();) {
+            schema.insert(read_schema_row(rows));
+        }
+        return schema;
+    }();
+    const auto first_format_of = [](const std::string& table) {
+        return table == "checkpoint_part" || table == account_table   ? 4
+               : table == "founders" || table == inherited_statistics ? 3
+               : table == "checkpoint"                                ? 2
+                                                                      : 1;
+    };
+    Schema schema = present;
+    std::erase_if(schema, [&](const SchemaRow& row) { return first_format_of(row.table) > format; });
+    return schema;
+}
+
+/// As a message names it: the table "run". The name may come from an untrusted file.
+std::string described(const SchemaRow& row) {
+    constexpr std::size_t name_bytes_max = 64;
+    std::string text = "the " + row.type.substr(0, name_bytes_max) + " \"" + row.name.substr(0, name_bytes_max) + '"';
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c >= 0x7f; }, '?');
+    return text;
 }
 
 template <class T>
@@ -329,7 +420,10 @@ Result<void> expect_file_with_one_name(const std::string& path) {
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is a link, and what it leads to may be another server's: put a copy in its place, or "
                               "name the folder of the file itself with --data");
-    if (S_ISREG(status.st_mode) && status.st_nlink > 1)
+    if (!S_ISREG(status.st_mode))
+        return refusal(RefusalCode::InvalidArgument,
+                       path + ": this is " + std::string{files::other_than_file(status.st_mode)} + ", not a run file");
+    if (status.st_nlink > 1)
         return refusal(RefusalCode::FailedPrecondition,
                        path + " has another name, a hard link, under which another server may write to it: remove "
                               "that name, or put a copy in the place of this one");
@@ -343,6 +437,8 @@ Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Op
         return there.error();
     if (auto one = expect_file_with_one_name(path); !one)
         return one.error();
+    if (auto sound = check_log(path, LogIndex::Unread); !sound) // past a damaged frame SQLite would read nothing
+        return sound.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
     if (auto read = file->read_identity(); !read)
         return read.error();
@@ -397,8 +493,10 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     const auto status = std::filesystem::status(path, error);
     if (!exists(status))
         return refusal(RefusalCode::NotFound, path + ": there is no such file");
-    if (is_directory(status))
-        return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file");
+    struct stat about {};
+    if (::stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode))
+        return refusal(RefusalCode::InvalidArgument,
+                       path + ": this is " + std::string{files::other_than_file(about.st_mode)} + ", not a run file");
     if (auto there = expect_bytes(path); !there)
         return there.error();
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
@@ -415,44 +513,38 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
     return file;
 }
 
+Result<std::unique_ptr<RunFile>> RunFile::open_checked(const std::string& path) {
+    if (auto sound = check_log(path, LogIndex::Read); !sound)
+        return sound.error();
+    return open_read_only(path);
+}
+
 void RunFile::create_tables() {
     database_.run(("PRAGMA application_id = " + std::to_string(application_id)).c_str());
     database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
-    database_.run(R"(
-CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE first_population (island INTEGER PRIMARY KEY, organism_count INTEGER NOT NULL, chromosomes BLOB NOT NULL,
-    checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE parameters (number INTEGER PRIMARY KEY, revision INTEGER NOT NULL, active TEXT NOT NULL,
-    requested TEXT NOT NULL, checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE journal (number INTEGER PRIMARY KEY, tick INTEGER NOT NULL, client TEXT NOT NULL,
-    client_key TEXT NOT NULL, request_id INTEGER NOT NULL, request BLOB NOT NULL, answer BLOB NOT NULL,
-    endless INTEGER NOT NULL, until_generation INTEGER, until_tick INTEGER, paused INTEGER NOT NULL, speed REAL,
-    checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE generation (generation INTEGER PRIMARY KEY, first_tick INTEGER NOT NULL, simulated_s REAL NOT NULL,
-    parameters INTEGER NOT NULL, generations_over INTEGER NOT NULL, stagnant INTEGER NOT NULL,
-    best_fitness REAL NOT NULL, last_best_fitness REAL NOT NULL, last_died_out INTEGER NOT NULL,
-    checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE population (generation INTEGER NOT NULL, island INTEGER NOT NULL, organism_count INTEGER NOT NULL,
-    elite_count INTEGER NOT NULL, survivor_count INTEGER NOT NULL, clamped_count INTEGER NOT NULL,
-    chromosomes BLOB NOT NULL, parents BLOB NOT NULL, checksum INTEGER NOT NULL,
-    PRIMARY KEY (generation, island)) STRICT;
-CREATE TABLE outcome (generation INTEGER NOT NULL, island INTEGER NOT NULL, fitness BLOB NOT NULL,
-    lived_ticks BLOB NOT NULL, cause BLOB NOT NULL, checksum INTEGER NOT NULL,
-    PRIMARY KEY (generation, island)) STRICT;
-CREATE TABLE state_hash (tick INTEGER PRIMARY KEY, low INTEGER NOT NULL, high INTEGER NOT NULL,
-    checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE thinned (number INTEGER PRIMARY KEY, keep_every INTEGER NOT NULL, until_generation INTEGER NOT NULL,
-    until_tick INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
-CREATE TABLE end_mark (number INTEGER PRIMARY KEY, how TEXT NOT NULL, tick INTEGER NOT NULL,
-    journal_entries INTEGER NOT NULL, generations INTEGER NOT NULL, links INTEGER NOT NULL,
-    checksum INTEGER NOT NULL) STRICT;
-)");
-    database_.run(statistics_table("statistics").c_str());
-    database_.run(statistics_table(inherited_statistics).c_str());
-    database_.run(checkpoint_table);
-    database_.run(part_table);
-    database_.run(founders_table);
-    database_.run(account_table_ddl().c_str());
+    create_all_tables(database_);
+}
+
+Result<void> RunFile::check_schema() {
+    const Schema expected = schema_of_format(format_);
+    Schema found;
+    for (Statement rows{database_, all_of_schema}; rows.row();) {
+        SchemaRow row = read_schema_row(rows);
+        if (!expected.contains(row)) {
+            return refusal(RefusalCode::DataLoss, path_ + " is not as evod wrote it: " + described(row) +
+                                                      " is none of a run file's, and could change what is read");
+        }
+        found.insert(std::move(row));
+    }
+    if (database_.failed()) {
+        return failure();
+    }
+    for (const SchemaRow& row : std::views::reverse(expected)) { // a table before its indices
+        if (!found.contains(row) && row.table != optional_table) {
+            return refusal(RefusalCode::DataLoss, path_ + " is damaged: it lacks " + described(row));
+        }
+    }
+    return {};
 }
 
 void RunFile::bring_up_to_date() {
@@ -518,6 +610,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
 }
 
 Result<void> RunFile::read_identity() {
+    database_.run("BEGIN"); // a server may bring the file to another format meanwhile
     const std::int64_t application = database_.number("PRAGMA application_id");
     const std::int64_t format = format_ = database_.number("PRAGMA user_version");
     if (database_.failed())
@@ -530,6 +623,10 @@ Result<void> RunFile::read_identity() {
         return refusal(RefusalCode::FailedPrecondition, path_ + " was written by a newer evod: its format is version " +
                                                             std::to_string(format) + ", this evod reads up to " +
                                                             std::to_string(format_version));
+    // Before anything else is read: a view or a trigger may have the name of a table, or hang on one.
+    if (auto sound = check_schema(); !sound) {
+        return sound;
+    }
     // SQLite takes a last page that has been cut for one that ends in zeros. Where there is a write-ahead log, the page
     // may be whole there.
     const auto size_of = [](const std::string& path) {
@@ -610,11 +707,15 @@ Result<void> RunFile::read_identity() {
                 .c_str()));
     if (auto read = read_first_population(); !read)
         return read;
-    return read_thinning();
+    if (auto read = read_thinning(); !read)
+        return read;
+    database_.run("COMMIT");
+    if (database_.failed())
+        return failure();
+    return {};
 }
 
 Result<void> RunFile::read_first_population() {
-    // Files of before there were such runs have no such table.
     if (database_.number("SELECT count(*) FROM sqlite_schema WHERE name = 'first_population'") == 0)
         return {};
     std::vector<evolution::GeneMatrix> islands;
@@ -1170,9 +1271,9 @@ std::uint64_t RunFile::last_tick() {
     // A generation that was bred is written down once its first tick is over; the run's first is there before.
     const std::string bred =
         "SELECT max(first_tick + 1) FROM generation WHERE generation > " + std::to_string(identity_.first_generation);
-    for (const char* sql :
-         {"SELECT max(tick) FROM journal", "SELECT max(tick) FROM state_hash", "SELECT max(first_tick) FROM generation",
-          bred.c_str(), "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
+    for (const char* sql : {"SELECT tick FROM journal ORDER BY number DESC LIMIT 1", "SELECT max(tick) FROM state_hash",
+                            "SELECT max(first_tick) FROM generation", bred.c_str(),
+                            "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
         last = std::max(last, database_.number(sql));
     if (format_ >= 2)
         last = std::max(last, database_.number("SELECT max(tick) FROM checkpoint"));

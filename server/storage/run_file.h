@@ -75,6 +75,8 @@ class RunFile {
     static base::Result<void> remove(const std::string& path);
     /// To be looked at, while a server writes to it too.
     static base::Result<std::unique_ptr<RunFile>> open_read_only(const std::string& path);
+    /// The same, unless its write-ahead log is damaged; not where this process has the file open already.
+    static base::Result<std::unique_ptr<RunFile>> open_checked(const std::string& path);
 
     const std::string& path() const { return path_; }
     const RunIdentity& identity() const { return identity_; }
@@ -188,6 +190,8 @@ class RunFile {
     void bring_up_to_format_4();
     void write_identity(const RunIdentity& identity);
     base::Result<void> read_identity();
+    /// Whether the file has the tables of its format, and nothing else: no trigger, view or index that others made.
+    base::Result<void> check_schema();
     base::Result<void> check_checkpoints(const EndMark& found);
     base::Result<std::vector<StoredCheckpoint>> checkpoints_where(const std::string& condition,
                                                                   const std::vector<std::int64_t>& where);

@@ -1,6 +1,7 @@
 // Any bytes as a run file: read, checked and exported, or refused. What the bytes are is said by the first of them: the
-// file itself; bytes to change in a sound file; or columns to change in its rows, which get their checksums; and
-// whether that file is of a run from its first generation on, of a fork, or of the format before.
+// file itself; bytes to change in a sound file; columns to change in its rows, which get their checksums; or the text
+// of a trigger, view or index that the file is given, and with which it must be refused; and whether that file is of a
+// run from its first generation on, of a fork, or of the format before.
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"
 #include "server/console/export.h"
@@ -204,6 +205,28 @@ void change_row(sqlite3* database, Bytes& bytes) {
     sqlite3_finalize(read);
 }
 
+/// Gives the file a trigger, view or index. Returns whether it has one now.
+bool add_to_schema(sqlite3* database, Bytes& bytes) {
+    const auto count = [&] {
+        sqlite3_stmt* rows = nullptr;
+        require(sqlite3_prepare_v2(database, "SELECT count(*) FROM main.sqlite_schema", -1, &rows, nullptr) ==
+                    SQLITE_OK &&
+                sqlite3_step(rows) == SQLITE_ROW);
+        const int found = sqlite3_column_int(rows, 0);
+        sqlite3_finalize(rows);
+        return found;
+    };
+    const int before = count();
+    constexpr const char* kinds[] = {"CREATE TRIGGER ", "CREATE VIEW ", "CREATE INDEX ", "CREATE UNIQUE INDEX "};
+    std::string sql = kinds[take<std::uint8_t>(bytes) % std::size(kinds)];
+    sql.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    sqlite3_stmt* statement = nullptr; // the first of the text alone
+    if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK)
+        sqlite3_step(statement);
+    sqlite3_finalize(statement);
+    return count() != before;
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -212,6 +235,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Bytes bytes{data, size};
     const auto kind = take<std::uint8_t>(bytes);
     const std::string& sound = place.sound[kind / 3 % place.sound.size()];
+    bool foreign = false;
     switch (kind % 3) {
     case 0:
         place.put(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -229,12 +253,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         place.put(sound.data(), sound.size());
         sqlite3* database = nullptr;
         require(sqlite3_open(place.path.c_str(), &database) == SQLITE_OK);
-        while (!bytes.empty())
+        if (kind >= 128)
+            foreign = add_to_schema(database, bytes);
+        while (!foreign && !bytes.empty())
             change_row(database, bytes);
         sqlite3_close(database);
     }
     }
     if (const auto file = storage::RunFile::open_read_only(place.path)) {
+        require(!foreign);
         (void)(*file)->check();
         (void)(*file)->history((*file)->last_generation() + 1, simulation::World::history_generations_kept);
         (void)(*file)->journal((*file)->contents().journal_entries);

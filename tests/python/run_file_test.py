@@ -101,6 +101,17 @@ class RunFiles(unittest.TestCase):
         with self.assertRaisesRegex(evod.DamagedData, "is no run file"):
             evod.open_run(other)
 
+    def test_a_view_in_the_place_of_a_table_is_refused(self):
+        path = self.folder / "view.evod"
+        shutil.copy(self.path, path)
+        with sqlite3.connect(path) as file:
+            file.execute("DROP TABLE run")
+            file.execute("CREATE VIEW run AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
+                         "SELECT i AS key, i AS value FROM n")
+        file.close()
+        with self.assertRaisesRegex(evod.DamagedData, "view.evod is not as evod wrote it: it has the view 'run'"):
+            evod.open_run(path)
+
     def test_damage_is_an_error_of_ours(self):
         for table, column in (("population", "chromosomes"), ("population", "parents"), ("outcome", "fitness")):
             path = self.folder / "damaged.evod"

@@ -494,6 +494,54 @@ class Recovery(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
 
+    def test_a_damaged_log_is_refused_and_one_that_is_cut_off_is_not(self):
+        server, commands = self.serve("--seed", "5"), 8
+        with Client(server, "k") as client:
+            for i in range(1, commands + 1):
+                self.assertEqual(client.call(i, **set_parameter("food_health", i)).status.code, 0)
+        server.kill()
+        log, killed = pathlib.Path(self.data, "default.evod-wal"), tempfile.mkdtemp(dir=self.data)
+        for name in "default.evod", log.name, "default.evod-shm":
+            shutil.copy(f"{self.data}/{name}", killed)
+        sound, head, frame = log.read_bytes(), 32, 24 + 4096
+        frames = (len(sound) - head) // frame
+
+        def put_back(bytes):
+            for name in "default.evod", log.name, "default.evod-shm":  # new files, as SQLite knows those it has seen
+                pathlib.Path(self.data, name).unlink(missing_ok=True)
+                shutil.copy(f"{killed}/{name}", self.data)
+            log.write_bytes(bytes)
+
+        def flipped(byte):
+            return sound[:byte] + bytes([sound[byte] ^ 16]) + sound[byte + 1:]
+
+        def requests_kept():
+            return [row[3] for row in journal(self.data) if row[2] == "k"]
+        for byte in (18, head + 6, head + 9, *(head + i * frame + 2000 for i in range(0, frames, 3)), len(sound) - 100):
+            for words in (["--port", "0", "--data", self.data], ["verify", f"{self.data}/default.evod"],
+                          ["export", f"{self.data}/default.evod", "--what", "events"]):
+                put_back(flipped(byte))
+                refused = waiting.run([evod, *words], capture_output=True, text=True)
+                self.assertEqual(refused.returncode, 1, (byte, words))
+                begins = byte - (byte - head) % frame if byte >= head else 0
+                self.assertIn(f"{log} is damaged at byte {begins}: ", refused.stderr)
+        # The way out that it names.
+        put_back(flipped(head + frames // 2 * frame + 2000))
+        refused = waiting.run([evod, "--port", "0", "--data", self.data], capture_output=True, text=True)
+        subprocess.run(re.search(r"truncate -s \d+ \S+-wal", refused.stderr)[0].split(), check=True)
+        self.serve().end()
+        kept = requests_kept()
+        self.assertEqual(kept, list(range(1, len(kept) + 1)))
+        self.assertLess(len(kept), commands)
+        # As a kill in the midst of the last write leaves it.
+        for bytes_left in (len(sound) - 1, len(sound) - frame // 2, len(sound) - frame):
+            put_back(sound[:bytes_left])
+            self.serve().end()
+            self.assertEqual(requests_kept(), list(range(1, commands)))
+        put_back(sound)
+        self.serve().end()
+        self.assertEqual(requests_kept(), list(range(1, commands + 1)))
+
     def test_a_run_file_with_a_name_of_no_world_is_left_alone(self):
         strange = pathlib.Path(self.data, "my run.evod")
         strange.write_text("not ours")

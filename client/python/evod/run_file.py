@@ -54,13 +54,20 @@ class RunFile:
         if not os.access(self.path.resolve().parent, os.W_OK):
             address += "&immutable=1"
         self._database = sqlite3.connect(address, uri=True, check_same_thread=False)
+        self._database.execute("PRAGMA trusted_schema = OFF")
+        foreign: tuple[Any, ...] | None = None
         try:
+            # A view in the place of a table could run without end.
+            foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"), None)
+            if foreign:
+                raise DamagedData("")  # named below
             self.about: Mapping[str, str] = {key: value for key, value in self._rows("SELECT key, value FROM run")}
             self.name, self.run_id = self.about["name"], self.about["run_id"]
             self.seed = int(self.about["seed"])
         except (DamagedData, KeyError, ValueError):
             self._database.close()
-            raise DamagedData(f"{self.path} is no run file") from None
+            why = f"not as evod wrote it: it has the {foreign[0]} {foreign[1]!r}" if foreign else "no run file"
+            raise DamagedData(f"{self.path} is {why}") from None
 
     def __repr__(self) -> str:
         return f"<run of {self.name} in {self.path}, seed {self.seed}, {self.last_generation} generations begun>"

@@ -2,44 +2,9 @@
 #include "server/base/inline_executor.h"
 #include "server/simulation/experiment.h"
 #include "server/simulation/world.h"
+#include "tests/unit/simulation/counted_allocations.h"
 
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <new>
-
-// g++ does not see that both halves of a pair are replaced.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-
-namespace {
-std::size_t allocations = 0; // by this program, which has one thread
-}
-
-void* operator new(std::size_t size) {
-    ++allocations;
-    if (void* memory = std::malloc(size > 0 ? size : 1))
-        return memory;
-    throw std::bad_alloc{};
-}
-void* operator new(std::size_t size, std::align_val_t alignment) {
-    ++allocations;
-    const auto align = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align))
-        return memory;
-    throw std::bad_alloc{};
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
-}
 
 namespace evod::simulation {
 namespace {
@@ -53,9 +18,9 @@ TEST_P(AWarmTick, AllocatesNothing) {
     while (world.moment().generation < 2 || world.moment().generation_tick < 300)
         world.advance_tick(executor);
     for (int tick = 0; tick < 300; ++tick) {
-        const std::size_t before = allocations;
+        const std::size_t before = tests::allocations;
         world.advance_tick(executor);
-        ASSERT_EQ(allocations, before) << "in tick " << world.moment().generation_tick;
+        ASSERT_EQ(tests::allocations, before) << "in tick " << world.moment().generation_tick;
     }
     ASSERT_EQ(world.moment().generation, 2u);
 }

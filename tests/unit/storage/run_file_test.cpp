@@ -44,6 +44,43 @@ class RunFileTest : public testing::Test {
     TemporaryFolder folder;
 };
 
+TEST_F(RunFileTest, WhatOthersPutIntoTheSchemaIsRefused) {
+    const std::string path = recorded(), sound = content_of(path);
+    const std::string endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT ";
+    const std::pair<const char*, std::string> additions[] = {
+        {"trigger \"forget\"",
+         "CREATE TRIGGER forget AFTER INSERT ON journal BEGIN DELETE FROM journal WHERE number = new.number; END"},
+        {"trigger \"ignore\"", "CREATE TRIGGER ignore BEFORE INSERT ON journal BEGIN SELECT raise(IGNORE); END"},
+        {"view \"founders\"", "DROP TABLE founders; CREATE VIEW founders AS " + endless +
+                                  "i AS generation, i AS island, x'' AS founders, i AS checksum FROM n"},
+        {"view \"run\"",
+         "DROP TABLE run; CREATE VIEW run AS " + endless + "i AS key, i AS value, i AS checksum FROM n"},
+        {"view \"other\"", "CREATE VIEW other AS SELECT 1"},
+        {"index \"quick\"", "CREATE INDEX quick ON journal (tick)"},
+        {"table \"songs\"", "CREATE TABLE songs (title TEXT)"},
+        {"table \"thinned\"", "DROP TABLE thinned; CREATE TABLE thinned (number INTEGER PRIMARY KEY, keep_every, "
+                              "until_generation, until_tick, checksum AS (number))"}};
+    for (const auto& [name, sql] : additions) {
+        put(path, sound);
+        change(path, sql);
+        for (const auto& refused : {RunFile::open_read_only(path), RunFile::open(path, {})}) {
+            ASSERT_FALSE(refused) << sql;
+            EXPECT_EQ(refused.error().code, RefusalCode::DataLoss);
+            EXPECT_THAT(refused.error().message, HasSubstr(path));
+            EXPECT_THAT(refused.error().message, HasSubstr(name));
+        }
+    }
+}
+
+TEST_F(RunFileTest, ATableThatIsMissingIsNamed) {
+    const std::string path = recorded();
+    change(path, "DROP TABLE outcome");
+    const auto refused = RunFile::open_read_only(path);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, RefusalCode::DataLoss);
+    EXPECT_THAT(refused.error().message, HasSubstr("it lacks the table \"outcome\""));
+}
+
 TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     const RunIdentity identity{.name = "w",
                                .run_id = {0x0123456789abcdef, 0xfedcba9876543210},

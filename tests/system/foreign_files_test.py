@@ -1,0 +1,119 @@
+"""Files that others have made: pipes, devices and endless ones in the place of files, and run files with SQL of their own.
+evod refuses them at once and names them. EVOD names the program.
+"""
+import os
+import pathlib
+import shutil
+import sqlite3
+import subprocess
+import tempfile
+import unittest
+
+import waiting
+
+EVOD = os.environ["EVOD"]
+ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+
+
+class ForeignFiles(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.pipe = self.folder / "pipe"
+        os.mkfifo(self.pipe)
+
+    def assert_refused(self, *arguments, words):
+        done = waiting.run([EVOD, *map(str, arguments)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        self.assertEqual(done.returncode, 1, arguments)
+        self.assertIn(words, done.stderr)
+        self.assertLess(len(done.stderr), 1000)
+
+    def serve(self, *options):
+        return ["--port", "0", "--data", self.folder / "data", *options]
+
+    def test_what_is_no_file_is_refused_wherever_a_file_is_named(self):
+        out = ["--out", self.folder / "out"]
+        for path, kind in (self.pipe, "a pipe"), ("/dev/zero", "a device"), (self.folder, "a folder"):
+            for arguments, file in (
+                    (["run", path], "an experiment file"),
+                    (["run", "--population", path], "a population file"),
+                    (["check", path], "an experiment file"),
+                    (["compare", path, "--controls"], "an experiment file"),
+                    (["sweep", path, *out], "a sweep file"),
+                    (["verify", path], "a run file"),
+                    (["export", path, "--what", "events"], "a run file"),
+                    (["fork", path, "--name", "w", "--data", self.folder / "data"], "a run file"),
+                    (["replay", path, "--port", "0"], "a run file"),
+                    (self.serve("--experiment", path), "an experiment file"),
+                    (self.serve("--population", path), "a population file")):
+                with self.subTest(arguments):
+                    self.assert_refused(*arguments, words=f"{path}: this is {kind}, not {file}")
+
+    def test_a_sweep_refuses_an_endless_experiment(self):
+        sweep = self.folder / "sweep.json"
+        for path, kind in (self.pipe, "a pipe"), ("/dev/zero", "a device"):
+            sweep.write_text('{"experiment": "%s", "list": [{}]}' % path)
+            self.assert_refused("sweep", sweep, "--out", self.folder / "out",
+                                words=f"{path}: this is {kind}, not an experiment file")
+
+    def test_a_pipe_among_the_files_of_a_server_is_refused(self):
+        data = self.folder / "data"
+        data.mkdir()
+        for name, file in ("tokens", "a file of tokens"), ("w.evod", "a run file"):
+            os.mkfifo(data / name, 0o600)
+            self.assert_refused(*self.serve(), words=f"{data / name}: this is a pipe, not {file}")
+            os.remove(data / name)
+
+    def test_certificates_that_are_no_files_are_refused(self):
+        waiting.run([EVOD, "certificate", "localhost"], capture_output=True, check=True, cwd=self.folder)
+        certificate, key = self.folder / "evod.crt", self.folder / "evod.key"
+        os.chmod(self.pipe, 0o600)
+        endless = self.folder / "endless"  # a link to a device
+        endless.symlink_to("/dev/zero")
+        for options, path, kind in ((["--tls-cert", self.pipe, "--tls-key", key], self.pipe, "a pipe"),
+                                    (["--tls-cert", endless, "--tls-key", key], endless, "a device"),
+                                    (["--tls-cert", certificate, "--tls-key", self.pipe], self.pipe, "a pipe"),
+                                    (["--tls-cert", certificate, "--tls-key", key, "--tls-client-ca", endless], endless,
+                                     "a device")):
+            self.assert_refused(*self.serve(*options), words=f"{path}: this is {kind}, not a PEM file")
+
+    def test_a_file_that_is_too_large_is_refused(self):
+        large = self.folder / "large"
+        with open(large, "wb") as file:
+            file.truncate(1 << 40)
+        for arguments, file, most in ((["check", large], "an experiment file", "1 MiB"),
+                                      (["run", "--population", large], "a population file", "1024 MiB"),
+                                      (["sweep", large, "--out", self.folder / "out"], "a sweep file", "1 MiB")):
+            self.assert_refused(*arguments, words=f"{large}: too large for {file} ({most} at most)")
+
+    def test_sql_in_a_run_file_is_refused_and_not_run(self):
+        server = subprocess.Popen([EVOD, *map(str, self.serve("--seed", "7"))], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(server.stdout.close)
+        for line in server.stdout:
+            if "listening on" in line:
+                break
+        server.terminate()
+        self.assertEqual(waiting.ended(server), 0)
+        sound, path = self.folder / "sound.evod", self.folder / "data" / "default.evod"
+        shutil.copy(path, sound)
+        for kind, name, *statements in (
+                ("trigger", "t", "CREATE TRIGGER t AFTER INSERT ON journal BEGIN "
+                                 "DELETE FROM journal WHERE number = new.number; END"),
+                ("trigger", "t", "CREATE TRIGGER t BEFORE INSERT ON journal BEGIN SELECT raise(IGNORE); END"),
+                ("view", "founders", "DROP TABLE founders", f"CREATE VIEW founders AS {ENDLESS} "
+                                     "SELECT i AS generation, i AS island, x'' AS founders, i AS checksum FROM n"),
+                ("view", "run", "DROP TABLE run",
+                 f"CREATE VIEW run AS {ENDLESS} SELECT 'a' AS key, 'b' AS value, i AS checksum FROM n"),
+                ("index", "i", "CREATE INDEX i ON journal (tick)")):
+            shutil.copy(sound, path)
+            with sqlite3.connect(path) as run:
+                for statement in statements:
+                    run.execute(statement)
+            run.close()
+            for arguments in (["verify", path], ["export", path, "--what", "events"], self.serve(), ["replay", path]):
+                self.assert_refused(*arguments, words=f'{path} is not as evod wrote it: the {kind} "{name}"')
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,92 @@
+#include "server/files/regular_file.h"
+
+#include <gmock/gmock.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace evod::files {
+namespace {
+
+using base::RefusalCode;
+using testing::HasSubstr;
+
+class RegularFileTest : public testing::Test {
+  protected:
+    RegularFileTest() {
+        std::string name = (std::filesystem::temp_directory_path() / "evod_XXXXXX").string();
+        EXPECT_NE(::mkdtemp(name.data()), nullptr);
+        folder = name;
+        path = folder + "/file";
+    }
+    ~RegularFileTest() override { std::filesystem::remove_all(folder); }
+
+    void write(const std::string& bytes) const { std::ofstream{path, std::ios::binary} << bytes; }
+
+    std::string folder, path;
+};
+
+TEST_F(RegularFileTest, IsReadWhole) {
+    const std::string bytes(200'000, 'x');
+    write(bytes);
+    EXPECT_EQ(*read_file(path, "a text", 1 << 20), bytes);
+    EXPECT_EQ(*read_file(path, "a text", bytes.size()), bytes);
+    write("");
+    EXPECT_EQ(*read_file(path, "a text", 0), "");
+}
+
+TEST_F(RegularFileTest, IsReadWhereTheKernelSaysItIsEmpty) {
+    EXPECT_THAT(*read_file("/proc/self/stat", "a text", 1 << 20), HasSubstr(std::to_string(::getpid())));
+}
+
+TEST_F(RegularFileTest, OneThatIsTooLargeIsRefused) {
+    write("12345");
+    const auto refused = read_file(path, "a text", 4);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, RefusalCode::InvalidArgument);
+    EXPECT_EQ(refused.error().message, path + ": too large for a text (4 bytes at most)");
+    EXPECT_THAT(read_file("/proc/self/stat", "a text", 4).error().message, HasSubstr("too large"));
+}
+
+TEST_F(RegularFileTest, WhatIsNoFileIsRefusedAtOnce) {
+    ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+    for (const auto& [named, kind] :
+         {std::pair{path, "a pipe"}, {folder, "a folder"}, {std::string{"/dev/zero"}, "a device"}}) {
+        const auto refused = read_file(named, "a text", 1 << 20);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, RefusalCode::InvalidArgument);
+        EXPECT_EQ(refused.error().message, named + ": this is " + kind + ", not a text");
+    }
+}
+
+TEST_F(RegularFileTest, OneThatIsMissingIsNotFound) {
+    const auto refused = read_file(path, "a text", 1);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, RefusalCode::NotFound);
+    EXPECT_EQ(refused.error().message, path + ": cannot be read: No such file or directory");
+}
+
+TEST_F(RegularFileTest, ALinkIsFollowedUnlessItIsRefused) {
+    write("1");
+    const std::string link = folder + "/link";
+    std::filesystem::create_symlink(path, link);
+    EXPECT_TRUE(RegularFile::open(link, "a text"));
+    EXPECT_FALSE(RegularFile::open(link, "a text", Links::Refused));
+}
+
+TEST_F(RegularFileTest, ReadsFromAnyOffset) {
+    write("0123456789");
+    const auto file = RegularFile::open(path, "a text");
+    ASSERT_TRUE(file);
+    char bytes[4];
+    const auto into = std::as_writable_bytes(std::span{bytes});
+    EXPECT_EQ(file->read_at(3, into), 4u);
+    EXPECT_EQ(std::string(bytes, 4), "3456");
+    EXPECT_EQ(file->read_at(8, into), 2u);
+    EXPECT_EQ(file->read_at(20, into), 0u);
+}
+
+} // namespace
+} // namespace evod::files
