@@ -80,7 +80,7 @@ void begin_log(ServeOptions& options) {
 }
 
 /// Exit status of a program for which there was not enough memory.
-constexpr int exit_out_of_memory = 3;
+constexpr int exit_out_of_memory = 3, exit_not_written = 4;
 
 /// Given back before the last message is written, which needs some memory itself.
 std::unique_ptr<char[]> memory_for_last_message;
@@ -163,9 +163,9 @@ int serve(network::ServerOptions options) {
     const auto seed = (*server)->first_seed();
     log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
               seed ? ", world \"" + first_world + "\", seed " + std::to_string(seed->value) : replay);
-    (*server)->run();
+    const bool all_written = (*server)->run();
     log::info("stopped");
-    return 0;
+    return all_written ? 0 : exit_not_written;
 }
 
 constexpr WholeNumber port_number{0, 65535};

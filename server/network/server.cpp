@@ -39,6 +39,9 @@ std::string differences_of(const simulation::Parameters& there, const simulation
 
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
+    // From now on, also while worlds are brought back: they are obeyed once the server runs.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+        server->signals_.add(signal);
     if (server->options_.replay) {
         auto replay = runtime::TimeTravel::replay_of(server->options_.replay->path, server->options_.replay->generation,
                                                      *server->executor_);
@@ -74,9 +77,6 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     if (auto opened = server->open_http(); !opened)
         return opened.error();
     std::signal(SIGPIPE, SIG_IGN); // whoever read the log may go; the server stays
-    // From now on: whoever reads that the server listens may send them.
-    server->signals_.add(SIGINT);
-    server->signals_.add(SIGTERM);
     return server;
 }
 
@@ -110,7 +110,10 @@ Server::Server(ServerOptions options)
     };
 }
 
-Server::~Server() = default;
+Server::~Server() {
+    if (stopping_.joinable())
+        stopping_.join();
+}
 
 base::Result<void> Server::open_archive() {
     const std::string& path = options_.data_folder;
@@ -220,7 +223,7 @@ void Server::begin_first_world() {
     }
 }
 
-void Server::run() {
+bool Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
         static_assert(storage::Archive::answers_kept_of_ended == retries_kept &&
@@ -249,18 +252,35 @@ void Server::run() {
         },
         std::move(worlds), archive_ ? &archive_->recorder() : nullptr, std::exchange(replay_, std::nullopt));
 
-    signals_.async_wait([this](boost::system::error_code error, int signal) {
-        if (error)
-            return;
-        log::info("{}: going away", signal == SIGINT ? "SIGINT" : "SIGTERM");
-        go_away();
-    });
+    wait_for_signal();
     look_around();
     asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
                    detached);
     if (http_)
         http_->start();
     context_.run();
+    if (stopping_.joinable())
+        stopping_.join();
+    return all_written_;
+}
+
+void Server::wait_for_signal() {
+    signals_.async_wait([this](boost::system::error_code error, int signal) {
+        if (error)
+            return;
+        const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
+        if (signal == SIGHUP) {
+            log::info("SIGHUP: ignored; a changed token file is read without it, and a new certificate needs a restart");
+        } else if (!going_away_) {
+            log::info("{}: going away", name);
+            go_away();
+        } else {
+            log::warn("{} again: ends at once; worlds go on from what is on the disk when the server starts again", name);
+            signals_.remove(signal); // what the signal does by itself is to end the process
+            std::raise(signal);
+        }
+        wait_for_signal();
+    });
 }
 
 void Server::stop() {
@@ -369,19 +389,24 @@ void Server::deliver() {
 void Server::go_away() {
     if (std::exchange(going_away_, true))
         return;
-    signals_.cancel();
     look_timer_.cancel();
     listener_->close();
     pulse_.stop();
     if (http_)
         http_->close();
     dispatcher_.refuse_all();
-    // What was admitted is still answered.
-    simulation_->stop();
-    if (archive_)
-        archive_->close();
-    deliver();
-    streams_.say_goodbye();
+    streams_.announce_end();
+    // On a thread of its own, so that sessions are served meanwhile: what was admitted is still answered.
+    stopping_ = std::thread{[this, work = asio::make_work_guard(context_)] {
+        simulation_->stop();
+        const bool all_written = !archive_ || archive_->close();
+        asio::post(context_, [this, all_written] {
+            all_written_ = all_written;
+            signals_.cancel();
+            deliver();
+            streams_.end_sessions();
+        });
+    }};
 }
 
 } // namespace evod::network

@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace evod::network {
@@ -69,8 +70,11 @@ class Server {
         return http_ ? std::optional{http_->endpoint()} : std::nullopt;
     }
 
-    /// Serves until SIGINT, SIGTERM or stop(): then says goodbye to every session, and returns.
-    void run();
+    /// Serves until SIGINT, SIGTERM or stop(): then tells every session, answers what was asked, and returns. A second signal
+    /// ends the process at once.
+    ///
+    /// returns  false: some of what worlds did could not be written to the disk; the log says what.
+    bool run();
 
     /// From any thread.
     void stop();
@@ -91,6 +95,7 @@ class Server {
     void relieve();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
+    void wait_for_signal();
     void go_away();
     /// What it counts and measures.
     v1::Metrics metrics();
@@ -127,7 +132,8 @@ class Server {
     Streams streams_;
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses
-    bool going_away_ = false;
+    bool going_away_ = false, all_written_ = true;
+    std::thread stopping_; // of the simulation and the archive
 };
 
 } // namespace evod::network

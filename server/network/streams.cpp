@@ -317,15 +317,18 @@ void Streams::deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point n
         show(picture, now);
 }
 
-void Streams::say_goodbye() {
+void Streams::announce_end() {
     v1::Event event;
     event.mutable_server_going_away();
     const SharedBytes frame = encode_event(std::move(event));
-    for (const auto& [number, session] : sessions_) {
+    for (const auto& [number, session] : sessions_)
         if (session->greeted())
             session->event(frame);
+}
+
+void Streams::end_sessions() {
+    for (const auto& [number, session] : sessions_)
         session->finish();
-    }
 }
 
 } // namespace evod::network

@@ -46,8 +46,10 @@ class Streams {
     /// What has come from there.
     void deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point now);
     void tell(v1::Event event);
-    /// Tells all sessions that the server goes away, and ends them.
-    void say_goodbye();
+    /// Tells all sessions that the server goes away.
+    void announce_end();
+    /// Ends them, once they have read what waits for them.
+    void end_sessions();
 
   private:
     void update_demand();

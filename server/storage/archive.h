@@ -41,8 +41,12 @@ class Archive {
     /// nullptr once it is closed.
     StorageThread* thread() { return thread_.get(); }
     Recorder& recorder() { return *recorder_; }
-    /// Writes what waits, as far as that can be done now; once the recorder is used no more.
-    void close() { thread_.reset(); }
+    /// Writes what waits, as far as that can be done now; once the recorder is used no more. false: not all could be.
+    bool close() {
+        const bool all_written = thread_->finish();
+        thread_.reset();
+        return all_written;
+    }
 
   private:
     Archive(DataFolder folder, const RunFile::Options& options);

@@ -74,12 +74,19 @@ StorageThread::StorageThread(RunFile::Options options, std::chrono::milliseconds
     : options_{options}, retry_after_{retry_after}, thread_{[this] { work(); }} {}
 
 StorageThread::~StorageThread() {
-    {
-        const std::lock_guard lock{mutex_};
-        stopping_ = true;
+    finish();
+}
+
+bool StorageThread::finish() {
+    if (thread_.joinable()) {
+        {
+            const std::lock_guard lock{mutex_};
+            stopping_ = true;
+        }
+        changed_.notify_one();
+        thread_.join();
     }
-    changed_.notify_one();
-    thread_.join();
+    return !lost_;
 }
 
 std::vector<StorageThread::Item> StorageThread::items_of(Batch batch) {
@@ -244,7 +251,9 @@ void StorageThread::work() {
             }
             set_trouble({});
         }
-        if (stopping && (failed_ || (!more && !is_awaiting()))) {
+        // What fails is given up only when nothing else can be written any more.
+        const bool advanced = std::exchange(advanced_, false);
+        if (stopping && !more && !is_awaiting() && !(failed_ && advanced)) {
             if (failed_)
                 say_what_is_lost();
             return;
@@ -262,7 +271,8 @@ bool StorageThread::take(bool more) {
             return urgent_ || !packed_.empty() || !copied_.empty() || (stopping_ && away_ == 0);
         };
         if (failed_) {
-            changed_.wait_for(lock, retry_after_, [this] { return stopping_; });
+            changed_.wait_for(lock, retry_after_,
+                              [this] { return stopping_ && (away_ == 0 || !packed_.empty() || !copied_.empty()); });
         } else if (!more) {
             working_ = false;
             changed_.wait(lock, [&] { return hurries() || !handed_over_.empty(); });
@@ -395,7 +405,7 @@ void StorageThread::wait_for_copy(Run& run) {
     run.copying = false;
 }
 
-void StorageThread::say_what_is_lost() const {
+void StorageThread::say_what_is_lost() {
     for (const auto& [number, run] : runs_) {
         std::size_t bytes = 0, commands = 0, generations = 0;
         const auto count = [&](const std::vector<Item>& items) {
@@ -410,6 +420,7 @@ void StorageThread::say_what_is_lost() const {
             count(run.closing->last);
         if (bytes == 0)
             continue;
+        lost_ = true;
         const std::string world = std::filesystem::path{run.path}.stem().string();
         const std::string lacking =
             fmt::format("{} bytes could not be written: the ends of {} generations, {} commands, and "
@@ -514,6 +525,7 @@ bool StorageThread::commit(Run& run, const std::vector<Item>& items) {
             return fail(run, settled.error());
     run.to_create.reset();
     copy_log_if_long(run);
+    advanced_ = true;
     return true;
 }
 
@@ -562,7 +574,7 @@ bool StorageThread::write_out(Run& run) {
     const auto is_unpacked = [](const Item& item) {
         return item.record && std::holds_alternative<Checkpoint>(*item.record);
     };
-    if (std::ranges::any_of(run.waiting, is_unpacked))
+    if (std::ranges::any_of(run.waiting, is_unpacked) || !is_its_turn(run))
         return false; // not yet
     const bool news = !run.waiting.empty();
     if (news) {
@@ -584,6 +596,24 @@ bool StorageThread::write_out(Run& run) {
     if (run.file && !run.said_large && run.file->is_large()) {
         log::warn("{} is larger than it should be: what is kept for good takes more", run.path);
         run.said_large = true;
+    }
+    return true;
+}
+
+bool StorageThread::is_its_turn(const Run& run) {
+    for (auto& [number, earlier] : runs_) {
+        if (number >= run.number)
+            break;
+        if (earlier.path != run.path)
+            continue;
+        const auto is_out_of_the_way = [&, is_replaced = run.replaces == number] {
+            return is_replaced ? !earlier.unnamed : earlier.closing && earlier.closing->finished;
+        };
+        if (!is_out_of_the_way()) {
+            (void)write_out(earlier);
+            if (!is_out_of_the_way())
+                return false;
+        }
     }
     return true;
 }
@@ -656,6 +686,7 @@ bool StorageThread::take_place(Run& run) {
         return fail(run, moved.error());
     run.replaces.reset();
     run.unnamed = false;
+    advanced_ = true;
     return true;
 }
 
@@ -679,6 +710,7 @@ bool StorageThread::end(Run& run) {
         if (const auto moved = RunFile::rename(run.path, closing.renamed); !moved)
             return fail(run, moved.error());
     closing.finished = true;
+    advanced_ = true;
     tell(closing.last);
     return true;
 }

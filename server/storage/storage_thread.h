@@ -74,8 +74,11 @@ class StorageThread {
     };
 
     explicit StorageThread(RunFile::Options options, std::chrono::milliseconds retry_after = retry_time);
-    /// Writes what waits, as far as that can be done now, and ends.
+    /// As finish().
     ~StorageThread();
+    /// Writes what waits, as far as that can be done now, and ends the thread. A run that fails keeps no other from being
+    /// written. false: not all could be written; the log says what.
+    bool finish();
 
     /// What is written in one transaction, or not at all. done: empty if nobody waits. One without records is done when
     /// everything handed over before is.
@@ -191,6 +194,10 @@ class StorageThread {
     bool write_out();
     /// Of a run; false if that failed, or cannot be done yet.
     bool write_out(Run& run);
+    /// Runs of the same path take the place NAME.evod-next one after another, in the order in which they were handed over: a
+    /// run is not begun before those before it have ended, or, if it replaces the last of them, before that has its name.
+    /// Helps those that are in its way; false: one of them is still there.
+    bool is_its_turn(const Run& run);
     /// A little of what can wait, of one run after another; whether there was any.
     bool do_a_little();
     bool do_a_little(Run& run);
@@ -215,7 +222,7 @@ class StorageThread {
     void leave_out_checkpoints(Run& run);
     void set_trouble(const std::string& why);
     /// At the end: what could not be written, run by run.
-    void say_what_is_lost() const;
+    void say_what_is_lost();
 
     const RunFile::Options options_;
     const std::chrono::milliseconds retry_after_;
@@ -242,6 +249,8 @@ class StorageThread {
     RunNumber last_written_ = 0, last_little_ = 0;
     std::atomic<std::size_t> away_ = 0; // what the packing thread was given and has not been taken back
     bool failed_ = false;               // something, the last time that everything was to be written
+    bool advanced_ = false;             // something has been written since
+    bool lost_ = false;                 // at the end, something could not be
     PackingThread packing_;             // its jobs use what stands before it
     std::thread thread_;                // last: it uses the rest
 };

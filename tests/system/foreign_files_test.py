@@ -32,7 +32,7 @@ class ForeignFiles(unittest.TestCase):
     def serve(self, *options):
         return ["--port", "0", "--data", self.folder / "data", *options]
 
-    def test_what_is_no_file_is_refused_wherever_a_file_is_named(self):
+    def test_what_is_no_file_is_refused_everywhere(self):
         out = ["--out", self.folder / "out"]
         for path, kind in (self.pipe, "a pipe"), ("/dev/zero", "a device"), (self.folder, "a folder"):
             for arguments, file in (

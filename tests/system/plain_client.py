@@ -485,7 +485,6 @@ class Requests(WithServer):
                 ("ISLAND_NOT_FOUND", {"get_motion": c.GetMotion(world=world, island=9)}),
                 ("ORGANISM_NOT_FOUND", {"get_organism": c.GetOrganism(world=world, organism=10**6)}),
                 ("WORLD_IS_LIVE", {"seek": c.Seek(world=world, to=c.RunMoment(tick=1))}),
-                ("RUNS_NOT_KEPT", {"open_past": c.OpenPast(world=world)}),
                 ("SUBSCRIPTION_NOT_FOUND", {"unsubscribe": c.Unsubscribe(subscription_id=77)}),
                 ("EXPORT_NOT_FOUND", {"continue_export": c.ContinueExport(export_id=3)})):
             status = self.client.response(self.client.ask(**request)).status

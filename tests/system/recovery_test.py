@@ -494,7 +494,7 @@ class Recovery(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("default.evod is damaged: the population of generation 1 on island 0", refused.stderr)
 
-    def test_a_damaged_log_is_refused_and_one_that_is_cut_off_is_not(self):
+    def test_a_damaged_log_is_refused_and_a_cut_one_read(self):
         server, commands = self.serve("--seed", "5"), 8
         with Client(server, "k") as client:
             for i in range(1, commands + 1):

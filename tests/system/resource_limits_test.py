@@ -45,7 +45,7 @@ class ResourceLimits(unittest.TestCase):
             number("population_size", organisms), number("reference_population", 50),
             w.ParameterAssignment(name="scale_with_population", value=w.ParameterValue(flag=True))])}
 
-    def test_a_world_for_which_there_is_no_memory_is_refused(self):
+    def test_a_world_without_memory_for_it_is_refused(self):
         server = self.serve("--seed", "5", "--speed", "max")
         with Client(server, "k") as client:
             client.call(1, run_until_tick=c.RunUntilTick(tick=500))
@@ -64,7 +64,7 @@ class ResourceLimits(unittest.TestCase):
         self.verify()
         self.verify("fork")
 
-    def test_a_server_that_runs_out_of_memory_ends_with_a_word_and_goes_on_later(self):
+    def test_out_of_memory_a_server_ends_and_goes_on_later(self):
         server = self.serve("--seed", "5")
         with Client(server, "k") as client:
             self.assertEqual(client.call(1, **set_parameter("food_health", 7)).status.code, 0)

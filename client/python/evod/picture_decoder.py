@@ -1,8 +1,8 @@
 """From what is sent of pictures to their numbers, without a loop over the entities (docs/PROTOCOL.md, Pictures)."""
 from __future__ import annotations
 
-import functools
 import struct
+import threading
 import zlib
 from typing import Any, Mapping, Sequence
 
@@ -191,11 +191,16 @@ def _body_of(picture: Any, position_bytes: int, checked_before: bytes, bytes_max
     return _Body(data)
 
 
-@functools.cache
+_of_thread = threading.local()
+
+
 def _unpacker() -> Any:
+    """A decompressor of this thread: they are not safe to share, and decompressing lets other threads run."""
     if zstandard is None:
         raise DamagedData("a picture is compressed, and the package zstandard is not there")
-    return zstandard.ZstdDecompressor()
+    if not hasattr(_of_thread, "unpacker"):
+        _of_thread.unpacker = zstandard.ZstdDecompressor()
+    return _of_thread.unpacker
 
 
 def _unpack(data: bytes, bytes_max: int) -> bytes:

@@ -280,15 +280,26 @@ class FrameStream:
         return frame
 
     def set_view(self, view: c.View) -> Plan[None]:
+        subscription_id = yield from self._server_id()
+        yield from ask("set_view", subscription_id=subscription_id, view=view)
+        # Only once the server has accepted it: it is asked for again in each new session.
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
-        yield from ask("set_view", subscription_id=self._subscription.server_id, view=view)
+
+    def _server_id(self) -> Plan[int]:
+        """The subscription's id in this session, once there is one."""
+        subscription = self._subscription
+        yield Until(lambda: subscription.server_id is not None or subscription.refused)
+        if subscription.server_id is None:
+            raise subscription.refused or DamagedData("no subscription")
+        return subscription.server_id
 
     @property
     def rate_hz(self) -> float:
         return self._subscription.rate_hz
 
     def request_keyframe(self) -> Plan[None]:
-        yield from ask("request_keyframe", subscription_id=self._subscription.server_id)
+        subscription_id = yield from self._server_id()
+        yield from ask("request_keyframe", subscription_id=subscription_id)
 
     def close(self) -> None:
         self._core.unsubscribe(self._subscription)
