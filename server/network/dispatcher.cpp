@@ -338,8 +338,10 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
                 told->leased = (*entry)->control.leased;
         auto give = [this, told, answered, key = Retries::key_of(from.user, request.client_key()),
                      steps = request.has_run_until_tick(),
-                     world = applied ? applied->world : ""] {
+                     gone = applied && request.has_delete_world(), world = applied ? applied->world : ""] {
             answered(told->frame, told->refused ? &*told->refused : nullptr);
+            if (gone)
+                streams_.forget_world(world);
             if (told->event)
                 streams_.tell(*told->event);
             if (!told->leased)

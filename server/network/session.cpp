@@ -25,6 +25,7 @@ namespace {
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::uint32_t client_frame_bytes_min = 65'536; // every client takes at least this
 constexpr std::size_t batch_frames_max = 64;
+constexpr std::size_t pictures_at_once = 32; // of one session, before the others have their turn
 // Many parts of a picture, or a few that are short, are put together before they are handed to the system.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
 static_assert(gathered_parts_max + 2 <= Line::buffers_at_once, "there are a header and a tail, too");
@@ -440,15 +441,16 @@ void Session::picture(std::uint32_t subscription_id, std::uint32_t island, Snaps
     if (subscription == snapshots.end() || finishing_ || ended_)
         return;
     SnapshotSubscription::Island& of = subscription->second.islands[island];
-    if (!of.waiting)
-        turns_.push_back({subscription_id, island});
-    else if (of.shown)
+    const bool waited = static_cast<bool>(of.waiting), was_shown = of.shown.has_value();
+    if (waited && was_shown)
         of.not_before = {};
-    else
+    else if (waited)
         count_dropped_pictures(subscription->second, 1);
     of.shown.reset();
     of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
     of.waiting = std::move(picture);
+    if (!waited || was_shown)
+        give_turn(subscription_id, island, of);
 }
 
 void Session::send_waiting() {
@@ -476,7 +478,9 @@ void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, Sn
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.not_before = {};
     of.shown.reset();
-    if (!of.waiting)
+    if (of.waiting)
+        give_turn(subscription_id, island, of);
+    else
         picture(subscription_id, island, std::move(newest));
     wake_writer(); // and no more: the answer to what asked for this goes first
 }
@@ -491,29 +495,63 @@ void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
     auto& unacknowledged = island->second.unacknowledged;
     while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence())
         unacknowledged.pop_front();
+    if (island->second.waiting && island->second.turn == 0)
+        give_turn(acknowledged.subscription_id(), acknowledged.island(), island->second);
     wake_writer();
 }
 
+void Session::give_turn(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Island& of) {
+    of.turn = ++last_turn_;
+    turns_.push_back({subscription_id, island, of.turn});
+}
+
 bool Session::next_picture() {
-    // Turns of subscriptions that are gone are found first, and go too.
-    std::erase_if(turns_, [this](const Turn& turn) { return !snapshots.contains(turn.subscription_id); });
-    next_budget_ = runtime::Clock::time_point::max();
-    for (auto turn = turns_.begin(); turn != turns_.end(); ++turn) {
-        SnapshotSubscription& subscription = snapshots.at(turn->subscription_id);
-        SnapshotSubscription::Island& island = subscription.islands.at(turn->island);
-        if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max)
+    const auto now = host_.clock->now();
+    while (!postponed_.empty() && postponed_.begin()->first <= now) {
+        turns_.push_back(postponed_.begin()->second);
+        postponed_.erase(postponed_.begin());
+    }
+    // Each turn is looked at once, however many there are: those that are not due go elsewhere, or away.
+    while (!turns_.empty()) {
+        const Turn turn = turns_.front();
+        turns_.pop_front();
+        const auto found = snapshots.find(turn.subscription_id);
+        if (found == snapshots.end())
+            continue; // unsubscribed
+        SnapshotSubscription& subscription = found->second;
+        const auto of = subscription.islands.find(turn.island);
+        if (of == subscription.islands.end() || of->second.turn != turn.number || !of->second.waiting)
             continue;
-        if (!take(turn->subscription_id, subscription, island)) {
-            next_budget_ = std::min(next_budget_, island.not_before);
+        SnapshotSubscription::Island& island = of->second;
+        if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max) {
+            island.turn = 0; // until an acknowledgement comes
             continue;
         }
-        const Turn taken = *turn;
-        turns_.erase(turn);
+        if (!take(turn.subscription_id, subscription, island)) {
+            postponed_.emplace(island.not_before, turn);
+            continue;
+        }
+        if (outgoing_.body_bytes() > frame_bytes_max_) {
+            leave_out(subscription, island);
+            continue;
+        }
         if (island.waiting)
-            turns_.push_back(taken);
+            give_turn(turn.subscription_id, turn.island, island);
         return true;
     }
+    next_budget_ = postponed_.empty() ? runtime::Clock::time_point::max() : postponed_.begin()->first;
     return false;
+}
+
+void Session::leave_out(SnapshotSubscription& subscription, SnapshotSubscription::Island& island) {
+    count_dropped_pictures(subscription, 1);
+    if (subscription.unacknowledged_max)
+        island.unacknowledged.pop_back();
+    island.waiting = {};
+    island.columns = {};
+    island.shown.reset();
+    island.last_sent = 0; // the next one is not encoded against a picture that the client has not
+    island.tiles_sent.forget();
 }
 
 bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscription,
@@ -587,10 +625,11 @@ bool Session::may_send_pictures() const {
 }
 
 void Session::send_pictures() {
-    while (may_send_pictures() && next_picture())
+    std::size_t sent = 0;
+    for (; sent < pictures_at_once && may_send_pictures() && next_picture(); ++sent)
         send_outgoing();
     outgoing_.picture = {}; // nobody counts what it holds
-    if (next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures())
+    if (sent == pictures_at_once || next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures())
         wake_writer();
 }
 
@@ -680,6 +719,7 @@ asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
 
 asio::awaitable<void> Session::write() {
     std::vector<asio::const_buffer> buffers;
+    std::size_t sent_at_once = 0;
     while (!ended_) {
         buffers.clear();
         if (!begun_) {
@@ -719,6 +759,11 @@ asio::awaitable<void> Session::write() {
             enqueue(encode_event(std::move(event)), Kind::Event);
         } else if (!finishing_ && next_picture()) {
             send_outgoing();
+            // Other sessions have their turn, too.
+            if (++sent_at_once == pictures_at_once) {
+                sent_at_once = 0;
+                co_await asio::post(line_.socket().get_executor(), no_throw);
+            }
         } else if (finishing_) {
             break;
         } else {
@@ -800,6 +845,7 @@ void Session::close() {
     for (auto& [id, subscription] : snapshots)
         subscription.islands.clear();
     turns_.clear();
+    postponed_.clear();
     reader_bytes_.set(0);
     expected_bytes_.set(0);
     wake_writer();

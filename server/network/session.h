@@ -90,6 +90,7 @@ struct SnapshotSubscription {
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
         TilesSent tiles_sent;                     // with a view
         std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
+        std::uint64_t turn = 0;                   // number of its turn to be sent; 0: it waits for an acknowledgement
     };
     std::map<std::uint32_t, Island> islands; // by index
 };
@@ -185,6 +186,10 @@ class Session : public std::enable_shared_from_this<Session> {
     };
     /// Puts the picture whose turn it is into outgoing_; false: none may be sent now.
     bool next_picture();
+    /// Gives what waits of an island its turn, after those that have one.
+    void give_turn(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Island& of);
+    /// Drops the picture in outgoing_, which is larger than the client takes.
+    void leave_out(SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
     /// Sends the pictures that may be sent now, as far as the line takes them at once. What is left of one goes into
     /// sending_ and rest_, and the writer sees to it.
     void send_pictures();
@@ -231,10 +236,15 @@ class Session : public std::enable_shared_from_this<Session> {
     runtime::Clock::time_point progressed_; // when it was last seen that something was taken, or nothing waited
     std::size_t in_flight_ = 0;             // requests whose answer is not yet being written
     std::uint64_t dropped_events_ = 0;      // not yet told
+    // Of the pictures that wait in `snapshots`: each has one turn, the last that it was given. One that waits for an
+    // acknowledgement has none until that comes; one that its budget does not allow yet stands in postponed_.
     struct Turn {
         std::uint32_t subscription_id, island;
+        std::uint64_t number; // another one than SnapshotSubscription::Island::turn: it was given another turn since
     };
-    std::deque<Turn> turns_; // of the pictures that wait in `snapshots`
+    std::deque<Turn> turns_;
+    std::multimap<runtime::Clock::time_point, Turn> postponed_;
+    std::uint64_t last_turn_ = 0;
     Outgoing outgoing_;
     runtime::Clock::time_point next_budget_; // when a picture may be sent that its budget does not allow now
     std::uint32_t subscription_id_ = 0;

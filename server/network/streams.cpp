@@ -42,11 +42,18 @@ v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::Isl
 
 std::uint32_t Streams::subscribe(Session& session, SnapshotSubscription subscription) {
     const std::uint32_t id = session.next_subscription_id();
-    subscription.newcomer = ++newcomers_;
-    if (subscription.codec == v1::CODEC_DELTA)
-        groups_[group_of(subscription)].next_picture = {}; // its first picture comes at once, to the whole group
+    // One that joins others is sent the newest that they were; another one is made for who is the first.
+    bool joins = false;
+    each_newest(subscription, [&](std::uint32_t, const SnapshotSubscription::Waiting&) { joins = true; });
+    if (!joins) {
+        subscription.newcomer = ++newcomers_;
+        if (subscription.codec == v1::CODEC_DELTA)
+            groups_[group_of(subscription)].next_picture = {};
+    }
     session.snapshots.emplace(id, std::move(subscription));
     update_demand();
+    if (joins)
+        send_keyframes(session, id);
     return id;
 }
 
@@ -84,6 +91,16 @@ void Streams::set_view(Session& session, std::uint32_t subscription_id, const v1
 void Streams::forget(const Session& session) {
     if (!session.snapshots.empty() || !session.events.empty())
         update_demand();
+}
+
+void Streams::forget_world(const std::string& world) {
+    for (auto& [name, group] : groups_)
+        if (name.world == world)
+            group.forget_pictures();
+    for (const auto& [number, session] : sessions_)
+        for (auto& [id, subscription] : session->snapshots)
+            if (subscription.world == world)
+                subscription.islands.clear();
 }
 
 template <class Do>
@@ -236,8 +253,11 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
         if (pace.takes(picture, now))
             shown.push_back({name.rate_hz, name.in_tiles, &group, pace.between(), {}});
     }
-    for (Shown& of_group : shown)
+    for (Shown& of_group : shown) {
         of_group.islands.resize(snapshot.islands.size());
+        if (std::exchange(of_group.group->run_id, snapshot.run_id) != snapshot.run_id)
+            of_group.group->forget_pictures(); // a run before, which may have had more islands
+    }
     for (const auto& [number, session] : sessions_) {
         bool has_some = false;
         for (auto& [id, subscription] : session->snapshots) {
@@ -251,6 +271,7 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
                          : !Pace{subscription.rate_hz, subscription.next_picture}.takes(picture, now))
                 continue;
             session->count_dropped_pictures(subscription, picture.replaced_count);
+            subscription.islands.erase(subscription.islands.lower_bound(snapshot.island_count), subscription.islands.end());
             for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
                 const std::uint32_t island = snapshot.islands[i].island;
                 if (subscription.island && *subscription.island != island)

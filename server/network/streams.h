@@ -41,6 +41,9 @@ class Streams {
     /// The session has gone from the table.
     void forget(const Session& session);
 
+    /// A world is gone: nothing of it is sent any more.
+    void forget_world(const std::string& world);
+
     /// What the simulation thread does with events: it puts them into the outbox, as long as somebody wants them.
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
     /// What has come from there.
@@ -59,6 +62,11 @@ class Streams {
         runtime::Clock::time_point next_picture;        // not before then
         std::map<std::uint32_t, Chain> chains;          // by island, of those that are watched whole
         std::map<std::uint32_t, TiledPicturePtr> tiled; // the newest by island, of those that are watched in tiles
+        simulation::RunId run_id;                       // of these
+        void forget_pictures() {
+            chains.clear();
+            tiled.clear();
+        }
     };
     struct GroupName {
         std::string world;

@@ -186,7 +186,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(control.call(1, **set_parameter("food_health", 30)).status.code, 0)
         before = control.world()
         self.fill_and_ask_for_what_cannot_be_written(server, control)
-        server.end()
+        server.end(status=4)
         self.assertRegex(server.output(), r'world "default": \d+ bytes could not be written: the ends of \d+ generations, '
                                           f"1 commands, and where it stood last. {self.data}/default.evod has all that was answered")
         self.make_room()

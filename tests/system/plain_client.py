@@ -389,6 +389,16 @@ class Handshake(WithServer):
         world = self.new_world(population_size=2000, island_width_px=6000.0, island_height_px=6000.0)
         refused = client.call(EXHAUSTED, get_population=c.GetPopulation(world=world))
         self.assertIn("the client takes 65536", refused.status.message)
+        self.assertEqual(refused.status.reason, c.REASON_ANSWER_TOO_LARGE)
+        client.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=60))
+        large = self.new_world(population_size=20_000, island_width_px=20_000.0, island_height_px=20_000.0)
+        client.call(subscribe_snapshots=c.SubscribeSnapshots(world=large, rate_hz=60))
+        self.assertEqual(client.next_picture().world, world)
+        self.client.call(run_until_tick=c.RunUntilTick(world=large, tick=5))
+        self.client.wait_world(lambda x: x.tick == 5, large)
+        self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
+        client.next_picture(lambda p: p.world == world and p.tick == 5)
+        self.assertEqual([p for p in client.pictures if p.world == large], [])
         client.call(list_worlds=c.ListWorlds())  # the session goes on
 
     def test_long_names_are_refused_each(self):
@@ -1408,6 +1418,41 @@ class Deltas(WithServer):
                 picture.dropped_count, picture.generation) != (before.dropped_count, before.generation):
             before, picture = picture, self.next()[0]
         self.assertEqual(picture.world, world)
+
+    def test_nothing_of_islands_and_worlds_that_are_gone_is_sent(self):
+        world = self.new_world(island_count=3)
+        self.subscribe(world)
+        for _ in range(3):
+            self.next()
+        self.client.call(set_parameters=set_parameters(world, island_count=1))
+        run = self.client.call(reset_world=c.ResetWorld(world=world)).world.run_id
+        keyframe, _ = self.next(lambda p: p.base_sequence == 0 and p.run_id.hex() == run)
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=keyframe.subscription_id))
+        again, _ = self.next()
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(([again.island, again.run_id.hex()], self.viewer.pictures), ([0, run], []))
+        self.client.call(delete_world=c.DeleteWorld(world=world))
+        self.viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=keyframe.subscription_id))
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertEqual(self.viewer.pictures, [])
+        self.client.call(create_world=c.CreateWorld(name=world))  # for the end of the test
+        self.next(lambda p: p.base_sequence == 0)
+
+    def test_who_joins_costs_the_others_nothing(self):
+        world = self.new_world()
+        self.viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=world, rate_hz=0.01, codec=stream_pb2.CODEC_DELTA))
+        self.next()
+        self.client.call(set_speed=c.SetSpeed(world=world, speed=w.Speed(max=True)))
+        self.client.call(run=c.Run(world=world))
+        with Client(self.server) as restless:
+            for _ in range(50):
+                subscription = restless.call(subscribe_snapshots=c.SubscribeSnapshots(
+                    world=world, rate_hz=0.01, codec=stream_pb2.CODEC_DELTA)).subscription
+                self.assertEqual(restless.next_picture().base_sequence, 0)
+                restless.call(unsubscribe=c.Unsubscribe(subscription_id=subscription.subscription_id))
+                restless.pictures.clear()
+        self.viewer.call(list_worlds=c.ListWorlds())
+        self.assertLess(len(self.viewer.pictures), 5)  # of the commands for the world, and of no newcomer
 
     def test_a_new_run_begins_with_a_keyframe(self):
         world = self.new_world()

@@ -46,9 +46,9 @@ class Server:
         self.process.kill()
         waiting.ended(self.process)
 
-    def end(self):
+    def end(self, status=0):
         self.process.send_signal(signal.SIGTERM)
-        assert waiting.ended(self.process) == 0, self.output()
+        assert waiting.ended(self.process) == status, self.output()
 
 
 class Client:
