@@ -114,9 +114,23 @@ class Commands(unittest.TestCase):
         with self.assertRaises(evod.Error) as raised:
             world.organism(12)
         self.assertEqual(raised.exception.code_name, "NOT_FOUND")
-        with self.assertRaisesRegex(evod.Error, "FAILED_PRECONDITION"):
-            world.open_past()
+        with self.assertRaisesRegex(evod.Error, "FAILED_PRECONDITION") as raised:
+            world.resume()
+        self.assertEqual(raised.exception.reason, c.REASON_NOTHING_TO_RESUME)
         self.assertEqual([info.name for info in self.lab.worlds()], ["default"])
+
+    def test_a_local_server_keeps_its_runs_while_it_is_there(self):
+        with evod.local(seed=3, experiment={"population_size": 20, "generation_s": 1}) as lab:
+            world = lab.create_world("other", {"population_size": 20, "generation_s": 1})
+            self.assertTrue(world.info().speed.max, "worlds that are created have the speed of local(), too")
+            world.run(generations=3).wait()
+            with world.open_past(generation=2) as past:
+                self.assertEqual(past.info().generation, 2)
+            self.assertEqual(world.fork("twin", at_generation=2).info().generation, 2)
+            self.assertEqual(len(world.table("generations")), 3)
+            folder = next(line.split(" kept in ")[1] for line in lab.log.splitlines() if " kept in " in line)
+            self.assertTrue(os.path.isdir(folder))
+        self.assertFalse(os.path.exists(folder))
 
     def test_a_world_begins_with_the_population_it_is_given(self):
         genes = numpy.linspace(90, 110, 4 * 6).reshape(4, 6)

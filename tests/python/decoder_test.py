@@ -2,6 +2,7 @@
 import copy
 import random
 import struct
+import threading
 import unittest
 import zlib
 
@@ -9,9 +10,9 @@ import delta_decoder  # of the protocol's tests
 import numpy
 
 import evod
-from evod import framing, picture_decoder
+from evod import framing, picture_decoder, plans
 from evod.core import Core
-from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2
+from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 3000, "food_count": 400, "poison_count": 300,
         "crate_count": 10, "obstacle_count": 5, "generation_s": 5, "respawn_s": 0.2}
@@ -304,6 +305,37 @@ class Streams(Told):
         again = self.sent(core)
         self.assertEqual([message.request.request_id for message in again], [2, 3, 4, 5])
         self.assertEqual({message.request.client_key for message in again}, {core.client_key})
+
+    def test_a_past_that_opens_too_late_is_closed(self):
+        core = self.core()
+        pending = core.request(c.Request(open_past=c.OpenPast(world="w")))
+        self.assertEqual(len(self.sent(core)), 1)
+        core.forget(pending)
+        self.answer(core, 1, world=world_pb2.WorldInfo(name="w@1"))
+        self.assertEqual([message.request.close_past.world for message in self.sent(core)], ["w@1"])
+
+    def test_a_refused_view_is_not_asked_for_in_the_next_session(self):
+        core = self.core()
+        subscription = core.subscribe(c.Request(subscribe_snapshots=c.SubscribeSnapshots(world="w")))
+        stream = plans.FrameStream(core, subscription)
+        plan = stream.set_view(c.View(detail=stream_pb2.DETAIL_DOTS))
+        step = next(plan)
+        self.assertFalse(step.holds(), "the server has not accepted the subscription yet")
+        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
+        self.assertTrue(step.holds())
+        request = plan.send(None)
+        self.assertEqual(request.set_view.subscription_id, 4)
+        with self.assertRaises(evod.Error):
+            plan.throw(evod.Error("no view there"))
+        self.assertFalse(subscription.request.subscribe_snapshots.HasField("view"))
+
+    def test_threads_share_no_decompressor(self):
+        unpackers = [picture_decoder._unpacker()]
+        thread = threading.Thread(target=lambda: unpackers.append(picture_decoder._unpacker()))
+        thread.start()
+        thread.join()
+        self.assertIsNot(*unpackers)
+        self.assertIs(picture_decoder._unpacker(), unpackers[0])
 
     def test_what_means_nothing_in_another_session_is_not_sent_again(self):
         core = self.core()

@@ -96,8 +96,9 @@ class Generations(unittest.TestCase):
         self.world.pause()
         other.delete()
         self.assertEqual(next(events).WhichOneof("kind"), "run_control_changed")
-        kinds = [event.WhichOneof("kind") for _, event in zip(range(3), everything)]
-        self.assertEqual(kinds, ["world_created", "run_control_changed", "world_deleted"])
+        kinds = [event.WhichOneof("kind") for _, event in zip(range(4), everything)]
+        # The first change is the new world's speed, which is that of evod.local().
+        self.assertEqual(kinds, ["world_created", "run_control_changed", "run_control_changed", "world_deleted"])
 
 
 if __name__ == "__main__":

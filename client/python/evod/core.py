@@ -31,6 +31,10 @@ EVENTS_KEPT = 10_000
 PICTURES_AHEAD = 8
 _KEYFRAME_REQUESTS_MAX = 3  # for one damaged picture after another
 
+#: For the answer to these, generations may have to be simulated again: it may take so many times as long as others.
+_REPLAYING = frozenset(("open_past", "seek", "get_breeding", "export_run", "continue_export"))
+_REPLAYING_TIMES = 20
+
 #: Of these, a session that has ended leaves nothing that could be asked for again.
 _OF_THE_SESSION = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
@@ -48,6 +52,10 @@ class Pending:
     @property
     def done(self) -> bool:
         return self.response is not None or self.error is not None
+
+    def patience_s(self, timeout_s: float) -> float:
+        """How long to wait for the answer, where others may take timeout_s."""
+        return timeout_s * _REPLAYING_TIMES if self.kind in _REPLAYING else timeout_s
 
 
 class Subscription:
@@ -113,6 +121,7 @@ class Core:
         self._pending: dict[int, Pending] = {}  # by request_id, in the order in which they were asked
         self._first: set[int] = set()  # of those: go before the others
         self._in_flight: set[int] = set()  # sent in this session and not answered, nobody may wait any more
+        self._late_pasts: set[int] = set()  # requests for one in this session that nobody waits for any more
         self._subscriptions: list[weakref.ref[Subscription]] = []
         self._of_server_id: dict[int, weakref.ref[Subscription]] = {}
         self._sights: dict[tuple[int, int], _Sight] = {}  # by server_id and island
@@ -148,6 +157,7 @@ class Core:
         self.connected, self.loss = False, error
         self._outgoing.clear()
         self._in_flight.clear()
+        self._late_pasts.clear()
         self._of_server_id.clear()
         self._sights.clear()
         for subscription in self._live_subscriptions():
@@ -194,9 +204,11 @@ class Core:
         return pending
 
     def forget(self, pending: Pending) -> None:
-        """Nobody waits for it any more."""
+        """Nobody waits for it any more. A past that it opens all the same is closed when its name is known."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
+        if pending.kind == "open_past" and pending.sent and not pending.done:
+            self._late_pasts.add(pending.request.request_id)
 
     # ---- subscriptions --------------------------------------------------------------------------------------------
 
@@ -287,6 +299,10 @@ class Core:
     def _take_response(self, response: commands_pb2.Response) -> None:
         self._in_flight.discard(response.request_id)
         self._first.discard(response.request_id)
+        if response.request_id in self._late_pasts:
+            self._late_pasts.discard(response.request_id)
+            if response.HasField("world"):
+                self.request(commands_pb2.Request(close_past=commands_pb2.ClosePast(world=response.world.name)))
         pending = self._pending.get(response.request_id)
         if pending is not None and pending.sent:
             del self._pending[response.request_id]

@@ -142,7 +142,7 @@ class Lab(_Closing):
         seed         otherwise one that the server draws.
         population   what its first generation consists of, one array of shape (population_size, 6) for each island; otherwise
                      that is drawn by the seed.
-        speed        as of World.set_speed(); otherwise that of the clock.
+        speed        as of World.set_speed(); otherwise that of the clock, or of evod.local().
 
         >>> import evod
         >>> with evod.local() as lab:

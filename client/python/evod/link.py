@@ -77,7 +77,7 @@ class Link:
             return None
         pending = self.core.request(step)
         try:
-            self._wait(lambda: pending.done, self.timeout_s)
+            self._wait(lambda: pending.done, pending.patience_s(self.timeout_s))
         finally:
             self.core.forget(pending)
         if pending.error is not None:

@@ -22,7 +22,9 @@ from evod.program import program_of
 _END_S = 30  # for a server to write down its runs; then it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
 # Stands between us and the server, and stops it when we are gone, however we went: our end of its input is closed then.
-_KEEPER = '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"'
+_KEEPER = (
+    '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"; [ -z "$FOLDER" ] || rm -rf "$FOLDER"'
+)
 
 
 def local(
@@ -40,8 +42,9 @@ def local(
 
     seed         of its world; otherwise drawn by chance.
     experiment   its parameters: an experiment file, or a mapping of names to values; otherwise the default world.
-    data         folder where runs are kept; otherwise nothing is kept, and the past cannot be looked at.
-    speed        of its worlds: simulated seconds per second, or "max", as fast as the machine can.
+    data         folder where runs are kept; otherwise a temporary one that goes with the server.
+    speed        of its worlds, also of those that are created: simulated seconds per second, or "max", as fast as the machine
+                 can.
     threads      that simulate; otherwise as many as the machine has processors.
     program      the program evod; otherwise the one that the environment's EVOD names, or that is on the path.
 
@@ -59,15 +62,16 @@ def local(
     except BaseException:
         server.stop()
         raise
-    return LocalLab(lab._link, server)
+    return LocalLab(lab._link, server, speed)
 
 
 class LocalLab(Lab):
     """A Lab with a server of its own; made by local()."""
 
-    def __init__(self, link: Link, server: Server) -> None:
+    def __init__(self, link: Link, server: Server, speed: float | str) -> None:
         super().__init__(link)
         self._server = server
+        self._desk.speed_of_new_worlds = speed
         weakref.finalize(link, server.end)  # all that comes of the lab holds the link: nobody can use it any more
 
     def close(self) -> None:
@@ -90,8 +94,9 @@ def start(
 ) -> Server:
     """Starts a server, as local() does, and waits until it listens."""
     command = [program_of(program), "--port", "0"]
-    command += ["--keep-nothing"] if data is None else ["--data", os.fspath(data)]
-    command += ["--speed", str(speed)] if data is None else []  # else there may be several worlds
+    temporary = tempfile.mkdtemp(prefix="evod-runs-") if data is None else ""
+    # What is temporary need not outlive the machine; and there is one world in it, whose speed can be said.
+    command += ["--data", temporary, "--durability", "relaxed", "--speed", str(speed)] if data is None else ["--data", os.fspath(data)]
     command += [] if seed is None else ["--seed", str(seed)]
     command += [] if threads is None else ["--threads", str(threads)]
     with tempfile.TemporaryDirectory(prefix="evod-") as folder:
@@ -102,7 +107,7 @@ def start(
             command += ["--experiment", path]
         elif experiment is not None:
             command += ["--experiment", os.fspath(experiment)]
-        return Server(command)
+        return Server(command, temporary)
 
 
 def _plain(value: object) -> object:
@@ -112,9 +117,9 @@ def _plain(value: object) -> object:
 
 
 class Server:
-    """One that ends when we do."""
+    """One that ends when we do, and its temporary folder with it, if it has one."""
 
-    def __init__(self, command: list[str]) -> None:
+    def __init__(self, command: list[str], temporary: str = "") -> None:
         self._keeper: subprocess.Popen[str] = subprocess.Popen(
             ["/bin/sh", "-c", _KEEPER, "sh", *command],
             stdin=subprocess.PIPE,
@@ -122,6 +127,7 @@ class Server:
             stderr=subprocess.STDOUT,
             text=True,
             errors="replace",
+            env={**os.environ, "FOLDER": temporary},
             start_new_session=True,  # an interrupt at the terminal is for us alone
         )
         self.lines: collections.deque[str] = collections.deque(maxlen=1000)

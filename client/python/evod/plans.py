@@ -81,6 +81,7 @@ class Desk:
         self.core = core
         self._registry: Registry | None = None
         self._registry_of = ""  # the server's instance_id
+        self.speed_of_new_worlds: float | str | None = None  # of those created without one; None: that of the clock
 
     # ---- the server -------------------------------------------------------------------------------------------------
 
@@ -153,6 +154,7 @@ class Desk:
         population: Sequence[numpy.typing.ArrayLike] | None,
         speed: float | str | None,
     ) -> Plan[str]:
+        speed = self.speed_of_new_worlds if speed is None else speed
         pace = None if speed is None else speed_of(speed)
         registry = yield from self.registry()
         first, later = registry.planned(parameters, "create_world.")

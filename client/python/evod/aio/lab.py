@@ -78,7 +78,7 @@ def local(
         except BaseException:
             server.stop()
             raise
-        return LocalLab(lab._link, server)
+        return LocalLab(lab._link, server, speed)
 
     return Opening(open_lab())
 
@@ -167,9 +167,10 @@ class Lab(_Closing):
 class LocalLab(Lab):
     """As evod.LocalLab, and what it answers is awaited."""
 
-    def __init__(self, link: Link, server: local_server.Server) -> None:
+    def __init__(self, link: Link, server: local_server.Server, speed: float | str) -> None:
         super().__init__(link)
         self._server = server
+        self._desk.speed_of_new_worlds = speed
 
     async def close(self) -> None:
         await super().close()
