@@ -126,7 +126,10 @@ struct SightTest : testing::Test {
     }
     /// Answers how things stand.
     void answer_state(const std::string& world) {
-        const auto request = next_request();
+        auto request = next_request();
+        for (; request.has_unsubscribe(); request = next_request()) { // from what was shown before
+            session->answer(request);
+        }
         ASSERT_TRUE(request.has_get_statistics()) << request.DebugString();
         evod::v1::ServerMessage message;
         message.mutable_response()->set_request_id(request.request_id());
