@@ -539,9 +539,9 @@ Result<void> RunFile::check_schema() {
     if (database_.failed()) {
         return failure();
     }
-    for (const SchemaRow& row : std::views::reverse(expected)) { // a table before its indices
-        if (!found.contains(row) && row.table != optional_table) {
-            return refusal(RefusalCode::DataLoss, path_ + " is damaged: it lacks " + described(row));
+    for (auto row = expected.rbegin(); row != expected.rend(); ++row) { // a table before its indices
+        if (!found.contains(*row) && row->table != optional_table) {
+            return refusal(RefusalCode::DataLoss, path_ + " is damaged: it lacks " + described(*row));
         }
     }
     return {};

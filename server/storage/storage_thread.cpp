@@ -601,12 +601,14 @@ bool StorageThread::write_out(Run& run) {
 }
 
 bool StorageThread::is_its_turn(const Run& run) {
-    for (auto& [number, earlier] : runs_) {
-        if (number >= run.number)
+    for (auto& item : runs_) {
+        Run& earlier = item.second;
+        if (item.first >= run.number)
             break;
         if (earlier.path != run.path)
             continue;
-        const auto is_out_of_the_way = [&, is_replaced = run.replaces == number] {
+        const bool is_replaced = run.replaces == item.first;
+        const auto is_out_of_the_way = [&] {
             return is_replaced ? !earlier.unnamed : earlier.closing && earlier.closing->finished;
         };
         if (!is_out_of_the_way()) {
