@@ -235,7 +235,8 @@ void WatchedServer::go_away() {
     watch_mail();
     loop_.close();
     deliver();
-    streams_.say_goodbye();
+    streams_.announce_end();
+    streams_.end_sessions();
 }
 
 } // namespace evod::fuzz
