@@ -138,6 +138,11 @@ void count_limits_met(const v1::Request& request, LimitCounters& counters) {
         counters.met(Limit::WorldNameBytes);
 }
 
+base::Refusal server_goes_away() {
+    return refusal(base::RefusalCode::Unavailable, "the server is going away: send it again when it is back",
+                   base::Reason::ServerGoingAway);
+}
+
 /// Puts a refusal in the place of an answer.
 void refuse(v1::Response& response, const base::Refusal& refused) {
     *response.mutable_status() = protocol::to_proto(refused);
@@ -183,9 +188,7 @@ void Dispatcher::handle(Session& session, v1::Request request) {
         session.send_unasked(protocol::refusing(request.request_id(), refused));
     };
     if (going_away_)
-        return refuse_it(refusal(base::RefusalCode::Unavailable,
-                                 "the server is going away: send it again when it is back",
-                                 base::Reason::ServerGoingAway));
+        return refuse_it(server_goes_away());
     const auto kind = protocol::kind_of(request);
     if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace))
         log::trace({.session = session.number(), .client = session.by()}, "session {}: {} asks {}, request {}",
@@ -208,7 +211,23 @@ void Dispatcher::handle(Session& session, v1::Request request) {
                                  std::to_string(requests_in_flight_max) +
                                      " requests of this session are unanswered already: wait for an answer",
                                  base::Reason::RequestsInFlightMax));
-    switch (kind) {
+    if (session.query_under_way)
+        return session.hold_back(std::move(request));
+    serve(session, std::move(request));
+}
+
+void Dispatcher::serve_held_back(Session& session) {
+    while (!session.query_under_way)
+        if (auto request = session.take_held_back())
+            serve(session, *std::move(request));
+        else
+            return;
+}
+
+void Dispatcher::serve(Session& session, v1::Request request) {
+    if (going_away_)
+        return session.answer(protocol::refusing(request.request_id(), server_goes_away()));
+    switch (protocol::kind_of(request)) {
     case protocol::RequestKind::Command:
         return command(session, request);
     case protocol::RequestKind::Query:
@@ -372,15 +391,19 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, 
             return; // nobody waits for it
         v1::Response response = response_to(request_id);
         answer(laboratory, response);
-        outbox_.answer([weak, then, response = std::move(response)]() mutable {
+        outbox_.answer([this, weak, then, response = std::move(response)]() mutable {
             if (const auto asking = weak.lock()) {
+                asking->query_under_way = false;
                 then(*asking, response);
                 asking->answer(std::move(response));
+                serve_held_back(*asking);
             }
         });
     };
-    if (mailbox_.try_push(runtime::QueryMail{std::move(ask)}))
+    if (mailbox_.try_push(runtime::QueryMail{std::move(ask)})) {
+        session.query_under_way = true;
         return true;
+    }
     session.answer(protocol::refusing(request_id, busy()));
     return false;
 }
@@ -520,6 +543,14 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             limit_counters_.met(Limit::Subscriptions);
         return is;
     };
+    const auto too_many_islands = [this](const Session& s, const SnapshotSubscription& wanted) {
+        std::size_t watched = wanted.island_count;
+        for (const auto& [number, other] : s.snapshots)
+            watched += other.island_count;
+        if (watched > watched_islands_max)
+            limit_counters_.met(Limit::WatchedIslands);
+        return watched > watched_islands_max;
+    };
     const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
                                   "this session has " + std::to_string(subscriptions_max) +
                                       " subscriptions already: unsubscribe from one first",
@@ -537,6 +568,8 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 wanted->world = watched->world;
                 if (subscribe.has_island())
                     wanted->island = subscribe.island();
+                else
+                    wanted->island_count = watched->island_count;
                 wanted->rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
                 if (wanted->rate_hz < subscribe.rate_hz())
                     limit_counters_.met(Limit::SnapshotRate);
@@ -548,11 +581,17 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 if (subscribe.has_view())
                     wanted->set_view(subscribe.view());
             },
-            [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
+            [this, wanted, full, too_many, too_many_islands](Session& subscriber, v1::Response& response) {
                 if (response.status().code() != v1::CODE_UNSPECIFIED)
                     return;
                 if (full(subscriber))
                     return refuse(response, too_many);
+                if (too_many_islands(subscriber, *wanted))
+                    return refuse(response, refusal(base::RefusalCode::ResourceExhausted,
+                                                    "the subscriptions of this session would come to more than " +
+                                                        std::to_string(watched_islands_max) +
+                                                        " islands: subscribe to single islands, or unsubscribe first",
+                                                    base::Reason::SubscriptionsMax));
                 response.mutable_subscription()->set_rate_hz(wanted->rate_hz);
                 response.mutable_subscription()->set_subscription_id(
                     streams_.subscribe(subscriber, std::move(*wanted)));

@@ -47,6 +47,10 @@ class Dispatcher {
     }
 
   private:
+    /// A request that was admitted.
+    void serve(Session& session, v1::Request request);
+    /// What was held back for the query that is answered now.
+    void serve_held_back(Session& session);
     void command(Session& session, const v1::Request& request);
     void query(Session& session, v1::Request request);
     void subscription(Session& session, const v1::Request& request);

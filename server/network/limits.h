@@ -19,6 +19,7 @@ namespace evod::network {
 // What they are about and what happens beyond them is said in the table below, in limits.cpp.
 constexpr std::uint32_t requests_in_flight_max = 32;
 constexpr std::uint32_t subscriptions_max = 32;
+constexpr std::size_t watched_islands_max = 16'384; // four times the islands of the largest world
 constexpr double snapshot_rate_hz_max = 120;
 constexpr double snapshot_rate_hz_min = 1e-6; // slower ones are raised to it: a clock's numbers have an end
 constexpr std::uint32_t retries_kept = 1000;
@@ -30,6 +31,9 @@ constexpr std::chrono::seconds stalled_timeout{10};
 constexpr std::chrono::seconds lease_time{5};
 constexpr std::uint32_t requests_per_s_max = 50'000; // more than one client asks for that waits for each answer
 constexpr std::uint32_t request_burst_max = 5'000;
+// A long frame counts as several, for what it costs to read and to answer.
+constexpr std::size_t bytes_per_turn = 64, answer_bytes_per_turn = 1 << 10;
+constexpr std::uint32_t frame_bytes_max_below_admin = 64 << 10; // only an admin's CreateWorld may need more
 constexpr std::size_t client_buffer_bytes_max = 256 << 20;
 constexpr std::size_t queued_event_bytes_max = 1 << 20;
 constexpr std::size_t queued_response_bytes_max = 16 << 20;
@@ -57,6 +61,7 @@ enum class Limit : std::uint8_t {
     RequestsInFlight,
     MailboxCommands,
     Subscriptions,
+    WatchedIslands,
     SnapshotRate,
     Tiles,
     Worlds,
@@ -130,7 +135,10 @@ constexpr std::size_t retry_bytes_max = 64 << 20;
 constexpr std::size_t evicted_keys_max = 100'000;
 
 constexpr std::chrono::milliseconds look_every{500};   // for a token file that has changed, and who is stalled
-constexpr std::size_t ended_to_trim = 64;              // sessions between two looks; then memory is given back
+// Free memory is given back to the system: so often at most, and only after sessions have ended or so much was
+// answered.
+constexpr std::chrono::seconds trim_every{2};
+constexpr std::uint64_t answered_to_trim_bytes = 1 << 20;
 constexpr std::chrono::seconds farewell_timeout{1};    // for the last bytes of a session that ends
 constexpr std::chrono::milliseconds accept_pause{100}; // when the system has no file descriptors left
 constexpr std::uint64_t descriptors_kept = 32;         // of the system's, for files: an eighth, if it gives few

@@ -17,8 +17,7 @@ asio::awaitable<bool> Pulse::beats(std::chrono::milliseconds patience) {
     waiting_.insert(&timer);
     // However full the mailbox is: this is one.
     if (!std::exchange(asked_, true))
-        mailbox_.push(
-            runtime::QueryMail{[this](const simulation::Laboratory&) { outbox_.answer([this] { answered(); }); }});
+        mailbox_.push(runtime::CallMail{[this] { outbox_.answer([this] { answered(); }); }});
     const auto [cancelled] = co_await timer.async_wait(no_throw);
     waiting_.erase(&timer);
     co_return cancelled && !stopped_;

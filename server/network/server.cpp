@@ -103,7 +103,7 @@ Server::Server(ServerOptions options)
     };
     host_.ended = [this](Session& session) {
         --connections_;
-        ++ended_since_look_;
+        ++ended_since_trim_;
         dispatcher_.forget(session);
         sessions_.erase(session.number());
         streams_.forget(session);
@@ -288,19 +288,35 @@ void Server::stop() {
 }
 
 void Server::look_around() {
+    looked_ = clock_.now();
+    look_again();
+}
+
+void Server::look_again() {
     look_timer_.expires_after(look_every);
     look_timer_.async_wait([this](boost::system::error_code error) {
         if (error)
             return;
         mind_tokens();
+        // A look that comes late says nothing of the clients: it was this server that was busy.
         const auto now = clock_.now();
+        const auto watched = std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * look_every);
         for (const auto& [number, session] : sessions_)
-            session->mind_progress(now);
-        // What many sessions leave is scattered over the heap, and is not given back by itself.
-        if (std::exchange(ended_since_look_, 0) >= ended_to_trim)
-            ::malloc_trim(0);
-        look_around();
+            session->mind_progress(watched);
+        give_memory_back(now);
+        look_again();
     });
+}
+
+void Server::give_memory_back(runtime::Clock::time_point now) {
+    // What answers and sessions leave is scattered over the heap, and is not given back by itself.
+    const std::uint64_t answered = host_.traffic.sent_control_bytes.value();
+    if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes))
+        return;
+    ::malloc_trim(0);
+    trim_at_ = now + trim_every;
+    ended_since_trim_ = 0;
+    answered_at_trim_ = answered;
 }
 
 void Server::mind_tokens() {

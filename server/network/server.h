@@ -90,6 +90,8 @@ class Server {
     void begin_first_world();
     /// Every now and then: for tokens that are revoked, and for clients that take nothing.
     void look_around();
+    void look_again();
+    void give_memory_back(runtime::Clock::time_point now);
     void mind_tokens();
     /// More waits for all clients than may: closes those for whom most waits.
     void relieve();
@@ -126,7 +128,9 @@ class Server {
 
     Sessions sessions_;
     std::uint64_t session_number_ = 0;
-    std::size_t ended_since_look_ = 0; // sessions
+    runtime::Clock::time_point looked_, trim_at_;
+    std::size_t ended_since_trim_ = 0;   // sessions
+    std::uint64_t answered_at_trim_ = 0; // bytes
     std::size_t connections_ = 0;      // sessions, and those that are being told they have no place
     SessionHost host_{limit_counters_, buffers_};
     Streams streams_;

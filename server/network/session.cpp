@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -117,13 +118,13 @@ Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
     , neighbourhood_{neighbourhood_of(peer_.address())}
     , reader_bytes_{host.buffers}
     , expected_bytes_{host.buffers}
+    , held_back_bytes_{host.buffers}
     , turns_to_send_{requests_per_s_max, request_burst_max, host.clock->now()}
     , hello_timer_{line_.socket().get_executor()}
     , frame_timer_{line_.socket().get_executor()}
     , turn_timer_{line_.socket().get_executor()}
     , farewell_timer_{line_.socket().get_executor()}
-    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()}
-    , progressed_{host.clock->now()} {
+    , writer_signal_{line_.socket().get_executor(), asio::steady_timer::time_point::max()} {
     boost::system::error_code ignored; // a socket without these options works, only less well
     line_.socket().set_option(tcp::no_delay{true}, ignored);
     line_.socket().set_option(asio::socket_base::keep_alive{true}, ignored);
@@ -160,6 +161,17 @@ void Session::start(const std::optional<base::Refusal>& refused) {
                 self->close(); // TLS has not begun: it cannot be told
         }
     });
+}
+
+std::uint32_t Session::control_frame_bytes_max() const {
+    const std::uint32_t most = host_.limits.control_frame_bytes_max();
+    return visitor_.role < access::Role::Admin ? std::min(most, frame_bytes_max_below_admin) : most;
+}
+
+v1::Limits Session::limits() const {
+    v1::Limits limits = host_.limits;
+    limits.set_control_frame_bytes_max(control_frame_bytes_max());
+    return limits;
 }
 
 std::string Session::by() const {
@@ -203,16 +215,21 @@ asio::awaitable<void> Session::read() {
             if (!frame) {
                 if (frame.error().beyond == wire::Beyond::FrameBytes)
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
-                fail(refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
+                co_await fail_when_answered(
+                    refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
                 break;
             }
             if (!*frame)
                 break;
             one_came = true;
-            if (!turns_to_send_.take(host_.clock->now()))
-                co_await wait_for_turn();
-            if (!finishing_ && !ended_)
-                on_frame(**frame);
+            const double cost = 1 + std::floor(static_cast<double>((*frame)->body.size()) / bytes_per_turn);
+            if (!turns_to_send_.take(cost, host_.clock->now()))
+                co_await wait_for_turn(cost);
+            if (finishing_ || ended_)
+                break;
+            on_frame(**frame);
+            // Other sessions have their turn before the next frame.
+            co_await asio::post(line_.socket().get_executor(), no_throw);
         }
         mind_frame(one_came);
         reader_.trim();
@@ -246,7 +263,7 @@ void Session::mind_frame(bool one_came) {
     });
 }
 
-asio::awaitable<void> Session::wait_for_turn() {
+asio::awaitable<void> Session::wait_for_turn(double cost) {
     host_.limit_counters.met(Limit::RequestsPerSecond);
     host_.limit_counters.met(Limit::RequestBurst);
     // What does not come now is not late: it is not being read.
@@ -255,7 +272,19 @@ asio::awaitable<void> Session::wait_for_turn() {
     do {
         turn_timer_.expires_after(turns_to_send_.time_for(request_burst_max / 10));
         co_await turn_timer_.async_wait(no_throw);
-    } while (!finishing_ && !ended_ && !turns_to_send_.take(host_.clock->now()));
+    } while (!finishing_ && !ended_ && !turns_to_send_.take(cost, host_.clock->now()));
+}
+
+asio::awaitable<void> Session::fail_when_answered(base::Refusal refused) {
+    if (in_flight_ > 0) {
+        input_over_ = true;
+        within_frame_ = false;
+        frame_timer_.cancel();
+        wake_writer();
+        turn_timer_.expires_at(asio::steady_timer::time_point::max());
+        co_await turn_timer_.async_wait(no_throw);
+    }
+    fail(refused);
 }
 
 /// What the client still sends is read away, for closing with bytes unread would take the last answer from it.
@@ -338,7 +367,7 @@ void Session::on_hello(const v1::Hello& hello) {
     if (hello.frame_bytes_max() != 0)
         frame_bytes_max_ = hello.frame_bytes_max();
     hello_timer_.cancel();
-    reader_.set_limits(wire::server_limits);
+    reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
     // In by(), a colon and a space end the user's name and nothing else.
     for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": "))
@@ -355,7 +384,7 @@ void Session::on_hello(const v1::Hello& hello) {
     for (const char* feature :
          {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view", "planned_changes"})
         welcome.add_features(feature);
-    *welcome.mutable_limits() = host_.limits;
+    *welcome.mutable_limits() = limits();
     welcome.set_durability(host_.durability);
     if (host_.storage)
         *welcome.mutable_storage() = *host_.storage;
@@ -385,12 +414,28 @@ bool Session::admit_request() {
     return true;
 }
 
+void Session::hold_back(v1::Request request) {
+    const std::size_t bytes = request.SpaceUsedLong();
+    held_back_bytes_.set(held_back_bytes_.bytes() + bytes);
+    held_back_.push_back({std::move(request), bytes});
+}
+
+std::optional<v1::Request> Session::take_held_back() {
+    if (held_back_.empty())
+        return std::nullopt;
+    HeldBack next = std::move(held_back_.front());
+    held_back_.pop_front();
+    held_back_bytes_.set(held_back_bytes_.bytes() - next.bytes);
+    return std::move(next.request);
+}
+
 void Session::expect(std::ptrdiff_t bytes) {
     if (!ended_)
         expected_bytes_.set(expected_bytes_.bytes() + static_cast<std::size_t>(bytes));
 }
 
 void Session::answer(SharedBytes frame) {
+    turns_to_send_.charge(static_cast<double>(frame->size() / answer_bytes_per_turn));
     if (takes(frame->size()))
         return enqueue(std::move(frame), Kind::Answer);
     v1::ServerMessage too_large;
@@ -749,10 +794,13 @@ asio::awaitable<void> Session::write() {
                 written(sent);
             sending_.clear();
         } else if (input_over_ && !finishing_) {
-            if (in_flight_ == 0)
-                finish();
-            else
+            if (in_flight_ > 0) {
                 co_await wait_for_work();
+            } else if (turn_timer_.cancel() > 0) {
+                co_await asio::post(line_.socket().get_executor(), no_throw); // fail_when_answered() goes on
+            } else {
+                finish();
+            }
         } else if (dropped_events_ > 0 && !finishing_) {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
@@ -781,12 +829,12 @@ asio::awaitable<void> Session::write() {
 
 // ---- the end ---------------------------------------------------------------------------------------------------
 
-void Session::mind_progress(runtime::Clock::time_point now) {
+void Session::mind_progress(runtime::Clock::duration watched) {
     const Line::Progress progress = sending_.empty() ? Line::Progress{} : line_.progress();
     if (sending_.empty() || ended_ || progress != progress_) {
         progress_ = progress;
-        progressed_ = now;
-    } else if (now - progressed_ >= stalled_timeout) {
+        stalled_ = {};
+    } else if (stalled_ += watched; stalled_ >= stalled_timeout) {
         host_.limit_counters.met(Limit::StalledTimeout);
         log::warn({.session = number_, .client = by()},
                   "session {}: {} is closed: for {} s it has taken nothing of what was sent to it", number_, by(),
@@ -796,7 +844,7 @@ void Session::mind_progress(runtime::Clock::time_point now) {
 }
 
 std::size_t Session::held_bytes() const {
-    std::size_t bytes = reader_bytes_.bytes() + expected_bytes_.bytes();
+    std::size_t bytes = reader_bytes_.bytes() + expected_bytes_.bytes() + held_back_bytes_.bytes();
     for (const Queued& queued : queue_)
         bytes += queued.bytes.share();
     for (const Queued& queued : sending_)
@@ -848,6 +896,8 @@ void Session::close() {
     postponed_.clear();
     reader_bytes_.set(0);
     expected_bytes_.set(0);
+    held_back_.clear();
+    held_back_bytes_.set(0);
     wake_writer();
 }
 

@@ -62,6 +62,7 @@ struct SessionHost {
 struct SnapshotSubscription {
     std::string world;
     std::optional<std::uint32_t> island; // nullopt: all
+    std::uint32_t island_count = 1;      // of these, when it began
     double rate_hz = 1;
     std::uint64_t newcomer = 0;              // number of the subscription among all of the server
     runtime::Clock::time_point next_picture; // not before then
@@ -110,7 +111,8 @@ class Session : public std::enable_shared_from_this<Session> {
     bool greeted() const { return greeted_; }
     /// Client name and address, and whose token it has: "anna: evoview 127.0.0.1:51234".
     std::string by() const;
-    const v1::Limits& limits() const { return host_.limits; }
+    /// As they are for this session.
+    v1::Limits limits() const;
     const access::Visitor& visitor() const { return visitor_; }
     /// Where it comes from, as far as an address tells people apart: of IPv6, its /64.
     const std::string& neighbourhood() const { return neighbourhood_; }
@@ -146,7 +148,8 @@ class Session : public std::enable_shared_from_this<Session> {
     void close();
 
     /// Whether its client takes what is sent; one that does not is closed. To be called now and then.
-    void mind_progress(runtime::Clock::time_point now);
+    /// watched  how long the server has been able to see that, since the last call.
+    void mind_progress(runtime::Clock::duration watched);
     /// Memory that closing it would free.
     std::size_t held_bytes() const;
     /// Closes it, for there is no room for what waits for all.
@@ -156,6 +159,13 @@ class Session : public std::enable_shared_from_this<Session> {
     std::map<std::uint32_t, SnapshotSubscription> snapshots; // by subscription id
     std::map<std::uint32_t, EventSubscription> events;
     std::set<std::string> pasts; // worlds that it has opened to look at the past
+
+    // One query of a session at a time is with the simulation, so that sessions share its time evenly. Requests that
+    // come meanwhile are held back, so that all are carried out in their order.
+    bool query_under_way = false;
+    void hold_back(v1::Request request);
+    /// The next of those; nullopt: there is none.
+    std::optional<v1::Request> take_held_back();
 
   private:
     enum class Kind { Answer, Unasked, Event, Picture };
@@ -169,10 +179,14 @@ class Session : public std::enable_shared_from_this<Session> {
     void mind_frame(bool one_came);
     asio::awaitable<void> write();
     /// Until the client may go on, if it has sent too much for now.
-    asio::awaitable<void> wait_for_turn();
+    asio::awaitable<void> wait_for_turn(double cost);
+    /// Reads no more, and fails once all that was asked is answered.
+    asio::awaitable<void> fail_when_answered(base::Refusal refused);
     asio::awaitable<void> discard_input();
     asio::awaitable<void> wait_for_work(runtime::Clock::time_point until = runtime::Clock::time_point::max());
     void on_frame(const wire::Frame& frame);
+    /// Of a frame from the client, after its hello.
+    std::uint32_t control_frame_bytes_max() const;
     void on_hello(const v1::Hello& hello);
     void on_acknowledgement(const v1::AcknowledgePicture& acknowledged);
     /// A picture whose turn it is.
@@ -214,7 +228,12 @@ class Session : public std::enable_shared_from_this<Session> {
     access::Visitor visitor_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max(); // of a body that the client takes
     wire::FrameReader reader_{wire::hello_limits};
-    Buffers::Own reader_bytes_, expected_bytes_;
+    Buffers::Own reader_bytes_, expected_bytes_, held_back_bytes_;
+    struct HeldBack {
+        v1::Request request;
+        std::size_t bytes;
+    };
+    std::deque<HeldBack> held_back_; // requests_in_flight_max at most
     TokenBucket turns_to_send_;
     asio::steady_timer hello_timer_, frame_timer_, turn_timer_, farewell_timer_, writer_signal_;
     bool within_frame_ = false; // a frame has begun to come
@@ -233,7 +252,7 @@ class Session : public std::enable_shared_from_this<Session> {
     } rest_;                                           // of a picture that the line did not take at once
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
     Line::Progress progress_;
-    runtime::Clock::time_point progressed_; // when it was last seen that something was taken, or nothing waited
+    runtime::Clock::duration stalled_{};    // seen to take nothing, though something waited
     std::size_t in_flight_ = 0;             // requests whose answer is not yet being written
     std::uint64_t dropped_events_ = 0;      // not yet told
     // Of the pictures that wait in `snapshots`: each has one turn, the last that it was given. One that waits for an

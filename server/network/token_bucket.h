@@ -18,15 +18,18 @@ class TokenBucket {
     TokenBucket(double per_s, double burst, Clock::time_point now)
         : per_s_{per_s}, burst_{burst}, tokens_{burst}, filled_{now} {}
 
-    /// Takes a token; false: there is none, and nothing was taken.
-    bool take(Clock::time_point now) {
+    /// Takes so many tokens, or the whole burst for more than that and the rest of those that come; false: there are
+    /// not as many, and none was taken.
+    bool take(double tokens, Clock::time_point now) {
         tokens_ = std::min(burst_, tokens_ + per_s_ * std::chrono::duration<double>{now - filled_}.count());
         filled_ = now;
-        if (tokens_ < 1)
+        if (tokens_ < std::min(tokens, burst_))
             return false;
-        tokens_ -= 1;
+        tokens_ -= tokens;
         return true;
     }
+    /// Takes them whether they are there or not.
+    void charge(double tokens) { tokens_ -= tokens; }
 
     /// How long it takes for so many to come. Whoever has to wait had better wait for a few, not for one at a time.
     Clock::duration time_for(double tokens) const {

@@ -40,9 +40,14 @@ struct CommandMail {
     CommandReply reply;
 };
 
-/// Reads; called on the simulation thread between two ticks, so it must be short.
+/// A client reads; called on the simulation thread between two ticks, when the query budget allows it. Commands do not
+/// wait for it, so a session sends nothing more until it is answered.
 struct QueryMail {
     std::function<void(const simulation::Laboratory&)> ask;
+};
+/// Another part of the server continues on the simulation thread; must be short.
+struct CallMail {
+    std::function<void()> call;
 };
 
 // Looking at the past (time_travel.h).
@@ -83,7 +88,7 @@ struct FindRun {
     std::function<void(const base::Result<FoundRun>&)> found; // called on the simulation thread
 };
 
-using Mail = std::variant<CommandMail, QueryMail, PastMail, FindRun>;
+using Mail = std::variant<CommandMail, QueryMail, CallMail, PastMail, FindRun>;
 
 class Mailbox {
   public:

@@ -28,7 +28,7 @@ void PastReader::work(const std::stop_token& stop) {
             read = std::move(waiting_.front());
             waiting_.pop_front();
         }
-        mailbox_.push(QueryMail{[then = read()](const simulation::Laboratory&) { then(); }});
+        mailbox_.push(CallMail{read()});
     }
 }
 

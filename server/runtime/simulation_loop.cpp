@@ -1,5 +1,6 @@
 #include "server/runtime/simulation_loop.h"
 
+#include "server/base/overloaded.h"
 #include "server/base/within_memory.h"
 #include "server/log/log.h"
 
@@ -62,6 +63,7 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor&
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
     mind_mail();
+    answer_queries();
     mind_demand();
     mind_storage();
     follow_worlds();
@@ -120,6 +122,8 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         at_latest(clock_.now());
     }
     mind_arrivals();
+    if (const auto again = answer_queries()) // until the next tick is due
+        at_latest(*again);
 
     const auto now = clock_.now();
     if (const auto again = past_.refresh(now))
@@ -151,17 +155,49 @@ void SimulationLoop::mind_mail() {
     if (!mailbox_.pending())
         return;
     mail_ = mailbox_.drain(std::move(mail_));
-    for (Mail& mail : mail_) {
-        if (auto* command = std::get_if<CommandMail>(&mail))
-            apply(*command);
-        else if (auto* past = std::get_if<PastMail>(&mail))
-            past_.apply(std::move(*past));
-        else if (auto* run = std::get_if<FindRun>(&mail))
-            past_.find_run(*run);
-        else
-            std::get<QueryMail>(mail).ask(laboratory_);
-    }
+    for (Mail& mail : mail_)
+        std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
+                                    [this](QueryMail& query) { queries_.push_back(std::move(query)); },
+                                    [](CallMail& call) { call.call(); },
+                                    [this](PastMail& past) { past_.apply(std::move(past)); },
+                                    [this](FindRun& run) { past_.find_run(run); }},
+                   mail);
     mail_.clear();
+}
+
+std::optional<Clock::time_point> SimulationLoop::answer_queries() {
+    if (queries_.empty())
+        return std::nullopt;
+    auto now = clock_.now();
+    const auto end = now + slice;
+    while (!queries_.empty()) {
+        if (now >= end)
+            return now;
+        const bool time_is_free = !time_is_wanted(now);
+        if (!query_budget_.allows(now) && !time_is_free)
+            return query_budget_.next_at();
+        answer_query();
+        const auto began = std::exchange(now, clock_.now());
+        if (!time_is_free)
+            query_budget_.spend(now - began);
+        mind_mail(); // commands do not wait for the queries of others
+    }
+    return std::nullopt;
+}
+
+void SimulationLoop::answer_query() {
+    const QueryMail query = std::move(queries_.front());
+    queries_.pop_front();
+    query.ask(laboratory_);
+}
+
+bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
+    return past_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
+               if (!entry->wants_tick() || waits_for_the_disk(*entry))
+                   return false;
+               const auto track = tracks_.find(entry->name);
+               return !entry->control.speed || track == tracks_.end() || track->second.due <= now;
+           });
 }
 
 void SimulationLoop::apply(CommandMail& mail) {
@@ -293,6 +329,8 @@ void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applie
 
 void SimulationLoop::close() {
     mind_mail();
+    while (!queries_.empty())
+        answer_query();
     if (recorder_)
         recorder_->close_all(laboratory_);
 }

@@ -1,13 +1,15 @@
 // Simulation loop: what the simulation thread does between two sleeps. Owns the laboratory and decides when a world
 // advances; what happens when it does is the laboratory's business and does not depend on this.
 //
-//   mail → how it stands with the disk → paced worlds that are due → worlds at full speed and those that show the past,
-//   a slice each → journeys into the past, a slice → events, pictures → sleep until the next is due
+//   commands → queries → how it stands with the disk → paced worlds that are due → worlds at full speed and those that
+//   show the past, a slice each → journeys into the past, a slice → queries → events, pictures → sleep until the next
+//   is due
 //
 // Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
 //              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another
 //              world is due, so answers and paced worlds wait for one tick of another world at most. Until then all
 //              that have no pace to keep are given equal slices, and of each a tick.
+// Queries      are answered in the time that no world wants, and for a share of the other (query_budget.h).
 // Disk         while it has no room for what worlds have to say, those that live stand still. Mail, worlds that show
 //              the past, and pictures for who comes new go on.
 // Threads      called by one; that is the simulation thread.
@@ -19,11 +21,13 @@
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
+#include "server/runtime/query_budget.h"
 #include "server/runtime/snapshot.h"
 #include "server/runtime/time_travel.h"
 #include "server/simulation/laboratory.h"
 #include "server/storage/recorder.h"
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -67,6 +71,7 @@ class SimulationLoop {
     /// if nothing comes; nullopt: not until then.
     std::optional<Clock::time_point> pass();
 
+    /// Carries out commands; queries wait for answer_queries().
     void mind_mail();
     /// At the end: minds the mail that waits, and closes what is recorded.
     void close();
@@ -96,6 +101,11 @@ class SimulationLoop {
         Clock::time_point next_picture;
     };
 
+    /// Answers queries as far as there is time for them. Returns when it is to be called again; nullopt: none waits.
+    std::optional<Clock::time_point> answer_queries();
+    void answer_query();
+    /// Whether a world is late if something else is done now.
+    bool time_is_wanted(Clock::time_point now) const;
     void apply(CommandMail& mail);
     void fork(CommandMail& mail);
     base::Result<simulation::Applied> apply(const simulation::Command& command);
@@ -142,6 +152,8 @@ class SimulationLoop {
     Watches watches_;
     SnapshotPool pool_;
     std::vector<Mail> mail_;
+    std::deque<QueryMail> queries_; // one of a session at most
+    QueryBudget query_budget_;
     std::vector<std::uint32_t> island_indices_; // working memory
 };
 

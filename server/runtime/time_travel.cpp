@@ -123,7 +123,7 @@ void TimeTravel::once_written(const std::string& world, std::function<void(bool)
     const std::uint64_t number = ++last_waiting_;
     waiting_.emplace(number, std::move(then));
     recorder->once_written([this, number] {
-        mailbox_.push(QueryMail{[this, number](const simulation::Laboratory&) {
+        mailbox_.push(CallMail{[this, number] {
             if (auto waited = waiting_.extract(number))
                 waited.mapped()(true);
         }});

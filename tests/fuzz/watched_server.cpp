@@ -142,7 +142,8 @@ void WatchedServer::poll() {
     context_.poll();
     const auto now = clock().now();
     for (const auto& [number, session] : sessions_)
-        session->mind_progress(now);
+        session->mind_progress(polled_ == runtime::Clock::time_point{} ? runtime::Clock::duration{} : now - polled_);
+    polled_ = now;
 }
 
 void WatchedServer::pass() {
@@ -168,7 +169,7 @@ void WatchedServer::watch_mail() {
                 continue;
             }
             const auto before = std::make_shared<std::string>();
-            mailbox_.push(runtime::QueryMail{[this, before](const auto&) { *before = state_of_all(); }});
+            mailbox_.push(runtime::CallMail{[this, before] { *before = state_of_all(); }});
             command->reply = [this, before, reply = std::move(command->reply)](
                                  const simulation::Laboratory& laboratory, const simulation::Command& carried_out,
                                  const base::Result<simulation::Applied>& applied) {

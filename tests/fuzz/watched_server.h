@@ -61,6 +61,8 @@ class WatchedServer {
     runtime::Outbox outbox_;
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;
+    runtime::Clock::time_point polled_;
+    runtime::Clock::time_point polled_ = clock().now();
     std::size_t connection_count_ = 0;
     network::SessionHost host_{limit_counters_, buffers_};
     network::Streams streams_;

@@ -9,6 +9,7 @@ import re
 import socket
 import ssl
 import stat
+import struct
 import subprocess
 import sys
 import time
@@ -147,6 +148,16 @@ class Roles(Access):
                              PERMISSION_DENIED)
         after = viewer.world()
         self.assertEqual(after.SerializeToString(), before.SerializeToString())
+
+    def test_frames_of_those_who_create_no_worlds_are_shorter(self):
+        tokens = {role: self.token(name, role) for name, role in (("ada", ADMIN), ("bob", CONTROLLER), ("eve", VIEWER))}
+        server = self.serve("--require-token")
+        for role, longest in ((ADMIN, 1 << 20), (CONTROLLER, 1 << 16), (VIEWER, 1 << 16)):
+            client = self.come(server, tokens[role])
+            self.assertEqual(client.welcome.limits.control_frame_bytes_max, longest)
+            self.assertEqual(client.call(describe=c.Describe()).description.limits.control_frame_bytes_max, longest)
+            client.socket.sendall(b"EV\x01\x01" + struct.pack("<I", longest + 1))
+            self.assertIn(str(longest), client.control().goodbye.status.message)
 
     def test_a_viewer_plays_the_past_it_has_opened_and_no_other(self):
         karl, anna, otto = self.token("karl", CONTROLLER), self.token("anna", VIEWER), self.token("otto", VIEWER)

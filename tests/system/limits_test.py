@@ -253,19 +253,29 @@ class Sessions(Case):
 
 
 class Requests(Case):
+    @contextlib.contextmanager
+    def busy(self, admin, name, organisms=100_000):
+        """The simulation makes a large world, and does nothing else meanwhile."""
+        asked = admin.ask(create_world=c.CreateWorld(name=name, seed=1, parameters=plain.assignments(
+            population_size=organisms, scale_with_population=True, reference_population=50)))
+        yield
+        self.assertEqual(admin.response(asked).status.code, OK)
+        admin.call(delete_world=c.DeleteWorld(world=name))
+
     def test_in_flight(self):
         server = self.serve()
         client, other = self.come(server), self.come(server)
         limit = client.welcome.limits.requests_in_flight_max
+        rounds = iter(range(1000))
 
         def codes(count):
-            # In one piece, so that none is answered before all are read.
-            client.socket.sendall(b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
-                                           for i in range(count)))
-            return [client.response(i + 1).status.code for i in range(count)]
+            with self.busy(other, f"large{next(rounds)}"):
+                client.socket.sendall(b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
+                                               for i in range(count)))
+                return [client.response(i + 1).status.code for i in range(count)]
         self.assertEqual(codes(limit), [OK] * limit)
         with self.meets(other, "requests_in_flight_max"):
-            self.assertEqual(codes(limit + 1), [OK] * limit + [EXHAUSTED])
+            plain.until(lambda: codes(limit + 1) == [OK] * limit + [EXHAUSTED], "one too many")
         client.call(list_worlds=c.ListWorlds())
 
     def test_as_many_in_flight_as_there_may_be_all_the_time(self):
@@ -280,21 +290,17 @@ class Requests(Case):
         admin = self.come(server)
         limits = admin.welcome.limits
         clients = [self.come(server) for _ in range(limits.mailbox_commands_max // limits.requests_in_flight_max + 1)]
-        burst = b"".join(frame(request(request_id=i + 1, list_worlds=c.ListWorlds()))
-                         for i in range(limits.requests_in_flight_max))
         rounds = iter(range(1000))
 
         def crowd():
-            # While the simulation makes a large world it minds nothing else.
-            name = f"large{next(rounds)}"
-            asked = admin.ask(create_world=c.CreateWorld(name=name, seed=1, parameters=plain.assignments(
-                population_size=100_000, scale_with_population=True, reference_population=50)))
-            for client in clients:
-                client.socket.sendall(burst)
-            codes = [client.response(i + 1).status.code for client in clients
-                     for i in range(limits.requests_in_flight_max)]
-            self.assertEqual(admin.response(asked).status.code, OK)
-            admin.call(delete_world=c.DeleteWorld(world=name))
+            round = next(rounds)
+            bursts = [b"".join(frame(request(request_id=i + 1, client_key=f"{round} {number}", pause=c.Pause()))
+                               for i in range(limits.requests_in_flight_max)) for number in range(len(clients))]
+            with self.busy(admin, f"large{round}", 500_000):
+                for client, burst in zip(clients, bursts):
+                    client.socket.sendall(burst)
+                codes = [client.response(i + 1).status.code for client in clients
+                         for i in range(limits.requests_in_flight_max)]
             self.assertLessEqual(set(codes), {OK, EXHAUSTED})
             self.assertGreaterEqual(codes.count(OK), limits.mailbox_commands_max - 1)  # that one may be waiting, too
             return EXHAUSTED in codes
@@ -357,6 +363,21 @@ class Requests(Case):
         client.call(unsubscribe=c.Unsubscribe(subscription_id=last.subscription_id))
         client.call(subscribe_events=c.SubscribeEvents())
         other.call(subscribe_events=c.SubscribeEvents())
+
+    def test_islands_that_a_session_watches(self):
+        server = self.serve()
+        client, other = self.come(server), self.come(server)
+        client.call(create_world=c.CreateWorld(name="islands", parameters=plain.assignments(
+            island_count=4096, population_size=2, food_count=1, poison_count=0)))
+        most = client.welcome.limits.watched_islands_max // 4096
+        for _ in range(most):
+            last = client.call(subscribe_snapshots=c.SubscribeSnapshots(world="islands", rate_hz=0.01)).subscription
+        with self.meets(other, "watched_islands_max"):
+            client.call(EXHAUSTED, subscribe_snapshots=c.SubscribeSnapshots(world="islands", rate_hz=0.01))
+            client.call(EXHAUSTED, subscribe_snapshots=c.SubscribeSnapshots(world="islands", rate_hz=0.01, island=1))
+        client.call(unsubscribe=c.Unsubscribe(subscription_id=last.subscription_id))
+        for island in range(10):
+            client.call(subscribe_snapshots=c.SubscribeSnapshots(world="islands", rate_hz=0.01, island=island))
 
     def test_names(self):
         server = self.serve()
@@ -512,14 +533,15 @@ class Unread(Case):
         self.world_of_short_generations(other, 1100, island_count=1)
         asking = b"".join(frame(request(request_id=i + 1, get_history=c.GetHistory(world="short")))
                           for i in range(limits.requests_in_flight_max))
-        clients = [self.small(server) for _ in range(40)]
+        answer_bytes = len(other.call(get_history=c.GetHistory(world="short")).SerializeToString())
+        fit = limits.client_buffer_bytes_max // (answer_bytes * limits.requests_in_flight_max)
+        clients = [self.small(server) for _ in range(fit + 10)]
         pathlib.Path(f"/proc/{server.process.pid}/clear_refs").write_text("5")  # the peak begins anew
         with self.meets(other, "client_buffer_bytes_max"):
             for client in clients:
                 with contextlib.suppress(OSError):  # it is one of those that are closed
                     client.socket.sendall(asking)
-            # Which is answered after those that the simulation's mailbox had room for.
-            plain.until(lambda: other.response(other.ask(list_worlds=c.ListWorlds())).status.code == OK, "room")
+            plain.until(lambda: "wait for all clients" in server.output(), "one is closed")
         status = pathlib.Path(f"/proc/{server.process.pid}/status").read_text()
         peak_mib = int(re.search(r"VmHWM:\s+(\d+)", status)[1]) >> 10
         print(f"{peak_mib} MiB at the most", file=sys.stderr)

@@ -128,6 +128,24 @@ TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
               3 * wire::header_bytes + frames[0].ByteSizeLong() + frames[1].ByteSizeLong() + frames[2].ByteSizeLong());
 }
 
+TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
+    using namespace std::chrono_literals;
+    picture(1, 0, 1, 20'000'000);
+    session->send_waiting();
+    context.poll();
+    session->mind_progress(0s);
+    for (int i = 0; i < 9; ++i)
+        session->mind_progress(1s);
+    read(); // now it takes something
+    context.poll();
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_EQ(counters.count(Limit::StalledTimeout), 0U) << i;
+        session->mind_progress(1s);
+    }
+    session->mind_progress(1s);
+    EXPECT_EQ(counters.count(Limit::StalledTimeout), 1U);
+}
+
 TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
     std::uint64_t sequence = 0;
     for (int round = 0; round < 1000; ++round) {

@@ -11,7 +11,7 @@ class TokenBucketOf : public testing::Test {
   protected:
     int take_all() {
         int taken = 0;
-        while (bucket.take(now))
+        while (bucket.take(1, now))
             ++taken;
         return taken;
     }
@@ -39,8 +39,22 @@ TEST_F(TokenBucketOf, WhoIsNotFasterNeverWaits) {
     take_all();
     for (int i = 0; i < 1000; ++i) {
         now += 10ms;
-        EXPECT_TRUE(bucket.take(now)) << i;
+        EXPECT_TRUE(bucket.take(1, now)) << i;
     }
+}
+
+TEST_F(TokenBucketOf, MoreThanItHoldsIsPaidForAfterwards) {
+    EXPECT_TRUE(bucket.take(50, now)) << "a whole burst is there";
+    now += 300ms;
+    EXPECT_FALSE(bucket.take(1, now)) << "30 are still to be paid for";
+    now += 10ms;
+    EXPECT_TRUE(bucket.take(1, now));
+    bucket.charge(10);
+    now += 100ms;
+    EXPECT_FALSE(bucket.take(1, now));
+    now += 10ms;
+    EXPECT_FALSE(bucket.take(2, now)) << "nothing is taken where there are too few";
+    EXPECT_TRUE(bucket.take(1, now));
 }
 
 TEST_F(TokenBucketOf, WaitingAsLongAsItSaysIsLongEnough) {

@@ -10,7 +10,6 @@ namespace evod::runtime {
 namespace {
 
 TEST(PastReader, ReadsOnAThreadOfItsOwnAndTellsInOrderWhereMailIsRead) {
-    const simulation::Laboratory laboratory;
     Mailbox mailbox;
     PastReader reader{mailbox};
     std::vector<int> told;
@@ -25,7 +24,7 @@ TEST(PastReader, ReadsOnAThreadOfItsOwnAndTellsInOrderWhereMailIsRead) {
     while (told.size() < 3) {
         mailbox.wait(std::nullopt);
         for (const Mail& mail : mailbox.drain())
-            std::get<QueryMail>(mail).ask(laboratory);
+            std::get<CallMail>(mail).call();
     }
     EXPECT_EQ(told, (std::vector{0, 1, 2}));
     EXPECT_EQ(read_on.size(), 1u);

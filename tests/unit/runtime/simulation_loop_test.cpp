@@ -211,6 +211,91 @@ TEST_F(Loop, APacedWorldKeepsItsPaceBesideOneAtFullSpeed) {
     EXPECT_GT(tick("busy"), 3000);
 }
 
+/// A client that always has a query waiting, which takes `cost`.
+class Asker {
+  public:
+    Asker(Mailbox& mailbox, support::ManualClock& clock, Clock::duration cost)
+        : mailbox_{mailbox}, clock_{clock}, cost_{cost} {
+        ask();
+    }
+    int answered = 0;
+
+  private:
+    void ask() {
+        mailbox_.push(QueryMail{[this](const Laboratory&) {
+            ++answered;
+            clock_.advance(cost_);
+            ask();
+        }});
+    }
+    Mailbox& mailbox_;
+    support::ManualClock& clock_;
+    const Clock::duration cost_;
+};
+
+TEST_F(Loop, QueriesHaveTheTimeThatNoWorldWants) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    const Asker asker{mailbox, clock, 4ms};
+    const auto began = clock.now();
+    auto next = loop.pass();
+    while (clock.now() - began < 2s) {
+        if (next && *next > clock.now() && !mailbox.pending())
+            clock.advance(*next - clock.now());
+        next = loop.pass();
+    }
+    EXPECT_NEAR(static_cast<double>(tick()), 201, 2);
+    EXPECT_NEAR(asker.answered, 500, 10) << "nothing else was to be done";
+    EXPECT_FALSE(world().slowed);
+}
+
+TEST_F(Loop, QueriesCostAWorldAtFullSpeedAShareOfTheTime) {
+    send(create("w"));
+    send(simulation::SetSpeed{"w", {}});
+    send(simulation::Run{"w", {}});
+    clock.per_look = 100us; // a tick takes as long
+    loop.pass();
+    const Asker asker{mailbox, clock, 4ms};
+    const auto began = clock.now();
+    while (clock.now() - began < 2s)
+        loop.pass();
+    EXPECT_NEAR(asker.answered * 4.0, 2000.0 / QueryBudget::share, 12);
+}
+
+TEST_F(Loop, CommandsDoNotWaitForTheQueriesOfOthers) {
+    send(create("w"));
+    loop.pass();
+    std::vector<std::string> order;
+    for (const char* name : {"first", "second"})
+        mailbox.push(QueryMail{[&, name](const Laboratory& laboratory) {
+            order.emplace_back(name);
+            if (order.size() == 1)
+                send(simulation::Run{"w", {}});
+            else
+                EXPECT_TRUE((*laboratory.find("w"))->wants_tick());
+        }});
+    loop.pass();
+    EXPECT_EQ(order, (std::vector<std::string>{"first", "second"}));
+}
+
+TEST_F(Loop, WhatWasAskedIsAnsweredAtTheEnd) {
+    send(create("w"));
+    send(simulation::SetSpeed{"w", {}});
+    send(simulation::Run{"w", {}});
+    int answered = 0;
+    for (int i = 0; i < 50; ++i)
+        mailbox.push(QueryMail{[&](const Laboratory&) {
+            ++answered;
+            clock.advance(100ms);
+        }});
+    clock.per_look = 100us;
+    loop.pass();
+    EXPECT_LT(answered, 50);
+    loop.close();
+    EXPECT_EQ(answered, 50);
+}
+
 TEST_F(Loop, MeasuresTicksPerSecond) {
     send(create("w"));
     send(simulation::Run{"w", {}});
