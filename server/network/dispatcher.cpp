@@ -164,11 +164,11 @@ Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, run
     , exports_{outbox, limit_counters}
     , breedings_{outbox, limit_counters}
     , leases_{context,
-              [this](const std::string& world) {
+              [this](const std::string& world, std::uint64_t lease) {
                   limit_counters_.met(Limit::Lease);
                   v1::Request request;
                   request.mutable_release_lease()->set_world(world);
-                  handle_own(std::move(request));
+                  handle_own(std::move(request), lease);
               }}
     , retries_{{.kept_per_key = retries_kept,
                 .keys_max = client_keys_max,
@@ -310,14 +310,16 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
         retries_.forget(key, id, encode_response(refused(busy())));
 }
 
-void Dispatcher::handle_own(v1::Request request) {
+void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
     request.set_client_key(own_key_);
     request.set_request_id(++own_request_id_);
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     EVOD_ASSERT(command.has_value());
+    if (auto* release = std::get_if<simulation::ReleaseLease>(&*command))
+        release->lease = lease;
     carry_out(*std::move(command), request, {0, "evod", ""},
               [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
-                  if (refused != nullptr)
+                  if (refused != nullptr && refused->reason != base::Reason::NoLease)
                       log::error("{} of the server itself is refused: {}", name, to_text(*refused));
               });
 }
@@ -335,7 +337,7 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
             SharedBytes frame;
             std::optional<base::Refusal> refused;
             std::optional<v1::Event> event;
-            bool leased = false; // its world, now
+            std::optional<std::uint64_t> lease; // of its world, now
         };
         const auto told = std::make_shared<Told>();
         v1::Response response = response_to(request, laboratory, applied);
@@ -354,7 +356,8 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
         }
         if (applied)
             if (const auto entry = laboratory.find(applied->world))
-                told->leased = (*entry)->control.leased;
+                if ((*entry)->control.leased)
+                    told->lease = (*entry)->control.lease;
         auto give = [this, told, answered, key = Retries::key_of(from.user, request.client_key()),
                      steps = request.has_run_until_tick(),
                      gone = applied && request.has_delete_world(), world = applied ? applied->world : ""] {
@@ -363,10 +366,12 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
                 streams_.forget_world(world);
             if (told->event)
                 streams_.tell(*told->event);
-            if (!told->leased)
+            if (told->refused)
+                return; // nothing has changed
+            if (!told->lease)
                 leases_.end(world);
             else if (steps && !going_away_)
-                leases_.begin(world, key);
+                leases_.begin(world, *told->lease, key);
         };
         // At once: who subscribes after the answer hears of what comes after it.
         return runtime::CommandAnswer{*told->frame,

@@ -29,10 +29,11 @@ class Dispatcher {
 
     void handle(Session& session, v1::Request request);
 
-    /// A command of the server itself. A refusal is logged; one for want of room in the mailbox comes to nothing.
-    void handle_own(v1::Request request);
+    /// A command of the server itself. lease: of ReleaseLease. A refusal is logged; one for want of room in the mailbox
+    /// comes to nothing.
+    void handle_own(v1::Request request, std::optional<std::uint64_t> lease = {});
     /// A world that was lent before this server started: it goes on, unless its lease is renewed.
-    void lend_again(const std::string& world) { leases_.begin(world, {}); }
+    void lend_again(const std::string& world) { leases_.begin(world, 0, {}); }
 
     /// Answers that were given before this server started.
     void restore(const std::vector<storage::JournalEntry>& answers);

@@ -6,8 +6,9 @@
 
 namespace evod::network {
 
-void Leases::begin(const std::string& world, const std::string& client_key) {
-    const auto lease = leases_.try_emplace(world, Lease{{}, boost::asio::steady_timer{context_}}).first;
+void Leases::begin(const std::string& world, std::uint64_t number, const std::string& client_key) {
+    const auto lease = leases_.try_emplace(world, Lease{0, {}, boost::asio::steady_timer{context_}}).first;
+    lease->second.number = number;
     lease->second.client_key = client_key;
     await_end(world, lease->second);
 }
@@ -29,7 +30,7 @@ void Leases::await_end(const std::string& world, Lease& lease) {
             return; // renewed when it was as good as over
         ended->second.client_key.clear();
         await_end(world, ended->second);
-        over_(world);
+        over_(world, ended->second.number);
     });
 }
 

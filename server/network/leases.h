@@ -15,12 +15,14 @@ namespace evod::network {
 
 class Leases {
   public:
-    /// over  a world's lease is over: called each lease_time until end() says that the world was given back.
-    Leases(boost::asio::io_context& context, std::function<void(const std::string& world)> over)
+    /// over  a world's lease is over: called each lease_time until end() says that the world was given back, or begin()
+    ///       that it has another one.
+    Leases(boost::asio::io_context& context, std::function<void(const std::string& world, std::uint64_t lease)> over)
         : context_{context}, over_{std::move(over)} {}
 
     /// From now on, whosever it was before.
-    void begin(const std::string& world, const std::string& client_key);
+    /// lease  its number among those of the world (simulation::RunControl).
+    void begin(const std::string& world, std::uint64_t lease, const std::string& client_key);
     /// false: that client_key has no lease of the world.
     bool renew(const std::string& world, const std::string& client_key);
     void end(const std::string& world) { leases_.erase(world); }
@@ -28,13 +30,14 @@ class Leases {
 
   private:
     struct Lease {
+        std::uint64_t number;
         std::string client_key;
         boost::asio::steady_timer timer;
     };
     void await_end(const std::string& world, Lease& lease);
 
     boost::asio::io_context& context_;
-    const std::function<void(const std::string& world)> over_;
+    const std::function<void(const std::string& world, std::uint64_t lease)> over_;
     std::map<std::string, Lease> leases_; // by world
 };
 

@@ -56,6 +56,7 @@ struct RunUntilTick {
 };
 struct ReleaseLease {
     std::string world;
+    std::optional<std::uint64_t> lease = {}; // only if this one still holds
 };
 struct Pause {
     std::string world;

@@ -285,6 +285,8 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
             return *refused;
     // One that shows the past belongs to who opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.recording;
+    if (entry.control.leased)
+        ++entry.control.lease;
     entry.control.paused = true;
     entry.control.until_tick.reset();
     if (command.tick > now)
@@ -292,7 +294,10 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
     return applied_now(entry);
 }
 
-Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease&) {
+Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease& command) {
+    if (command.lease && *command.lease != entry.control.lease)
+        return refusal(RefusalCode::FailedPrecondition, "the world has been stepped since, and has another lease",
+                       base::Reason::NoLease);
     if (entry.control.leased)
         go_on(entry.control);
     return applied_now(entry);

@@ -30,6 +30,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then be paused
     bool paused = false;
     bool leased = false; // paused, or stepping, only until the lease is over
+    std::uint64_t lease = 0; // number of the last one since the server started
     Speed speed = 1.0;
 };
 

@@ -155,6 +155,19 @@ TEST_F(OneWorld, GoesOnTowardsItsGoalWhenALeaseIsOver) {
     EXPECT_EQ(entry().state(), RunState::Waiting);
 }
 
+TEST_F(OneWorld, KeepsItsLeaseWhenAnEarlierOneEnds) {
+    ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 3}).has_value());
+    const std::uint64_t first = entry().control.lease;
+    ASSERT_TRUE(laboratory.apply(RunUntilTick{"w", 5}).has_value());
+    const auto refused = laboratory.apply(ReleaseLease{"w", first});
+    ASSERT_FALSE(refused.has_value());
+    EXPECT_EQ(refused.error().reason, base::Reason::NoLease);
+    EXPECT_EQ(run_on(), 5u) << "it still steps";
+    ASSERT_TRUE(laboratory.apply(ReleaseLease{"w", entry().control.lease}).has_value());
+    EXPECT_FALSE(entry().control.leased);
+}
+
 TEST_F(OneWorld, IsNotLentAnyMoreWhenItIsToldWhatToDo) {
     for (const Command& command : {Command{simulation::Run{"w", {}}}, Command{Pause{"w"}}, Command{Resume{"w"}},
                                    Command{ResetWorld{.world = "w", .seed = {}, .run_id = {}}}}) {
