@@ -76,7 +76,8 @@ constexpr LimitRow table[] = {
      "those of a key that sent a single command go first, then those of the key longest unused; its requests up to the "
      "highest id it used are then refused, `FAILED_PRECONDITION`, until 100,000 further keys have gone"},
     {Limit::HistoryGenerationsKept, "history_generations_kept", simulation::World::history_generations_kept,
-     "generations of statistics kept of each world", "the oldest are forgotten; a `History` begins after them"},
+     "generations of statistics kept of each world; with more than 13 islands as many as come to 131,072 rows",
+     "the oldest are forgotten; a `History` begins after them"},
     {Limit::HistoryGenerations, "history_generations_max", protocol::history_statistics_max,
      "`GenerationStatistics` in a `History`, but one generation at least", "cut, and the answer says where to go on"},
     {Limit::BreedingRows, "breeding_rows_max", protocol::breeding_rows_max, "rows of each list of a `Breeding`",

@@ -113,7 +113,7 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
     const std::uint64_t first = query.has_first_generation() ? query.first_generation() : 0;
     const std::uint64_t last =
         query.has_last_generation() ? query.last_generation() : std::numeric_limits<std::uint64_t>::max();
-    answer.begins_late = history.size() == simulation::World::history_generations_kept &&
+    answer.begins_late = history.size() >= simulation::World::history_generations_kept_of(world.islands().size()) &&
                          std::max<std::uint64_t>(first, 1) < history.front().front().generation;
     auto generation = std::partition_point(history.begin(), history.end(),
                                            [first](const auto& rows) { return rows.front().generation < first; });

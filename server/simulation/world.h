@@ -25,6 +25,7 @@
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <utility>
@@ -62,8 +63,12 @@ using Founders = std::vector<std::vector<std::uint32_t>>;
 
 class World {
   public:
-    /// Generations of statistics kept in memory; older ones are forgotten.
-    static constexpr std::size_t history_generations_kept = 10'000;
+    /// Generations of statistics kept in memory, as far as they come to so many rows, one per island; older ones are
+    /// forgotten.
+    static constexpr std::size_t history_generations_kept = 10'000, history_rows_kept = 131'072;
+    static constexpr std::size_t history_generations_kept_of(std::size_t island_count) {
+        return std::min(history_generations_kept, std::max<std::size_t>(history_rows_kept / island_count, 1));
+    }
     /// Of how many generations before its first a fork knows the statistics, at most.
     static constexpr std::size_t history_generations_inherited = 1'000;
     /// Of ended generations, oldest first.

@@ -138,7 +138,9 @@ Result<Rerun> Rerun::begun_at(RunFile& file, std::uint64_t generation, const Sto
         first = *std::move(found);
         checkpoint = &*first;
     }
-    auto history = file.history(generation, history_count);
+    const std::size_t islands = (*begun)->born.size();
+    auto history = file.history(generation, std::min(history_count, simulation::World::history_generations_kept_of(
+                                                                        std::max<std::size_t>(islands, 1))));
     if (!history)
         return history.error();
     return from(file, **begun, checkpoint, changes, *std::move(history), executor);

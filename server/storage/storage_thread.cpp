@@ -40,6 +40,7 @@ std::size_t bytes_of(const StorageThread::Record& record) {
             },
             [](const GenerationEnded& ended) {
                 std::size_t bytes = small;
+                bytes += ended.statistics.size() * sizeof(simulation::GenerationStatistics);
                 for (const IslandOutcome& outcome : ended.outcomes)
                     bytes += small + outcome.fitness.size() * (sizeof(double) + sizeof(std::uint32_t) + 1);
                 return bytes;

@@ -407,6 +407,20 @@ TEST_F(WorldTest, SurvivorsHealthIsExactToAFiftieth) {
     EXPECT_TRUE(rounded);
 }
 
+TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
+    EXPECT_EQ(World::history_generations_kept_of(1), World::history_generations_kept);
+    EXPECT_EQ(World::history_generations_kept_of(4096), 32u);
+    EXPECT_EQ(World::history_generations_kept_of(10 * World::history_rows_kept), 1u);
+    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.population_size = 2;
+    parameters.island_count = 2048;
+    World world = make();
+    while (world.moment().generation < 70 || !world.generation_over())
+        world.advance_tick(executor);
+    EXPECT_EQ(world.history().size(), 64u);
+    EXPECT_EQ(world.history().front().front().generation, 7u);
+}
+
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     parameters.fitness = FitnessFunction::GeneSum;
     World world = make();
