@@ -56,6 +56,17 @@ void build_health(const std::vector<OrganismStory::Health>& points) {
 
 } // namespace
 
+std::string told_parents(const evod::v1::OrganismInfo& info) {
+    if (info.parents().empty()) {
+        return "No parents: founder of generation 1, or loaded from a file";
+    }
+    const std::string generation = with_separators(info.generation() - 1);
+    if (info.parents_size() == 1 || info.parents(0) == info.parents(1)) {
+        return print("Parent: %u (generation %s)", info.parents(0), generation.c_str());
+    }
+    return print("Parents: %u and %u (generation %s)", info.parents(0), info.parents(1), generation.c_str());
+}
+
 std::string shown_fate(const OrganismStory& story) {
     if (!story.info()) {
         return "";
@@ -137,22 +148,15 @@ void OrganismPanel::build(Context& context) {
         widgets::say(context.sight.trouble() + ".", palette::text);
     }
     ImGui::Separator();
-    if (info.parents_size() == 2) {
-        widgets::say(print(info.parents(0) == info.parents(1) ? "Came of %u of the generation before"
-                                                              : "Came of %u and %u of the generation before",
-                           info.parents(0), info.parents(1)),
-                     palette::text);
-    } else {
-        ImGui::TextUnformatted("Came of nobody: of the first generation, or set there");
-    }
+    widgets::say(told_parents(info), palette::text);
     if (story->children()) {
-        widgets::say(print("Of it came in generation %s: %s", with_separators(story->generation() + 1).c_str(),
+        widgets::say(print("Offspring in generation %s: %s", with_separators(story->generation() + 1).c_str(),
                            shown_children(*story->children()).c_str()),
                      palette::text);
     } else if (!story->ended()) {
-        ImGui::TextDisabled("Who comes of it is seen in the next generation");
+        ImGui::TextDisabled("Offspring appear when the next generation starts");
     } else if (!story->waits_for_children()) {
-        ImGui::TextDisabled("Who came of it went by too fast to be seen");
+        ImGui::TextDisabled("Offspring not recorded: the world ran too fast");
     }
 }
 

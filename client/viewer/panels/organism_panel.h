@@ -17,6 +17,8 @@ class OrganismPanel : public Panel {
 std::string shown_fate(const OrganismStory& story);
 /// "about to seek food at (120, 40)".
 std::string shown_choice(const evod::v1::OrganismInfo& info);
+/// "Parents: 12 and 45 (generation 35)"; a survivor has one.
+std::string told_parents(const evod::v1::OrganismInfo& info);
 /// "3 (as it was), 7 (with 12), 9 (alone)"; "nobody" of none.
 std::string shown_children(const std::vector<OrganismStory::Child>& children);
 

@@ -261,6 +261,10 @@ void Watch::ask(evod::v1::Request request, Answer handler) {
 }
 
 void Watch::next_world() {
+    if (connected_count_ == 0) {
+        next_world_wanted_ = true; // there is nobody to ask yet
+        return;
+    }
     evod::v1::Request request;
     request.mutable_list_worlds();
     send(std::move(request));
@@ -339,7 +343,7 @@ void Watch::reset(std::optional<std::uint64_t> seed) {
 }
 
 std::string_view Watch::why_only_watching() const {
-    return may_command() ? "" : "You came as a viewer, who sees everything and changes nothing";
+    return may_command() ? "" : "You are connected as a viewer: read-only";
 }
 
 // ---- what comes ------------------------------------------------------------------------------------------------
@@ -354,6 +358,9 @@ bool Watch::update(link::WorldView::Clock::time_point now) {
             return_to_present();
         } else {
             ask_state();
+        }
+        if (std::exchange(next_world_wanted_, false)) {
+            next_world();
         }
     }
     if (present_ && now - asked_ > ask_how_far) {

@@ -183,6 +183,7 @@ class Watch {
     std::vector<evod::v1::GenerationStatistics> last_generation_; // one per island
     evod::v1::Storage storage_;
     std::vector<Unanswered> unanswered_;
+    bool next_world_wanted_ = false; // once it is connected
     std::vector<evod::v1::Event> new_events_;
     std::optional<std::uint32_t> selected_;
     std::vector<std::string> notices_;

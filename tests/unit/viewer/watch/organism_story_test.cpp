@@ -108,6 +108,19 @@ TEST(OrganismStory, ChildrenAreInTheNextGeneration) {
     EXPECT_EQ(shown_children({}), "nobody");
 }
 
+TEST(ToldParents, AreTwoOrOneOrNone) {
+    evod::v1::OrganismInfo info;
+    info.set_generation(1);
+    EXPECT_EQ(told_parents(info), "No parents: founder of generation 1, or loaded from a file");
+    info.set_generation(36);
+    info.add_parents(45);
+    EXPECT_EQ(told_parents(info), "Parent: 45 (generation 35)") << "a survivor";
+    info.add_parents(45);
+    EXPECT_EQ(told_parents(info), "Parent: 45 (generation 35)");
+    info.set_parents(1, 12);
+    EXPECT_EQ(told_parents(info), "Parents: 45 and 12 (generation 35)");
+}
+
 TEST(OrganismStory, WhenTheNextGenerationWentByUnseenNoChildrenAreWaitedFor) {
     OrganismStory story{3, 4};
     story.see(picture(6, 9, 1));

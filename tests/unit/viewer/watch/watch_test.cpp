@@ -251,6 +251,24 @@ TEST_F(WatchTest, GoesToTheWorldAfterThisOne) {
     EXPECT_EQ(session.read_request().subscribe_snapshots().world(), "omega");
 }
 
+TEST_F(WatchTest, GoesToTheNextWorldOnceItIsConnected) {
+    Watch watch{wanted()};
+    watch.next_world(); // as a half of the window does that was only just opened
+    auto session = begin(watch);
+    send_picture(session, 7, 1, 50);
+    until(watch, [&] { return watch.picture() != nullptr; });
+    answer_statistics(session, session.read_request());
+    const auto question = session.read_request();
+    ASSERT_TRUE(question.has_list_worlds());
+    evod::v1::ServerMessage message;
+    message.mutable_response()->set_request_id(question.request_id());
+    for (const char* name : {"default", "omega"}) {
+        *message.mutable_response()->mutable_worlds()->add_worlds() = info(name, evod::v1::RUN_STATE_WAITING);
+    }
+    session.send(message);
+    until(watch, [&] { return watch.world() == "omega"; });
+}
+
 TEST_F(WatchTest, AMissingWorldIsLookedAtAsSoonAsItIsMade) {
     Watch watch{wanted()};
     auto session = server.accept_and_welcome();

@@ -63,9 +63,10 @@ TEST(JudgeTick, IsContentWithSlowBodies) {
 }
 
 TEST(JudgeTick, SaysWhichParametersWouldHelp) {
-    const TickVerdict close = judge_tick(moving(0.625, 0));
+    EXPECT_EQ(judge_tick(moving(0.61, 0)).level, TickVerdict::Level::Good) << "as in the world of the start";
+    const TickVerdict close = judge_tick(moving(0.8, 0));
     EXPECT_EQ(close.level, TickVerdict::Level::Close);
-    EXPECT_THAT(close.sentence, HasSubstr("Set tick_s to 0.04 or less, or max_speed_px_s to 320."));
+    EXPECT_THAT(close.sentence, HasSubstr("Set tick_s to 0.0312 or less, or max_speed_px_s to 250."));
     const TickVerdict fast = judge_tick(moving(2, 0));
     EXPECT_EQ(fast.level, TickVerdict::Level::TooLong);
     EXPECT_THAT(fast.sentence, HasSubstr("Set tick_s to 0.0125 or less, or max_speed_px_s to 100."));
