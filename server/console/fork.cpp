@@ -7,6 +7,7 @@
 #include "server/storage/data_folder.h"
 #include "server/storage/fork.h"
 
+#include <filesystem>
 #include <iostream>
 
 namespace evod::console {
@@ -55,12 +56,16 @@ void add_fork_command(command_line::Command& app, std::function<simulation::RunI
         .check(generation_number);
     command.add_option("--name", &options.name, "Of the new world").required();
     command.add_option("--data", &options.data_folder,
-                       "Folder to make it in, which no server may be using; otherwise where a server keeps its runs");
+                       "Folder to make it in, which no server may be using; otherwise that of the run file");
     command.footer(
         "It has the seed, the organisms and the parameters that the run had then, and waits to be told to run.");
     command.action([&options, draw_run_id = std::move(draw_run_id)] {
         options.run_id = draw_run_id();
-        return find_data_folder(options.data_folder) ? fork(options) : 1;
+        if (options.data_folder.empty()) {
+            const std::string folder = std::filesystem::path{options.run_file}.parent_path().string();
+            options.data_folder = folder.empty() ? "." : folder;
+        }
+        return fork(options);
     });
 }
 

@@ -58,7 +58,7 @@ constexpr Question questions[] = {
 
 } // namespace
 
-Parameters interview(const Parameters& proposed, std::istream& in, std::ostream& out) {
+base::Result<Parameters> interview(const Parameters& proposed, std::istream& in, std::ostream& out) {
     out << "Enter takes the value in brackets.\n";
     Parameters answers = proposed;
     for (const Question& question : questions) {
@@ -70,11 +70,14 @@ Parameters interview(const Parameters& proposed, std::istream& in, std::ostream&
                 << (description.unit.empty() ? "" : "; ") << description.unit << ") ["
                 << simulation::to_text(description.get(answers)) << "]: " << std::flush;
             std::string line;
-            if (!std::getline(in, line) || line.empty()) {
-                if (!in)
-                    out << '\n';
-                break;
+            if (!std::getline(in, line)) {
+                out << '\n';
+                return refusal(base::RefusalCode::InvalidArgument,
+                               "--ask: the input ended before the answer to " + std::string{description.name} +
+                                   "; give an empty line for each value in brackets");
             }
+            if (line.empty())
+                break;
             const auto value = simulation::parse_value(description, line);
             const base::Result<Parameters> changed =
                 value ? simulation::assign(answers, {{{std::string{description.name}, *value}}}) : value.error();

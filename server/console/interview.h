@@ -1,17 +1,19 @@
 // Interview: asks on a terminal for population, food, poison, time and every choice of the algorithm (`--ask`).
 #pragma once
 
+#include "server/base/result.h"
 #include "server/simulation/parameters.h"
 
 #include <iosfwd>
 
 namespace evod::console {
 
-/// Asks one question a parameter; an empty answer, or the end of the input, takes what is proposed. An answer that
-/// cannot be is explained and asked for again.
+/// Asks one question a parameter; an empty answer takes what is proposed. An answer that cannot be is explained and
+/// asked for again.
 ///
 /// proposed  what each question proposes; valid.
-/// returns   a valid set.
-simulation::Parameters interview(const simulation::Parameters& proposed, std::istream& in, std::ostream& out);
+/// returns   a valid set; refused if the input ends before the last answer.
+base::Result<simulation::Parameters> interview(const simulation::Parameters& proposed, std::istream& in,
+                                               std::ostream& out);
 
 } // namespace evod::console

@@ -49,7 +49,10 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
     if (options.ask) {
         // What is answered takes the place of what is scheduled; Enter leaves it.
         const simulation::Parameters proposed = experiment.parameters;
-        experiment.parameters = interview(proposed, std::cin, std::cout);
+        const auto answers = interview(proposed, std::cin, std::cout);
+        if (!answers)
+            return answers.error();
+        experiment.parameters = *answers;
         for (const simulation::ParameterDescription* description :
              simulation::parameters_that_differ(experiment.parameters, proposed))
             experiment.schedule.remove(description->name);

@@ -85,7 +85,8 @@ class Run(Folder):
         self.assertRegex(rest, "state [0-9a-f]{32}")
 
     def test_ask_takes_answers_proposals_and_asks_again(self):
-        answers = "9\nmany\n11\n\n1.5\n1\n"  # population, food (twice), poison, time, generations; then the input ends
+        # Population, food (twice), poison, time, generations; the rest as proposed.
+        answers = "9\nmany\n11\n\n1.5\n1\n" + "\n" * 40
         done = evod("run", "--seed", "1", "--ask", stdin=answers)
         self.assertIn("food_count: got many, allowed a whole number, 0 to", done.stdout)
         for question in ("population_size", "poison_count", "generation_s", "population_model", "selection", "crossover",
@@ -94,6 +95,11 @@ class Run(Folder):
         same = evod("run", "--seed", "1", "--generations", "1", "--set", "population_size=9", "--set", "food_count=11",
                     "--set", "generation_s=1.5")
         self.assertEqual(state(done.stdout), state(same.stdout))
+
+    def test_ask_ends_with_its_input(self):
+        for answers in ("", "9\n", "9\n11\n\n1.5\n1\n"):
+            done = evod("run", "--seed", "1", "--ask", stdin=answers, status=1)
+            self.assertIn("--ask: the input ended before the answer to ", done.stderr)
 
     def test_wrong_usage_is_said(self):
         for arguments in (("--seed", "-1"), ("--generations", "many"), ("--threads", "0"), ("--speed", "2")):

@@ -442,6 +442,12 @@ class Export(Case):
             self.assertEqual(first, str(last))
             self.assertIn("all agrees", evod("verify", f"{data}/f.evod"))
 
+    def test_a_fork_lies_beside_its_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            shutil.copy(plain, folder)
+            evod("fork", f"{folder}/{os.path.basename(plain)}", "--name", "beside")
+            self.assertIn("all agrees", evod("verify", f"{folder}/beside.evod"))
+
     def test_a_bundle_is_of_one_moment_while_a_server_writes(self):
         plate = self.folder + "/plate.csv"
         evod("export", plain, "--what", "population", "--output", plate)
