@@ -248,7 +248,10 @@ void Session::shake_hands() {
             }
             return believed;
         });
-    SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
+    // An address is not a host name (RFC 6066, section 3), and strict servers refuse one.
+    if (error_code not_an_address; asio::ip::make_address(options_.server.host, not_an_address), not_an_address) {
+        SSL_set_tlsext_host_name(tls_->native_handle(), options_.server.host.c_str());
+    }
     tls_->async_handshake(ssl::stream_base::client, [self = shared_from_this()](const error_code& failed) {
         if (self->ended_) {
             return;

@@ -90,18 +90,24 @@ std::string today() {
     return text;
 }
 
-Result<void> write_tokens(const std::string& folder, const Tokens& tokens) {
+/// folder_descriptor: of the same.
+Result<void> write_tokens(const std::string& folder, int folder_descriptor, const Tokens& tokens) {
     const std::string path = token_file_of(folder), next = path + "-next";
     const std::string text = to_text(tokens);
     {
         ::unlink(next.c_str()); // of somebody who was interrupted
         const Descriptor file{::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
-        if (!file.open() || ::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
-            ::fsync(*file) != 0)
+        if (!file.open())
+            return cannot("written", next);
+        errno = ENOSPC; // of a write that takes only a part
+        if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0)
             return cannot("written", next);
     }
     if (::rename(next.c_str(), path.c_str()) != 0)
         return cannot("replaced", path);
+    // Otherwise a token that was revoked could be back after a power cut.
+    if (::fsync(folder_descriptor) != 0)
+        return cannot("written", folder);
     return {};
 }
 
@@ -118,7 +124,7 @@ Result<void> change_tokens(const std::string& folder, const Change& change) {
         return tokens.error();
     if (Result<void> changed = change(*tokens); !changed)
         return changed;
-    return write_tokens(folder, *tokens);
+    return write_tokens(folder, *locked, *tokens);
 }
 
 } // namespace
