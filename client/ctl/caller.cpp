@@ -5,6 +5,7 @@
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <iostream>
@@ -23,20 +24,51 @@ link::Endpoint endpoint_of(const std::string& text) {
     return *std::move(endpoint);
 }
 
+/// The terminal does not show what is typed, for as long as this lives and no signal ends the program.
+class EchoOff {
+  public:
+    explicit EchoOff(const termios& as_it_was) {
+        echoing = as_it_was;
+        struct sigaction restore {};
+        restore.sa_handler = [](int number) {
+            ::tcsetattr(STDIN_FILENO, TCSANOW, &echoing);
+            std::signal(number, SIG_DFL);
+            std::raise(number); // taken when this returns: it ends the program
+        };
+        for (std::size_t i = 0; i < signals.size(); ++i) {
+            ::sigaction(signals[i], &restore, &before_[i]);
+        }
+        termios silent = as_it_was;
+        silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+        ::tcsetattr(STDIN_FILENO, TCSADRAIN, &silent);
+    }
+    EchoOff(const EchoOff&) = delete;
+    ~EchoOff() {
+        ::tcsetattr(STDIN_FILENO, TCSADRAIN, &echoing);
+        for (std::size_t i = 0; i < signals.size(); ++i) {
+            ::sigaction(signals[i], &before_[i], nullptr);
+        }
+    }
+
+  private:
+    static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
+    static inline termios echoing{};
+    std::array<struct sigaction, signals.size()> before_{};
+};
+
 /// Typed by a person, and not shown; empty where nobody is there to ask.
 std::string prompt_for_token(const std::string& server) {
     termios as_it_was{};
     if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &as_it_was) != 0) {
         return {};
     }
-    termios silent = as_it_was;
-    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    // Before it asks: what is typed or pasted at once is neither shown nor thrown away.
-    ::tcsetattr(STDIN_FILENO, TCSADRAIN, &silent);
-    std::cerr << "token for " << server << ": " << std::flush;
     std::string token;
-    std::cin >> token;
-    ::tcsetattr(STDIN_FILENO, TCSADRAIN, &as_it_was);
+    {
+        // Before it asks: what is typed or pasted at once is neither shown nor thrown away.
+        const EchoOff echo_off{as_it_was};
+        std::cerr << "token for " << server << ": " << std::flush;
+        std::cin >> token;
+    }
     std::cerr << '\n';
     return token;
 }

@@ -121,6 +121,8 @@ class LimitCounters {
 
 // ---- not limits of a client: how the server goes about its connections --------------------------------------------
 
+constexpr double stranger_lines_per_s = 1, stranger_lines_burst = 20; // of the log, about sessions without a hello
+
 constexpr int unsent_bytes_max = 128 << 10; // in the kernel, so that a slow viewer gets new pictures and not old ones
 
 // Whether somebody is still there is asked by TCP itself, whose answer a busy or patient client need not give: after so

@@ -188,8 +188,7 @@ asio::awaitable<void> Session::read() {
                      base::Reason::TlsRequired));
     else if (error) {
         if (!ended_) // otherwise whoever ended it has said why
-            log::info({.session = number_, .client = to_text(peer_)}, "session {}: {} is closed: TLS: {}", number_,
-                      to_text(peer_), error.message());
+            log_closed({}, "TLS: " + error.message());
         close();
     }
     begun_ = true;
@@ -372,9 +371,8 @@ void Session::on_hello(const v1::Hello& hello) {
     // In by(), a colon and a space end the user's name and nothing else.
     for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": "))
         client_[colon] = ' ';
-    log::info({.session = number_, .client = by()}, "session {}: {} connected as {}, version {}", number_, by(),
-              access::name_of(visitor_.role),
-              hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version()));
+    log_coming_or_going("connected as " + std::string{access::name_of(visitor_.role)} + ", version " +
+                        (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
 
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
@@ -393,12 +391,37 @@ void Session::on_hello(const v1::Hello& hello) {
     enqueue(encode_control(message), Kind::Unasked);
 }
 
+void Session::log_coming_or_going(const std::string& what) const {
+    // Whoever works at the server's own machine has each evoctl call come and go.
+    const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
+    if (log::wanted(level))
+        log::write(level, {.session = number_, .client = by()},
+                   "session " + std::to_string(number_) + ": " + by() + " " + what);
+}
+
+void Session::log_closed(std::string_view code, const std::string& why) {
+    const std::string who = greeted_ ? by() : to_text(peer_);
+    std::string left_out;
+    if (!greeted_) { // strangers must not fill the disk
+        SessionHost::StrangersLog& strangers = host_.strangers_log;
+        const auto now = host_.clock->now();
+        if (!strangers.lines)
+            strangers.lines.emplace(stranger_lines_per_s, stranger_lines_burst, now);
+        if (!strangers.lines->take(1, now)) {
+            ++strangers.left_out;
+            return;
+        }
+        if (strangers.left_out > 0)
+            left_out = "; " + std::to_string(std::exchange(strangers.left_out, 0)) + " others before it are not logged";
+    }
+    log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} is closed: {}{}", number_,
+              who, why, left_out);
+}
+
 void Session::fail(const base::Refusal& refused) {
     if (finishing_ || ended_)
         return;
-    const std::string who = greeted_ ? by() : to_text(peer_);
-    log::info({.session = number_, .client = who, .code = name_of(refused.code)}, "session {}: {} is closed: {}",
-              number_, who, refused.message);
+    log_closed(name_of(refused.code), refused.message);
     enqueue(encode_goodbye(refused), Kind::Unasked);
     finish();
 }
@@ -905,7 +928,7 @@ void Session::end() {
     if (--coroutines_ > 0)
         return;
     if (greeted_)
-        log::info({.session = number_, .client = by()}, "session {}: {} disconnected", number_, by());
+        log_coming_or_going("disconnected");
     host_.ended(*this);
 }
 

@@ -52,6 +52,11 @@ struct SessionHost {
     asio::ssl::context* tls = nullptr;       // nullptr: in the clear
     metrics::Traffic traffic = {};
     runtime::Clock* clock = nullptr;
+    /// Lines about sessions that were closed without a hello.
+    struct StrangersLog {
+        std::optional<TokenBucket> lines = {}; // from the first on
+        std::uint64_t left_out = 0;            // since the last that was logged
+    } strangers_log = {};
     std::string frame = {}; // working memory: where frames of pictures are put together
     /// Who comes with a token, from an address.
     std::function<base::Result<access::Visitor>(const std::string& token, const std::string& address)> admit = {};
@@ -217,6 +222,9 @@ class Session : public std::enable_shared_from_this<Session> {
     bool takes(std::size_t frame_bytes) const { return frame_bytes - wire::header_bytes <= frame_bytes_max_; }
     void written(const Queued& queued);
     void wake_writer();
+    void log_coming_or_going(const std::string& what) const;
+    /// code: empty: none.
+    void log_closed(std::string_view code, const std::string& why);
     void end();
 
     Line line_;

@@ -55,6 +55,9 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
     for (const auto& entry : laboratory.entries())
         if (!entry->is_look_back())
             *list.add_worlds() = to_proto(*entry);
+    // Which world was created first is not known after a restart.
+    std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
+              [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
     return list;
 }
 

@@ -6,12 +6,14 @@ import os
 import pathlib
 import pty
 import re
+import signal
 import socket
 import ssl
 import stat
 import struct
 import subprocess
 import sys
+import termios
 import time
 import unittest
 
@@ -335,6 +337,47 @@ class Tokens(Access):
             self.assertEqual(waiting.ended(asking), 0)
             self.assertNotIn(secret[5:].encode(), shown)
         os.close(terminal)
+
+    def test_a_signal_at_the_prompt_leaves_the_terminal_as_it_was(self):
+        self.token("otto", VIEWER)
+        server = self.serve("--require-token")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            terminal, side = pty.openpty()
+            before = termios.tcgetattr(side)
+            with subprocess.Popen([EVOCTL, "--server", f"localhost:{server.port}", "worlds"], stdin=side, stderr=side) as asking:
+                shown = b""
+                while b"token for" not in shown:
+                    shown += os.read(terminal, 1000)
+                self.assertFalse(termios.tcgetattr(side)[3] & termios.ECHO)
+                asking.send_signal(number)
+                self.assertEqual(waiting.ended(asking), -number)
+            self.assertEqual(termios.tcgetattr(side), before)
+            os.close(side)
+            os.close(terminal)
+
+    def test_strangers_do_not_fill_the_log(self):
+        server = self.serve()
+        for _ in range(200):
+            with socket.create_connection(("127.0.0.1", server.port)) as stranger:
+                stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")
+                while stranger.recv(1000):
+                    pass
+        self.assertLess(server.output().count("is closed"), 150)
+
+        def another():
+            with socket.create_connection(("127.0.0.1", server.port)) as stranger:
+                stranger.sendall(b"GET / HTTP/1.1\r\n\r\n")
+                while stranger.recv(1000):
+                    pass
+            return "others before it are not logged" in server.output()
+        plain.until(another, "how many were left out")
+
+    def test_clients_of_the_same_machine_are_logged_at_level_debug(self):
+        for options, logged in (((), False), (("--log-level", "debug"), True)):
+            server = self.serve(*options)
+            self.come(server).world()
+            server.end()
+            self.assertEqual(("connected as admin" in server.output(), "disconnected" in server.output()), (logged, logged))
 
     def test_names_of_worlds_do_not_leave_the_folder(self):
         server = self.serve()

@@ -25,7 +25,7 @@ class HalfOpen(unittest.TestCase):
 
     def vanish(self, lap):
         subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-        server = Server("--keep-nothing", "--start")
+        server = Server("--keep-nothing", "--start", "--log-level", "debug")
         self.addCleanup(server.log.close)
         self.addCleanup(server.kill)
         # One says nothing and is sent nothing; another is sent pictures, which nobody takes.
