@@ -451,10 +451,14 @@ void Dispatcher::query(Session& session, v1::Request request) {
             *response.mutable_worlds() = protocol::list_worlds(laboratory);
         });
     case v1::Request::kGetParameters:
-        return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
-            put(protocol::get_parameters(laboratory, request.get_parameters()), response,
-                &v1::Response::mutable_parameters);
-        });
+        return ask(session, id,
+                   [put, request, views = session.visitor().role < access::Role::Controller](
+                       const simulation::Laboratory& laboratory, v1::Response& response) {
+                       put(protocol::get_parameters(laboratory, request.get_parameters()), response,
+                           &v1::Response::mutable_parameters);
+                       if (views)
+                           protocol::keep_users_only(response);
+                   });
     case v1::Request::kGetStatistics:
         return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
             put(protocol::get_statistics(laboratory, request.get_statistics()), response,

@@ -302,7 +302,7 @@ void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time
 
 void Streams::tell(v1::Event event) {
     const std::string world = event.world();
-    SharedBytes frame;
+    SharedBytes frame, of_viewers;
     for (const auto& [number, session] : sessions_) {
         // "All worlds" are those that live: a look at the past is of interest to whoever names it.
         const bool wanted = std::any_of(session->events.begin(), session->events.end(), [&](const auto& item) {
@@ -311,9 +311,15 @@ void Streams::tell(v1::Event event) {
         });
         if (!wanted)
             continue;
-        if (!frame)
-            frame = encode_event(std::move(event));
-        session->event(frame);
+        const bool views = session->visitor().role < access::Role::Controller;
+        SharedBytes& form = views ? of_viewers : frame;
+        if (!form) {
+            v1::Event told = event;
+            if (views)
+                protocol::keep_users_only(told);
+            form = encode_event(std::move(told));
+        }
+        session->event(form);
     }
 }
 

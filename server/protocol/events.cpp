@@ -5,6 +5,11 @@
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
+#include <google/protobuf/descriptor.h>
+
+#include <string>
+#include <vector>
+
 namespace evod::protocol {
 
 using base::Overloaded;
@@ -126,6 +131,27 @@ v1::Event event_of(const simulation::Storage& storage) {
     v1::Event told;
     *told.mutable_storage_changed()->mutable_storage() = to_proto(storage);
     return told;
+}
+
+void keep_users_only(google::protobuf::Message& message) {
+    const google::protobuf::Reflection& in = *message.GetReflection();
+    std::vector<const google::protobuf::FieldDescriptor*> fields;
+    in.ListFields(message, &fields);
+    for (const auto* field : fields) {
+        if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+            if (!field->is_repeated())
+                keep_users_only(*in.MutableMessage(&message, field));
+            else
+                for (int i = 0; i < in.FieldSize(message, field); ++i)
+                    keep_users_only(*in.MutableRepeatedMessage(&message, field, i));
+        } else if (field->name() == "by") {
+            const std::string by = in.GetString(message, field);
+            if (const auto end = by.find(": "); end != std::string::npos)
+                in.SetString(&message, field, by.substr(0, end));
+            else if (by.find(':') != std::string::npos) // an address with its port
+                in.SetString(&message, field, "a local client");
+        }
+    }
 }
 
 } // namespace evod::protocol

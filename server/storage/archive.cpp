@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -90,10 +91,15 @@ Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const Ru
         log::warn("{} is left alone: a run file is called NAME.evod, and that is no name of a world", file);
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
-    archive->remember(files->ended);
-    for (const std::string& file : files->of_worlds)
-        if (auto brought = archive->bring_back(file, options, executor); !brought)
+    std::vector<std::string> ended = files->ended;
+    for (const std::string& file : files->of_worlds) {
+        const auto brought = archive->bring_back(file, options, executor);
+        if (!brought)
             return with_ways_out(brought.error(), path);
+        if (!brought->empty())
+            ended.push_back(*brought);
+    }
+    archive->remember(ended);
     return archive;
 }
 
@@ -122,12 +128,15 @@ void Archive::remember(const std::vector<std::string>& paths) {
         for (const JournalEntry& entry : run.last)
             bytes += entry.origin.request.size() + entry.answer.size();
     }
+    std::vector<JournalEntry> answers;
     for (auto run = runs.rbegin(); run != runs.rend(); ++run)
-        answers_.insert(answers_.end(), std::make_move_iterator(run->last.begin()),
-                        std::make_move_iterator(run->last.end()));
+        std::ranges::move(run->last, std::back_inserter(answers));
+    std::ranges::move(answers_, std::back_inserter(answers));
+    answers_ = std::move(answers);
 }
 
-Result<void> Archive::bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor) {
+Result<std::string> Archive::bring_back(const std::string& path, const RunFile::Options& options,
+                                        base::Executor& executor) {
     // With relaxed durability the index may be on the disk before the log, should the machine fail.
     const auto index = options.durability == Durability::Full ? LogIndex::Read : LogIndex::Unread;
     if (auto sound = check_log(path, index); !sound)
@@ -142,7 +151,10 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
     if (*over) {
         // It was to be renamed next.
         file->reset();
-        return RunFile::rename(path, folder_.ended_file_of(identity.name, identity.run_id));
+        const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
+        if (auto renamed = RunFile::rename(path, ended); !renamed)
+            return renamed.error();
+        return ended;
     }
     const bool was_closed = (*file)->end_mark()->has_value();
     auto recovered = recover(**file, executor);
@@ -163,7 +175,7 @@ Result<void> Archive::bring_back(const std::string& path, const RunFile::Options
     identities_.back().name = name;
     answers_.insert(answers_.end(), std::make_move_iterator(recovered->journal.begin()),
                     std::make_move_iterator(recovered->journal.end()));
-    return {};
+    return std::string{};
 }
 
 std::vector<std::string> Archive::world_names() const {

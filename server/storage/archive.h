@@ -50,9 +50,11 @@ class Archive {
 
   private:
     Archive(DataFolder folder, const RunFile::Options& options);
-    /// paths: of runs that have ended.
+    /// paths: of runs that have ended. Their answers go before those of the worlds that go on.
     void remember(const std::vector<std::string>& paths);
-    base::Result<void> bring_back(const std::string& path, const RunFile::Options& options, base::Executor& executor);
+    /// Returns the path of a run that has ended, once its file is named so; empty: the world goes on.
+    base::Result<std::string> bring_back(const std::string& path, const RunFile::Options& options,
+                                         base::Executor& executor);
 
     DataFolder folder_;
     Durability durability_;

@@ -181,10 +181,20 @@ class Roles(Access):
         karl, anna = self.token("karl", CONTROLLER), self.token("anna", VIEWER)
         server = self.serve("--require-token")
         controller, viewer = self.come(server, karl), self.come(server, anna)
-        viewer.call(subscribe_events=c.SubscribeEvents())
+        other = self.come(server, karl)
+        for client in (viewer, other):
+            client.call(subscribe_events=c.SubscribeEvents())
         controller.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
-        event = viewer.next_event("parameters_changed")
+        event = other.next_event("parameters_changed")
         self.assertTrue(event.parameters_changed.by.startswith("karl: plain 127.0.0.1:"), event)
+        self.assertEqual(viewer.next_event("parameters_changed").parameters_changed.by, "karl")
+        change = plain.set_parameters(mutation_chance=0.4)
+        change.at_generation = 9
+        controller.call(set_parameters=change)
+        self.assertEqual(viewer.next_event("change_planned").change_planned.change.by, "karl")
+        for client, by in ((viewer, "^karl$"), (other, "^karl: plain ")):
+            planned = client.call(get_parameters=c.GetParameters()).parameters.planned
+            self.assertRegex(planned[0].by, by)
 
 
 class Tokens(Access):

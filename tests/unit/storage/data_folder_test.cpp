@@ -213,6 +213,9 @@ TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
     ASSERT_TRUE(archive) << to_text(archive.error());
     EXPECT_FALSE((*archive)->holds_worlds());
     EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
+    const auto answers = (*archive)->take_answers();
+    ASSERT_EQ(answers.size(), 1u) << "its commands are not carried out again";
+    EXPECT_EQ(answers[0].answer, "answer 1");
 }
 
 TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
