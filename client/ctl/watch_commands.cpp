@@ -211,7 +211,7 @@ class Watch {
                 text += "\n" + genes(island);
             }
         }
-        text += "\nCtrl-C ends the watching, not the run\n";
+        text += "\nCtrl-C stops watching\n";
         drawing_.draw(text);
     }
 

@@ -130,7 +130,7 @@ class Commands(WithServer):
             path.write_text('{"population_size": 7, "seed": 5, "description": "A few."}')
             self.evoctl("create", "small", "--experiment", str(path), "--set", "food_count=9")
         self.evoctl("create", "other", "--seed", "6", "--set", "population_size=8")
-        self.assertEqual(self.evoctl("worlds").split(), ["default", "small", "other"])
+        self.assertEqual(self.evoctl("worlds").split(), ["default", "other", "small"])
         self.assertEqual(self.evoctl("--world", "small", "get", "population_size", "food_count").split(),
                          ["population_size=7", "food_count=9"])
         self.assertIn("ALREADY_EXISTS", self.evoctl("create", "other", status=1))

@@ -36,7 +36,7 @@ class MovedClock(unittest.TestCase):
             server.log.close()
 
     def serve(self, folder, *options):
-        self.servers.append(Server("--data", f"{self.data}/{folder}", *options, env=self.environment))
+        self.servers.append(Server("--data", f"{self.data}/{folder}", "--log-level", "debug", *options, env=self.environment))
         return self.servers[-1]
 
     def move(self, server, seconds):
@@ -52,7 +52,7 @@ class MovedClock(unittest.TestCase):
     def test_a_certificate_that_is_not_good_now_is_told_with_its_time(self):
         waiting.run([os.environ["EVOD"], "certificate", "localhost", "--folder", self.data], check=True)
         certificate = f"{self.data}/evod.crt"
-        server = Server("--data", f"{self.data}/tls", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
+        server = Server("--data", f"{self.data}/tls", "--log-level", "debug", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
         self.servers.append(server)
         for seconds, words in ((ten_years_s, r"it was good until \w+ +\d+ .* GMT: whoever runs the server makes another"),
                                (-ten_years_s, r"it is good from \w+ +\d+ .* GMT on: is this machine's clock right\?")):
