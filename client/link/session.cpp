@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 namespace evod::link {
@@ -154,31 +156,66 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
 } // namespace
 
 Session::Session(asio::io_context& io, const Options& options, Handlers handlers)
-    : options_{options}
-    , handlers_{std::move(handlers)}
-    , resolver_{io}
-    , socket_{io}
-    , deadline_{io}
-    , received_(read_bytes) {}
+    : io_{io}, options_{options}, handlers_{std::move(handlers)}, socket_{io}, deadline_{io}, received_(read_bytes) {}
 
 void Session::start() {
     expect_within(options_.connect_timeout, "no connection with");
     look_up();
 }
 
+/// A look-up on a thread of its own, which owns nothing else: the system's getaddrinfo() cannot be stopped, and may
+/// take half a minute.
+struct Session::LookUp {
+    std::mutex mutex;     // guards what follows
+    asio::io_context* io; // nullptr: nobody waits for it any more
+    std::weak_ptr<Session> of;
+};
+
 void Session::look_up() {
-    resolver_.async_resolve(
-        options_.server.host, std::to_string(options_.server.port), asio::ip::resolver_base::numeric_service,
-        [self = shared_from_this()](const error_code& error, const asio::ip::tcp::resolver::results_type& addresses) {
-            if (self->ended_) {
-                return;
-            }
-            if (error) {
-                self->end({.reason = reason_of(error, self->options_.server)});
-            } else {
-                self->connect(addresses);
-            }
+    const std::string host = options_.server.host, service = std::to_string(options_.server.port);
+    error_code not_an_address;
+    if (const auto address = asio::ip::make_address(host, not_an_address); !not_an_address) {
+        asio::post(io_, [self = shared_from_this(), address, host, service] {
+            const asio::ip::tcp::endpoint endpoint{address, self->options_.server.port};
+            self->looked_up({}, asio::ip::tcp::resolver::results_type::create(endpoint, host, service));
         });
+        return;
+    }
+    look_up_ = std::make_shared<LookUp>();
+    look_up_->io = &io_;
+    look_up_->of = weak_from_this();
+    std::thread{[mine = look_up_, host, service] {
+        asio::io_context unused;
+        asio::ip::tcp::resolver resolver{unused};
+        error_code error;
+        const auto addresses = resolver.resolve(host, service, asio::ip::resolver_base::numeric_service, error);
+        const std::lock_guard lock{mine->mutex};
+        if (mine->io != nullptr) {
+            asio::post(*mine->io, [of = mine->of, error, addresses] {
+                if (const auto session = of.lock()) {
+                    session->looked_up(error, addresses);
+                }
+            });
+        }
+    }}.detach();
+}
+
+void Session::looked_up(const error_code& error, const asio::ip::tcp::resolver::results_type& addresses) {
+    if (ended_) {
+        return;
+    }
+    if (error) {
+        end({.reason = reason_of(error, options_.server)});
+    } else {
+        connect(addresses);
+    }
+}
+
+void Session::give_up_look_up() {
+    if (look_up_) {
+        const std::lock_guard lock{look_up_->mutex};
+        look_up_->io = nullptr;
+    }
 }
 
 void Session::connect(const asio::ip::tcp::resolver::results_type& addresses) {
@@ -432,7 +469,7 @@ void Session::expect_within(std::chrono::milliseconds timeout, std::string what)
 
 void Session::close() {
     ended_ = true;
-    resolver_.cancel();
+    give_up_look_up();
     deadline_.cancel();
     error_code ignored;
     socket_.close(ignored);

@@ -40,6 +40,7 @@ class Session : public std::enable_shared_from_this<Session> {
     };
 
     Session(boost::asio::io_context& io, const Options& options, Handlers handlers);
+    ~Session() { give_up_look_up(); }
 
     void start();
     /// Queues a whole frame. Only after `welcomed`.
@@ -49,6 +50,9 @@ class Session : public std::enable_shared_from_this<Session> {
 
   private:
     void look_up();
+    void looked_up(const boost::system::error_code& error,
+                   const boost::asio::ip::tcp::resolver::results_type& addresses);
+    void give_up_look_up();
     void connect(const boost::asio::ip::tcp::resolver::results_type& addresses);
     /// Only if there is to be TLS.
     void shake_hands();
@@ -64,9 +68,11 @@ class Session : public std::enable_shared_from_this<Session> {
     void expect_within(std::chrono::milliseconds timeout, std::string what);
     void end(Ending ending);
 
+    boost::asio::io_context& io_;
     const Options options_;
     Handlers handlers_;
-    boost::asio::ip::tcp::resolver resolver_;
+    struct LookUp;
+    std::shared_ptr<LookUp> look_up_; // nullptr: none was begun
     boost::asio::ip::tcp::socket socket_;
     std::optional<boost::asio::ssl::context> tls_context_;
     std::optional<boost::asio::ssl::stream<boost::asio::ip::tcp::socket&>> tls_; // nullopt: in the clear
