@@ -110,7 +110,7 @@ v1::Response Caller::call(v1::Request request, std::optional<std::chrono::millis
                    response.error().what + (late ? "; for a busy server wait longer, with --timeout" : "")};
     }
     if (!link::accepted(*response)) {
-        throw Stop{ExitCode::Refused, link::to_text(response->status())};
+        throw Stop{ExitCode::Refused, link::to_text(response->status()), response->status()};
     }
     return *std::move(response);
 }

@@ -3,6 +3,7 @@
 
 #include "client/ctl/registry.h"
 #include "client/ctl/stop.h"
+#include "client/ctl/text.h"
 #include "client/link/connection.h"
 #include "client/link/credentials.h"
 #include "proto/command_line/number.h"
@@ -69,7 +70,7 @@ std::string to_json(const google::protobuf::Message& message, bool many_lines = 
 /// Prints an answer as JSON if that was asked for, else as `text` writes it.
 template <class Text>
 void print(const Common& common, const google::protobuf::Message& answer, const Text& text) {
-    const std::string output = common.json ? to_json(answer) : text();
+    const std::string output = common.json ? to_json(answer) : visible(text());
     std::fwrite(output.data(), 1, output.size(), stdout);
 }
 

@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
                "  evoctl --server lab:7744 watch        live, from another machine\n"
                "\n"
                "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer,\n"
-               "4 the server wants a token that it knows");
+               "4 the server wants a token that it knows. With --json, standard error has a Status in JSON.");
     add_run_commands(app, common);
     add_parameter_commands(app, common);
     add_look_commands(app, common);
@@ -83,8 +83,14 @@ int main(int argc, char** argv) {
             throw Stop{ExitCode::Refused, "standard output cannot be written: the disk may be full"};
         }
     } catch (const Stop& stop) {
-        if (!stop.text.empty()) {
-            std::cerr << "evoctl: " << stop.text << '\n';
+        if (!stop.text.empty() && common.json) {
+            evod::v1::Status status = stop.status;
+            if (status.message().empty()) {
+                status.set_message(stop.text);
+            }
+            std::cerr << to_json(status, false);
+        } else if (!stop.text.empty()) {
+            std::cerr << "evoctl: " << visible(stop.text) << '\n';
         }
         return static_cast<int>(stop.code);
     }

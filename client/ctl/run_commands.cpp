@@ -469,6 +469,10 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     until_command.add_flag("--wait", &until_wait, "Return when it is reached");
     until_command.action([&] {
         Caller caller{common};
+        if (const std::uint64_t now = caller.world(common.world).tick(); tick < now) {
+            throw Stop{ExitCode::Refused, "until: the run is at tick " + std::to_string(now) + " already; got " +
+                                              std::to_string(tick) + ", allowed " + std::to_string(now) + " or more"};
+        }
         stand(common, caller);
         until(common, caller, tick, until_wait);
     });

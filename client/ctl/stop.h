@@ -1,6 +1,8 @@
 // Stop: the end of a call of evoctl, thrown from wherever it is seen and turned into an exit code in main.
 #pragma once
 
+#include "evod/v1/commands.pb.h"
+
 #include <string>
 
 namespace evod::ctl {
@@ -15,7 +17,8 @@ enum class ExitCode {
 
 struct Stop {
     ExitCode code;
-    std::string text; // for stderr; empty: nothing to say
+    std::string text;       // for stderr; empty: nothing to say
+    v1::Status status = {}; // of the server's refusal; empty: it was none
 };
 
 } // namespace evod::ctl

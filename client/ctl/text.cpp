@@ -92,6 +92,21 @@ std::size_t width_of(std::string_view utf8) {
         std::ranges::count_if(utf8, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
+std::string visible(std::string utf8) {
+    for (std::size_t i = 0; i < utf8.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(utf8[i]);
+        const bool second_of_control = // U+0080 to U+009F
+            i > 0 && static_cast<unsigned char>(utf8[i - 1]) == 0xc2 && byte >= 0x80 && byte < 0xa0;
+        if ((byte < 0x20 && byte != '\n') || byte == 0x7f) {
+            utf8[i] = '?';
+        } else if (second_of_control) {
+            utf8.replace(i - 1, 2, "?");
+            --i;
+        }
+    }
+    return utf8;
+}
+
 std::string clip_lines(std::string_view utf8, std::size_t width) {
     std::string text;
     std::size_t column = 0;

@@ -36,6 +36,9 @@ class Table {
 /// equal are bars of middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
+/// What a server says, for a terminal: control characters but the end of a line become '?'.
+std::string visible(std::string utf8);
+
 using link::exact;
 /// With so many decimals.
 std::string fixed(double value, int decimals);

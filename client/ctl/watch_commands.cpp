@@ -349,7 +349,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     Drawing none;
     for (std::uint64_t seen = 0; !interrupted() && (!count || seen < *count);) {
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100})) {
-            std::cout << (common.json ? to_json(*event, false) : text_of(*event) + "\n") << std::flush;
+            std::cout << (common.json ? to_json(*event, false) : visible(text_of(*event)) + "\n") << std::flush;
             ++seen;
         }
         news.tell(caller.connection(), none);

@@ -72,6 +72,19 @@ class Commands(WithServer):
         self.assertIn("food_radius", self.evoctl("organism", "3"))
         self.assertIn("organism", self.evoctl("organism", "5000", status=1))
 
+    def test_a_tick_that_is_over_is_refused_and_nothing_changes(self):
+        self.evoctl("step", "60")
+        self.evoctl("run")
+        self.assertIn("until: the run is at tick ", self.evoctl("until", "5", status=1))
+        self.assertEqual(self.answer("speed", "1")["world"]["state"], "RUN_STATE_RUNNING")
+
+    def test_with_json_errors_are_json(self):
+        refused = json.loads(self.evoctl("--json", "--world", "nobody", "pause", status=1))
+        self.assertEqual((refused["code"], refused["reason"], refused["violations"][0]["got"]),
+                         ("CODE_NOT_FOUND", "REASON_WORLD_NOT_FOUND", "nobody"))
+        wrong = json.loads(self.evoctl("--json", "set", "mutation_chanc=1", status=2))
+        self.assertIn("did you mean mutation_chance", wrong["message"])
+
     def test_steps_are_exact_and_a_reset_repeats_them(self):
         self.evoctl("step", "60")
         first = self.answer("pause")["world"]

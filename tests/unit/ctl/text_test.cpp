@@ -28,6 +28,14 @@ TEST(Sparkline, HasAnAnswerForNothingAndForNoDifference) {
     EXPECT_EQ(sparkline(std::vector<double>{3}, 0), "");
 }
 
+TEST(Visible, LeavesATerminalAsItIs) {
+    EXPECT_EQ(visible("a\x1b[2Jb\r\a\x7f\tc\nd"), "a?[2Jb????c\nd");
+    EXPECT_EQ(visible("\xc2\x9b"
+                      "31m \xc2\xa0 \xc3\x9b µ 🦠"),
+              "?31m \xc2\xa0 \xc3\x9b µ 🦠");
+    EXPECT_EQ(visible("\xc2"), "\xc2");
+}
+
 TEST(Table, AlignsByCharactersNotBytes) {
     Table table{{{"NAME"}, {"VALUE", Table::Align::Right}, {"UNIT"}}};
     table.add({"x", "1.5", "kg px/s²"});
