@@ -32,12 +32,29 @@ const char* name_of(RefusalCode code) {
     return "UNKNOWN";
 }
 
+namespace {
+
+/// What a file or an argument holds must not steer the terminal that it is shown on: control characters but the end of
+/// a line become '?'.
+std::string visible(std::string utf8) {
+    for (std::size_t i = 0; i < utf8.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(utf8[i]);
+        if ((byte < 0x20 && byte != '\n') || byte == 0x7f)
+            utf8[i] = '?';
+        else if (i > 0 && utf8[i - 1] == '\xc2' && byte >= 0x80 && byte < 0xa0) // U+0080 to U+009F
+            utf8.replace(--i, 2, "?");
+    }
+    return utf8;
+}
+
+} // namespace
+
 std::string to_text(const Violation& violation) {
-    return violation.field + ": got " + violation.got + ", allowed " + violation.allowed;
+    return visible(violation.field + ": got " + violation.got + ", allowed " + violation.allowed);
 }
 
 std::string to_text(const Refusal& refusal) {
-    std::string text = refusal.message;
+    std::string text = visible(refusal.message);
     for (const Violation& violation : refusal.violations)
         text += "\n  " + to_text(violation);
     return text;

@@ -17,8 +17,20 @@ namespace evod::network {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
+base::Result<void> Listener::check(const std::string& address, const char* option) {
+    boost::system::error_code error;
+    (void)asio::ip::make_address(address, error);
+    if (!error)
+        return {};
+    return base::refusal(base::RefusalCode::InvalidArgument,
+                         "cannot listen on '" + address + "', which is not an IP address; give " + option +
+                             " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
+}
+
 base::Result<Listener> Listener::open(asio::io_context& context, const std::string& address, std::uint16_t port,
                                       const Names& names) {
+    if (auto sound = check(address, names.address); !sound)
+        return sound.error();
     const std::string where = address + ":" + std::to_string(port);
     const auto refused = [&](const std::string& why) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
@@ -27,9 +39,6 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     };
     boost::system::error_code error;
     const auto ip = asio::ip::make_address(address, error);
-    if (error)
-        return refused("'" + address + "' is not an IP address; give " + names.address +
-                       " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
     tcp::acceptor acceptor{context};
     const tcp::endpoint endpoint{ip, port};
     acceptor.open(endpoint.protocol(), error);

@@ -24,6 +24,8 @@ class Listener {
         const char* address = "--bind";
         const char* port = "--port";
     };
+    /// Refused if that is no address; nothing is opened. option: by which a person chooses it.
+    static base::Result<void> check(const std::string& address, const char* option);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address, std::uint16_t port,
                                        const Names& names);
     static base::Result<Listener> open(boost::asio::io_context& context, const std::string& address,

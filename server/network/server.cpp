@@ -42,6 +42,17 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     // From now on, also while worlds are brought back: they are obeyed once the server runs.
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         server->signals_.add(signal);
+    // What was said on the command line, before a file is opened and a world brought back.
+    if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound)
+        return sound.error();
+    if (server->options_.http)
+        if (auto sound = Listener::check(server->options_.http->bind_address, "--http-bind"); !sound)
+            return sound.error();
+    auto tls = access::server_context(server->options_.tls);
+    if (!tls)
+        return tls.error();
+    server->tls_ = *std::move(tls);
+    server->host_.tls = server->tls_.get();
     if (server->options_.replay) {
         auto replay = runtime::TimeTravel::replay_of(server->options_.replay->path, server->options_.replay->generation,
                                                      *server->executor_);
@@ -58,11 +69,6 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     } else if (auto begun = server->world_to_begin(); !begun) {
         return begun.error();
     }
-    auto tls = access::server_context(server->options_.tls);
-    if (!tls)
-        return tls.error();
-    server->tls_ = *std::move(tls);
-    server->host_.tls = server->tls_.get();
     boost::system::error_code no_address; // is told by the listener
     const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
     auto gate = access::Gate::open(server->options_.token_folder,

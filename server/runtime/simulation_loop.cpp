@@ -170,19 +170,23 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
         return std::nullopt;
     auto now = clock_.now();
     const auto end = now + slice;
+    bool woken = false; // perhaps for something else than mail, which the rest of a pass looks at
     while (!queries_.empty()) {
         if (now >= end)
             return now;
         const bool time_is_free = !time_is_wanted(now);
         if (!query_budget_.allows(now) && !time_is_free)
-            return query_budget_.next_at();
+            return woken ? now : query_budget_.next_at();
         answer_query();
         const auto began = std::exchange(now, clock_.now());
         if (!time_is_free)
             query_budget_.spend(now - began);
-        mind_mail(); // commands do not wait for the queries of others
+        if (mailbox_.pending()) {
+            mind_mail(); // commands do not wait for the queries of others
+            woken = true;
+        }
     }
-    return std::nullopt;
+    return woken ? std::optional{now} : std::nullopt;
 }
 
 void SimulationLoop::answer_query() {

@@ -101,7 +101,8 @@ class SimulationLoop {
         Clock::time_point next_picture;
     };
 
-    /// Answers queries as far as there is time for them. Returns when it is to be called again; nullopt: none waits.
+    /// Answers queries as far as there is time for them. Returns when the next pass is to come for them; nullopt: it
+    /// need not.
     std::optional<Clock::time_point> answer_queries();
     void answer_query();
     /// Whether a world is late if something else is done now.

@@ -18,7 +18,8 @@ SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Execu
             recorder_->when_changed([this] { mailbox_.wake(); });
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
-            if (!next || !mailbox_.pending())
+            // A pass takes the call to stop for mail if it came after the look at it above.
+            if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending()))
                 mailbox_.wait(next);
         }
         loop_.close();

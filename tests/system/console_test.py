@@ -101,6 +101,20 @@ class Run(Folder):
             done = evod("run", "--seed", "1", "--ask", stdin=answers, status=1)
             self.assertIn("--ask: the input ended before the answer to ", done.stderr)
 
+    def test_what_a_file_holds_does_not_steer_the_terminal(self):
+        path = pathlib.Path(self.folder.name) / "steering.json"
+        path.write_bytes(b'{"mutation_\\u001b[2Jchance\xc2\x9b31m": 1}')
+        said = evod("check", path, status=1)
+        self.assertFalse(re.search("[\x00-\x09\x0b-\x1f\x7f-\x9f]", said.stdout + said.stderr), said)
+
+    def test_a_server_judges_its_options_before_it_opens_files(self):
+        data = pathlib.Path(self.folder.name) / "not made"
+        for options, words in ((["--bind", "300.1.1.1"], "give --bind the address of an interface"),
+                               (["--http-port", "0", "--http-bind", "x"], "give --http-bind the address of an interface"),
+                               (["--tls-cert", "a.crt"], "--tls-cert needs --tls-key too")):
+            self.assertIn(words, evod("--port", "0", "--data", data, *options, status=1).stderr)
+            self.assertFalse(data.exists())
+
     def test_wrong_usage_is_said(self):
         for arguments in (("--seed", "-1"), ("--generations", "many"), ("--threads", "0"), ("--speed", "2")):
             evod("run", *arguments, status=2)

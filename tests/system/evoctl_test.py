@@ -228,7 +228,7 @@ class Commands(WithServer):
                 done = waiting.run([EVOCTL, "--server", self.address, *waiting.PATIENT, *words], stdout=full,
                                    stderr=subprocess.PIPE, text=True)
                 self.assertEqual(done.returncode, 1)
-                self.assertIn("evoctl: standard output cannot be written", done.stderr)
+                self.assertIn("standard output cannot be written", done.stderr)
 
     def test_watch_and_events_follow(self):
         self.evoctl("run")

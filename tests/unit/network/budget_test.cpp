@@ -165,6 +165,16 @@ TEST_F(BudgetTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
     EXPECT_EQ(look_closer(budget).again, Budget::Clock::time_point::max());
 }
 
+TEST_F(BudgetTest, AHugePictureDoesNotKeepAnotherWishAway) {
+    Budget budget{500, DETAIL_DENSITY};
+    costs_[DETAIL_DENSITY] = 1'000'000;
+    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+    costs_[DETAIL_DENSITY] = 100; // of a small region
+    budget.change(500, DETAIL_DENSITY);
+    clock_.advance(2200ms);
+    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+}
+
 TEST_F(BudgetTest, WhoWantsMoreHasMoreAtOnce) {
     Budget budget{500, DETAIL_FULL};
     EXPECT_EQ(choose(budget), DETAIL_FULL); // nothing is left

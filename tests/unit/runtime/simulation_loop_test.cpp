@@ -279,6 +279,26 @@ TEST_F(Loop, CommandsDoNotWaitForTheQueriesOfOthers) {
     EXPECT_EQ(order, (std::vector<std::string>{"first", "second"}));
 }
 
+TEST_F(Loop, IsCalledAgainWhenItIsWokenWhileQueriesAreAnswered) {
+    send(create("w"));
+    send(simulation::Run{"w", {}});
+    loop.pass();
+    pictures.clear();
+    clock.advance(10ms);
+    mailbox.push(QueryMail{[&](const Laboratory&) { clock.advance(40ms); }}); // more than is saved for queries
+    mailbox.push(QueryMail{[&](const Laboratory&) {                           // so it waits for the ticks that are due
+        EXPECT_GT(tick(), 1u);
+        watch("w", 60);
+        mailbox.wake();
+    }});
+    const auto next = loop.pass();
+    EXPECT_TRUE(pictures.empty());
+    ASSERT_TRUE(next);
+    EXPECT_LE(*next, clock.now());
+    loop.pass();
+    EXPECT_EQ(pictures.size(), 1u);
+}
+
 TEST_F(Loop, WhatWasAskedIsAnsweredAtTheEnd) {
     send(create("w"));
     send(simulation::SetSpeed{"w", {}});
