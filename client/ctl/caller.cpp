@@ -2,8 +2,6 @@
 
 #include "client/ctl/text.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -110,7 +108,8 @@ v1::Response Caller::call(v1::Request request, std::optional<std::chrono::millis
                    response.error().what + (late ? "; for a busy server wait longer, with --timeout" : "")};
     }
     if (!link::accepted(*response)) {
-        throw Stop{ExitCode::Refused, link::to_text(response->status()), response->status()};
+        const bool wrong = response->status().code() == v1::CODE_INVALID_ARGUMENT;
+        throw Stop{wrong ? ExitCode::Usage : ExitCode::Refused, link::to_text(response->status()), response->status()};
     }
     return *std::move(response);
 }
@@ -145,21 +144,6 @@ void Caller::need_planned_changes() const {
         throw Stop{ExitCode::Refused, "this server cannot plan changes of parameters: it is evod " +
                                           welcome_.server_version() + ", which is older than this evoctl"};
     }
-}
-
-std::string to_json(const google::protobuf::Message& message, bool many_lines) {
-    google::protobuf::util::JsonPrintOptions options;
-    options.preserve_proto_field_names = true;
-    options.always_print_primitive_fields = true;
-    options.add_whitespace = many_lines;
-    std::string text;
-    if (const auto status = google::protobuf::util::MessageToJsonString(message, &text, options); !status.ok()) {
-        throw Stop{ExitCode::Refused, "the answer cannot be written as JSON: " + std::string{status.message()}};
-    }
-    if (!text.ends_with('\n')) {
-        text += '\n';
-    }
-    return text;
 }
 
 std::string state_of(const v1::WorldInfo& world) {

@@ -1,6 +1,7 @@
 // Caller: one call's line to the server. What goes wrong ends the call: see Stop.
 #pragma once
 
+#include "client/ctl/json.h"
 #include "client/ctl/registry.h"
 #include "client/ctl/stop.h"
 #include "client/ctl/text.h"
@@ -63,9 +64,6 @@ class Caller {
     std::unique_ptr<link::Connection> connection_;
     v1::Welcome welcome_;
 };
-
-/// JSON with the names of the .proto files; on one line or many.
-std::string to_json(const google::protobuf::Message& message, bool many_lines = true);
 
 /// Prints an answer as JSON if that was asked for, else as `text` writes it.
 template <class Text>

@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
     app.add_option("--timeout", &common.timeout_s, "Seconds to wait for an answer")
         .show_default()
         .check(evod::command_line::RealNumber{0.001, 86400});
-    app.add_flag("--json", &common.json, "Print the answer as JSON");
+    app.add_flag("--json", &common.json, "Print the answer as JSON; numbers from 2^53 on are strings");
     app.accept_options_after_commands();
     app.help_column(32);
     app.footer("Examples:\n"
@@ -58,8 +58,9 @@ int main(int argc, char** argv) {
                "  evoctl set selection=tournament       while it runs\n"
                "  evoctl --server lab:7744 watch        live, from another machine\n"
                "\n"
-               "Exit codes: 0 done, 1 refused by the server, 2 wrong usage, 3 no connection or no answer,\n"
-               "4 the server wants a token that it knows. With --json, standard error has a Status in JSON.");
+               "Exit codes: 0 done, 1 refused by the server, 2 wrong usage or a value that is not allowed,\n"
+               "3 no connection or no answer, 4 the server wants a token that it knows. With --json, standard error "
+               "has a Status in JSON.");
     add_run_commands(app, common);
     add_parameter_commands(app, common);
     add_look_commands(app, common);

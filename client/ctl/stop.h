@@ -10,7 +10,7 @@ namespace evod::ctl {
 enum class ExitCode {
     Ok = 0,
     Refused = 1,      // by the server; or what was waited for did not come about
-    Usage = 2,        // this call makes no sense
+    Usage = 2,        // this call makes no sense, whether evoctl finds that or the server (INVALID_ARGUMENT)
     NoConnection = 3, // no server, or no answer
     TokenNeeded = 4,  // the server is there, and wants a token that it knows
 };

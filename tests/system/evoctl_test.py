@@ -88,7 +88,7 @@ class Commands(WithServer):
     def test_steps_are_exact_and_a_reset_repeats_them(self):
         self.evoctl("step", "60")
         first = self.answer("pause")["world"]
-        self.assertEqual((first["tick"], first["state"]), ("60", "RUN_STATE_PAUSED"))
+        self.assertEqual((first["tick"], first["state"]), (60, "RUN_STATE_PAUSED"))
         self.evoctl("reset")
         self.evoctl("until", "60")
         self.evoctl("step", "1")
@@ -110,7 +110,7 @@ class Commands(WithServer):
         self.evoctl("pause")
         self.evoctl("reset")
         self.assertIn("FAILED_PRECONDITION", self.evoctl("resume", status=1))
-        self.evoctl("speed", "0", status=1)
+        self.evoctl("speed", "0", status=2)
         self.evoctl("speed", "fast", status=2)
 
     def test_a_world_that_cannot_keep_its_pace_is_said_to_be_slower(self):
@@ -123,7 +123,7 @@ class Commands(WithServer):
         told = self.evoctl("get", "selection", "mutation_chance", "mutate_survivors", "tournament_size")
         self.assertEqual(told.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
-        wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=1)
+        wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
         self.assertIn("mutation_chance: got 2, allowed 0 to 1", wrong)
         self.assertIn("restitution: got -1, allowed 0 to 1", wrong)
         self.assertEqual(self.evoctl("get", "survivors").strip(), "survivors=0.5")
@@ -147,7 +147,7 @@ class Commands(WithServer):
         self.assertEqual(self.evoctl("--world", "small", "get", "population_size", "food_count").split(),
                          ["population_size=7", "food_count=9"])
         self.assertIn("ALREADY_EXISTS", self.evoctl("create", "other", status=1))
-        self.evoctl("create", "no/slash", status=1)
+        self.evoctl("create", "no/slash", status=2)
         self.evoctl("--world", "other", "speed", "max")  # a new world has the pace of real time
         self.evoctl("--world", "other", "run", "1", "--wait")
         self.assertIn("GENERATION", self.evoctl("--world", "other", "history"))
@@ -161,7 +161,7 @@ class Commands(WithServer):
         self.evoctl("fork", "then", "--name", "later")
         self.evoctl("--world", "default", "fork", "--name", "now")
         self.assertEqual([self.answer("--world", name, "stats")["world"]["generation"] for name in
-                          ("then", "later", "now")], ["2", "2", "3"])
+                          ("then", "later", "now")], [2, 2, 3])
         self.assertIn("--name is required", self.evoctl("fork", "other", status=2))
         self.assertIn("NOT_FOUND", self.evoctl("fork", "nobody", "--name", "x", status=1))
         self.assertIn("at_generation: got 9, allowed 1 to 3",
@@ -176,10 +176,10 @@ class Commands(WithServer):
         self.assertEqual(small("organism", "3", "--at-generation", "3", "--at-tick", "120"), now)
         self.assertEqual(small("organism", "3", "--at-tick", "360"), now)
         born = small("organism", "3", "--at-generation", "2")
-        self.assertEqual((born["generation"], born["lived_s"], born["alive"]), ("2", 0, True))
+        self.assertEqual((born["generation"], born["lived_s"], born["alive"]), (2, 0, True))
         then = small("stats", "--at-generation", "3", "--at-tick", "60")
-        self.assertEqual((then["world"]["generation"], then["world"]["tick"]), ("3", "300"))
-        self.assertEqual(then["last"][0]["generation"], "2")
+        self.assertEqual((then["world"]["generation"], then["world"]["tick"]), (3, 300))
+        self.assertEqual(then["last"][0]["generation"], 2)
         told = self.evoctl("--world", "small", "stats", "--at-generation", "3", "--at-tick", "60")
         self.assertIn("small as it was: generation 3, tick 300", told)
         self.assertIn("\nthen\n", told)

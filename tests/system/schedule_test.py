@@ -210,7 +210,7 @@ class Planned(access.Access):
         self.assertRegex(told, r"^change 1, from .*\nchange 2, after tick 9: food_health=3 food_count=1, by .*\n$")
         self.assertIn("cancelled: change 1,", self.evoctl("cancel", "1", server=server))
         self.assertIn("no change waits", self.evoctl("cancel", "1", server=server, status=1))
-        self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server, status=1))
+        self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server, status=2))
 
 
 if __name__ == "__main__":
