@@ -51,7 +51,10 @@ std::string text_of(const GenerationLine& line) {
 class Watch {
   public:
     Watch(const Common& common, std::optional<std::uint64_t> generations)
-        : common_{common}, generations_{generations}, caller_{common}, redraw_{on_terminal() && !common.json} {}
+        : common_{common}
+        , generations_{generations}
+        , caller_{common}
+        , redraw_{on_terminal() && !common.json && !generations} {} // each that was asked for has its line
 
     void run() {
         catch_interrupts();
@@ -362,7 +365,8 @@ void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
     auto& watch = app.add_command("watch", "Live statistics; a line per generation when piped").group(group);
     auto& generations = watch.keep(std::optional<std::uint64_t>{});
-    watch.add_option("--generations", &generations, "End after so many; without it Ctrl-C ends").check(at_least_one);
+    watch.add_option("--generations", &generations, "A line for each of so many, then end; without it Ctrl-C ends")
+        .check(at_least_one);
     watch.footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
     watch.action([&] { Watch{common, generations}.run(); });
 

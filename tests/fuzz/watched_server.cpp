@@ -142,7 +142,7 @@ void WatchedServer::poll() {
     context_.poll();
     const auto now = clock().now();
     for (const auto& [number, session] : sessions_)
-        session->mind_progress(polled_ == runtime::Clock::time_point{} ? runtime::Clock::duration{} : now - polled_);
+        session->mind_progress(now - polled_);
     polled_ = now;
 }
 

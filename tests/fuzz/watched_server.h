@@ -61,7 +61,6 @@ class WatchedServer {
     runtime::Outbox outbox_;
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;
-    runtime::Clock::time_point polled_;
     runtime::Clock::time_point polled_ = clock().now();
     std::size_t connection_count_ = 0;
     network::SessionHost host_{limit_counters_, buffers_};

@@ -233,6 +233,14 @@ class Commands(WithServer):
     def test_watch_and_events_follow(self):
         self.evoctl("run")
         self.assertEqual(len(self.evoctl("watch", "--generations", "3").strip().splitlines()), 3)
+        own, other = pty.openpty()
+        self.addCleanup(os.close, own)
+        with subprocess.Popen([EVOCTL, "--server", self.address, *waiting.PATIENT, "watch", "--generations", "3"],
+                              stdin=other, stdout=other) as watching:
+            self.assertEqual(waiting.ended(watching), 0)
+        shown = os.read(own, 10_000).decode()
+        os.close(other)
+        self.assertEqual((len(shown.strip().splitlines()), "\x1b" in shown), (3, False), shown)
         events = [json.loads(line) for line in self.evoctl("--json", "events", "--count", "3").splitlines()]
         self.assertEqual(len(events), 3)
 
