@@ -60,6 +60,9 @@ void Panes::update(link::WorldView::Clock::time_point now) {
     for (const auto& pane : panes_) {
         pane->watch.update(now);
     }
+    if (!next_.empty()) { // now that no pane is being updated
+        open_beside(std::exchange(next_, {}), 0);
+    }
 }
 
 void Panes::lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale) {
@@ -100,21 +103,31 @@ Camera& Panes::camera_at(Point screen) {
 }
 
 void Panes::toggle_beside() {
+    const std::uint64_t number = ++next_asked_count_;
     if (panes_.size() > 1) {
         panes_.erase(panes_.begin() + static_cast<std::ptrdiff_t>(1 - focus_));
         focus_ = 0;
         return;
     }
-    const Watch& shown = focused().watch;
-    wanted_.world = !shown.forked().empty() ? shown.forked() : shown.present().value_or(shown.world());
-    wanted_.island = shown.island();
-    wanted_.all_islands = shown.all_islands();
-    const bool same = wanted_.world == shown.world();
+    Watch& shown = focused().watch;
+    const std::string beside = !shown.forked().empty() ? shown.forked() : shown.present().value_or(shown.world());
+    if (beside != shown.world()) {
+        open_beside(beside, shown.island());
+        return;
+    }
+    shown.find_next_world([this, number](const std::string& world) {
+        if (number == next_asked_count_) { // or else the key was pressed again
+            next_ = world;
+        }
+    });
+}
+
+void Panes::open_beside(std::string world, std::uint32_t island) {
+    wanted_.world = std::move(world);
+    wanted_.island = island;
+    wanted_.all_islands = focused().watch.all_islands();
     panes_.push_back(std::make_unique<Pane>(wanted_));
     focus_ = 1;
-    if (same) {
-        focused().watch.next_world();
-    }
 }
 
 void Panes::link_cameras(const Camera& leader) {

@@ -83,7 +83,8 @@ class Panes {
     Camera& camera_at(Point screen);
 
     /// A second world beside the one with the focus, which it takes over: the fork that was made there, its present, or
-    /// the next world. Where there are two already, the one without the focus goes.
+    /// the next world, as soon as the server has told which that is. Where there are two already, the one without the
+    /// focus goes.
     void toggle_beside();
     void toggle_linked() { linked_ = !linked_; }
     bool linked() const { return linked_; }
@@ -91,7 +92,11 @@ class Panes {
     void link_cameras(const Camera& leader);
 
   private:
+    void open_beside(std::string world, std::uint32_t island);
+
     std::vector<std::unique_ptr<Pane>> panes_; // never empty
+    std::uint64_t next_asked_count_ = 0;       // times that the server was asked which world comes next
+    std::string next_;                         // its newest answer, to be opened; empty: none
     std::size_t focus_ = 0;
     bool linked_ = false;
     Watch::Wanted wanted_; // of the first

@@ -265,9 +265,25 @@ void Watch::next_world() {
         next_world_wanted_ = true; // there is nobody to ask yet
         return;
     }
+    find_next_world([this](const std::string& world) { look_at(world, 0); });
+}
+
+void Watch::find_next_world(std::function<void(const std::string& world)> found) {
+    if (connected_count_ == 0) {
+        notices_.emplace_back("The worlds are not known yet: there was no connection with the server so far");
+        return;
+    }
     evod::v1::Request request;
     request.mutable_list_worlds();
-    send(std::move(request));
+    ask(std::move(request), [this, found = std::move(found)](const link::Result<evod::v1::Response>& response) {
+        if (!response) {
+            notices_.push_back(response.error().what);
+        } else if (!link::accepted(*response)) {
+            notices_.push_back(shown_refusal(response->status()));
+        } else if (const auto world = world_after_this(response->worlds())) {
+            found(*world);
+        }
+    });
 }
 
 void Watch::ask_state() {
@@ -404,8 +420,6 @@ void Watch::take_answers() {
             take_command_answer(response);
         } else if (response && response->has_statistics()) {
             take_statistics(response->statistics());
-        } else if (response && response->has_worlds()) {
-            take_worlds(response->worlds());
         } // a refused query: what keeps the pictures away is told by refusal()
     }
 }
@@ -434,20 +448,21 @@ void Watch::take_statistics(const evod::v1::Statistics& statistics) {
     last_generation_.assign(statistics.last().begin(), statistics.last().end());
 }
 
-void Watch::take_worlds(const evod::v1::WorldList& worlds) {
+/// Nullopt, and a notice, if there is none.
+std::optional<std::string> Watch::world_after_this(const evod::v1::WorldList& worlds) {
     const auto& list = worlds.worlds();
     if (list.empty()) {
         notices_.push_back("There is no world on this server yet: make one with evoctl create NAME");
-        return;
+        return std::nullopt;
     }
     const std::string shown = present_.value_or(name());
     const auto here = std::ranges::find(list, shown, &evod::v1::WorldInfo::name);
     const auto next = here == list.end() || std::next(here) == list.end() ? list.begin() : std::next(here);
     if (next == here) {
         notices_.push_back("There is only this world: make another with evoctl create NAME");
-    } else {
-        look_at(next->name(), 0);
+        return std::nullopt;
     }
+    return next->name();
 }
 
 void Watch::take_event(const evod::v1::Event& event) {

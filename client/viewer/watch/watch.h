@@ -77,6 +77,9 @@ class Watch {
     /// Pictures of every island, and not only of the one that is chosen.
     void show_all_islands(bool all);
     void next_world();
+    /// Asks the server which world comes after this one. The handler is called by an update() with its name; if there
+    /// is none, a notice says what to do instead.
+    void find_next_world(std::function<void(const std::string& world)> found);
     void look_at(std::string world, std::uint32_t island);
     /// Another number, which no other watch has, whenever something else is looked at: another world, its past or its
     /// present again, another island. What was asked about a place says nothing of the next.
@@ -167,7 +170,7 @@ class Watch {
     void take_answers();
     void take_command_answer(const link::Result<evod::v1::Response>& response);
     void take_statistics(const evod::v1::Statistics& statistics);
-    void take_worlds(const evod::v1::WorldList& worlds);
+    std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds);
     void take_event(const evod::v1::Event& event);
 
     Wanted wanted_;

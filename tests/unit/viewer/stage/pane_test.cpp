@@ -1,0 +1,87 @@
+#include "client/viewer/stage/pane.h"
+
+#include "tests/support/waiting.h"
+#include "tests/unit/link/fake_server.h"
+
+#include <gmock/gmock.h>
+
+namespace evod::viewer {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// One pane, of the server's choice of a world, which is "default".
+struct PanesTest : testing::Test {
+    PanesTest() {
+        session.answer_subscription(session.read_request(), 6); // to events
+        const auto pictures = session.read_request();
+        session.answer_subscription(pictures, 7);
+        until([&] { return panes[0].watch.connected(); });
+        panes.update(std::chrono::steady_clock::now()); // asks how the world stands
+        const auto question = session.read_request();
+        EXPECT_TRUE(question.has_get_statistics());
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(question.request_id());
+        message.mutable_response()->mutable_statistics()->mutable_world()->set_name("default");
+        session.send(message);
+        until([&] { return panes[0].watch.all_answered() && panes[0].watch.control().known(); });
+    }
+
+    template <class Condition>
+    void until(Condition condition) {
+        ASSERT_TRUE(wait_until(condition, [&] {
+            panes.update(std::chrono::steady_clock::now());
+            for (std::string& notice : panes.focused().watch.take_notices()) {
+                notices.push_back(std::move(notice));
+            }
+            take_a_nap();
+        }));
+    }
+
+    void answer_worlds(const evod::v1::Request& question, std::initializer_list<const char*> names) {
+        EXPECT_TRUE(question.has_list_worlds());
+        evod::v1::ServerMessage message;
+        message.mutable_response()->set_request_id(question.request_id());
+        for (const char* name : names) {
+            message.mutable_response()->mutable_worlds()->add_worlds()->set_name(name);
+        }
+        session.send(message);
+    }
+
+    link::FakeServer server;
+    std::vector<std::string> notices;
+    Panes panes{{.connection = server.options(), .world = ""}};
+    link::FakeSession session = server.accept_and_welcome();
+};
+
+TEST_F(PanesTest, TheOtherWorldIsShownBeside) {
+    panes.toggle_beside();
+    answer_worlds(session.read_request(), {"default", "omega"});
+    until([&] { return panes.size() == 2; });
+    EXPECT_EQ(panes[0].watch.name(), "default");
+    EXPECT_EQ(panes[1].watch.world(), "omega");
+    EXPECT_THAT(notices, testing::IsEmpty());
+}
+
+TEST_F(PanesTest, TheOnlyWorldIsNotShownTwice) {
+    panes.toggle_beside();
+    answer_worlds(session.read_request(), {"default"});
+    until([&] { return !notices.empty(); });
+    EXPECT_THAT(notices, ElementsAre(HasSubstr("evoctl create NAME")));
+    EXPECT_EQ(panes.size(), 1u);
+}
+
+TEST_F(PanesTest, OnlyTheNewestAnswerOpensAHalf) {
+    panes.toggle_beside();
+    panes.toggle_beside();
+    answer_worlds(session.read_request(), {"default", "alpha"});
+    answer_worlds(session.read_request(), {"default", "omega"});
+    until([&] { return panes.size() == 2 && panes[0].watch.all_answered(); });
+    EXPECT_EQ(panes[1].watch.world(), "omega");
+    panes.toggle_beside();
+    EXPECT_EQ(panes.size(), 1u);
+}
+
+} // namespace
+} // namespace evod::viewer
