@@ -12,16 +12,44 @@ void Spots::begin_frame() {
     panel_.clear();
 }
 
-void Spots::add(std::string_view name, Point centre) {
+/// A widget is known by its name, and by its panel and its name.
+template <class Do>
+void Spots::each_name(std::string_view name, Do act) {
     if (!panel_.empty()) {
-        building_.insert_or_assign(panel_ + "/" + std::string{name}, centre);
+        act(panel_ + "/" + std::string{name});
     }
-    building_.insert_or_assign(std::string{name}, centre);
+    act(std::string{name});
+}
+
+void Spots::add(std::string_view name, Point centre) {
+    each_name(name, [&](std::string full) {
+        building_.insert_or_assign(std::move(full), Spot{.centre = centre, .choices = {}});
+    });
+}
+
+void Spots::add_drop_down(std::string_view name, Point centre) {
+    each_name(name, [&](std::string full) {
+        building_.insert_or_assign(std::move(full), Spot{.centre = centre, .choices = {{}}});
+    });
+}
+
+void Spots::add_choice(std::string_view drop_down, std::string_view choice, Point centre) {
+    add(std::string{drop_down} + ": " + std::string{choice}, centre);
+    each_name(drop_down, [&](const std::string& full) {
+        if (const auto spot = building_.find(full); spot != building_.end() && spot->second.choices) {
+            spot->second.choices->emplace_back(choice);
+        }
+    });
 }
 
 std::optional<Point> Spots::find(const std::string& name) const {
     const auto found = shown_.find(name);
-    return found == shown_.end() ? std::nullopt : std::optional{found->second};
+    return found == shown_.end() ? std::nullopt : std::optional{found->second.centre};
+}
+
+const std::vector<std::string>* Spots::choices(const std::string& name) const {
+    const auto found = shown_.find(name);
+    return found == shown_.end() || !found->second.choices ? nullptr : &*found->second.choices;
 }
 
 bool Spots::lingers(Point corner, double now_s, bool clicked) {
@@ -48,13 +76,21 @@ void write_lines(std::string_view text, float width_max) {
     ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
 }
 
+/// Null while nothing there is visible.
+Spots* spots_of(ImVec2 least, ImVec2 most) {
+    return ImGui::IsRectVisible(least, most) ? static_cast<Spots*>(ImGui::GetIO().UserData) : nullptr;
+}
+
+Point middle(ImVec2 least, ImVec2 most) {
+    return {(least.x + most.x) / 2.0, (least.y + most.y) / 2.0};
+}
+
 } // namespace
 
 void mark(std::string_view name) {
-    auto* spots = static_cast<Spots*>(ImGui::GetIO().UserData);
-    if (spots != nullptr && ImGui::IsItemVisible()) {
-        const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
-        spots->add(name, {(least.x + most.x) / 2.0, (least.y + most.y) / 2.0});
+    const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
+    if (Spots* spots = spots_of(least, most)) {
+        spots->add(name, middle(least, most));
     }
 }
 
@@ -62,6 +98,31 @@ bool button(const char* label) {
     const bool pressed = ImGui::Button(label);
     mark(label);
     return pressed;
+}
+
+bool checkbox(const char* label, bool& on) {
+    const bool changed = ImGui::Checkbox(label, &on);
+    mark(label);
+    return changed;
+}
+
+bool begin_drop_down(const char* label, const char* chosen, std::string_view name) {
+    // Once it is open the widget made last is its list.
+    const ImVec2 least = ImGui::GetCursorScreenPos();
+    const ImVec2 most{least.x + ImGui::CalcItemWidth(), least.y + ImGui::GetFrameHeight()};
+    if (Spots* spots = spots_of(least, most)) {
+        spots->add_drop_down(name.empty() ? label : name, middle(least, most));
+    }
+    return ImGui::BeginCombo(label, chosen, ImGuiComboFlags_HeightLargest);
+}
+
+bool choice(std::string_view drop_down, const std::string& name, bool chosen) {
+    const bool taken = ImGui::Selectable(name.c_str(), chosen);
+    const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
+    if (Spots* spots = spots_of(least, most)) {
+        spots->add_choice(drop_down, name, middle(least, most));
+    }
+    return taken;
 }
 
 bool window_pressed() {

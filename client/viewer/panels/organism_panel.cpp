@@ -126,7 +126,7 @@ void OrganismPanel::build(Context& context) {
     if (!story->dead() && !story->ended()) {
         widgets::say(shown_choice(info), palette::text);
         bool following = context.sight.following();
-        if (ImGui::Checkbox("keep it in the middle (L)", &following)) {
+        if (widgets::checkbox("keep it in the middle (L)", following)) {
             context.sight.toggle_following(context.watch);
         }
     }

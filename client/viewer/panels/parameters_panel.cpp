@@ -360,16 +360,13 @@ bool ParametersPanel::build_choice(std::size_t i) {
     const ParameterDescription& about = edits_.registry()[i];
     ParameterValue value = edits_.shown(i);
     bool released = false;
-    const bool open = ImGui::BeginCombo("##value", value.choice().c_str());
-    widgets::mark(about.name());
-    if (open) {
+    if (widgets::begin_drop_down("##value", value.choice().c_str(), about.name())) {
         for (const std::string& choice : about.choices()) {
-            if (ImGui::Selectable(choice.c_str(), choice == value.choice())) {
+            if (widgets::choice(about.name(), choice, choice == value.choice())) {
                 value.set_choice(choice);
                 edits_.edit(i, value);
                 released = true;
             }
-            widgets::mark(about.name() + ": " + choice);
         }
         ImGui::EndCombo();
     } else {

@@ -26,14 +26,15 @@ void build_colouring(Sight& sight) {
             return "nothing";
         }
     };
+    constexpr const char* colouring = "colour by (C)";
     const auto choose = [&](ColourBy by, std::size_t gene) {
         const bool chosen = shown.colour_by == by && (by != ColourBy::Gene || shown.gene == gene);
-        if (ImGui::Selectable(name(by, gene).c_str(), chosen)) {
+        if (widgets::choice(colouring, name(by, gene), chosen)) {
             shown.colour_by = by;
             shown.gene = gene;
         }
     };
-    if (ImGui::BeginCombo("colour by (C)", name(shown.colour_by, shown.gene).c_str())) {
+    if (widgets::begin_drop_down(colouring, name(shown.colour_by, shown.gene).c_str())) {
         choose(ColourBy::Nothing, shown.gene);
         choose(ColourBy::Health, shown.gene);
         choose(ColourBy::Lineage, shown.gene);
@@ -42,9 +43,9 @@ void build_colouring(Sight& sight) {
         }
         ImGui::EndCombo();
     }
-    if (ImGui::BeginCombo("palette", std::string{palette::name_of(shown.ramp)}.c_str())) {
+    if (widgets::begin_drop_down("palette", std::string{palette::name_of(shown.ramp)}.c_str())) {
         for (const palette::Ramp ramp : palette::ramps) {
-            if (ImGui::Selectable(std::string{palette::name_of(ramp)}.c_str(), shown.ramp == ramp)) {
+            if (widgets::choice("palette", std::string{palette::name_of(ramp)}, shown.ramp == ramp)) {
                 shown.ramp = ramp;
             }
         }
@@ -58,16 +59,16 @@ void ViewPanel::build(Context& context) {
     Sight& sight = context.sight;
     build_colouring(sight);
     ImGui::Separator();
-    ImGui::Checkbox("perception radii of food and poison (V)", &sight.shown.radii);
-    ImGui::Checkbox("forces, and what they act on (G)", &sight.shown.forces);
-    ImGui::Checkbox("trails of the last 3 simulated seconds (T)", &sight.shown.trails);
+    widgets::checkbox("perception radii of food and poison (V)", sight.shown.radii);
+    widgets::checkbox("forces, and what they act on (G)", sight.shown.forces);
+    widgets::checkbox("trails of the last 3 simulated seconds (T)", sight.shown.trails);
     ImGui::Separator();
-    ImGui::Checkbox("densities where organisms are too small", &sight.shown.density);
-    ImGui::Checkbox("minimap where not all is seen", &sight.shown.minimap);
+    widgets::checkbox("densities where organisms are too small", sight.shown.density);
+    widgets::checkbox("minimap where not all is seen", sight.shown.minimap);
     ImGui::Separator();
     bool following = sight.following();
     if (context.watch.selected() || following) {
-        if (ImGui::Checkbox("keep the selected organism in the middle (L)", &following)) {
+        if (widgets::checkbox("keep the selected organism in the middle (L)", following)) {
             sight.toggle_following(context.watch);
         }
     } else {

@@ -34,6 +34,9 @@ class Screen::Hands : public Script::Host {
     std::optional<Point> find(const std::string& widget) const override {
         return screen_.stage_.gui().spots().find(widget);
     }
+    const std::vector<std::string>* choices(const std::string& widget) const override {
+        return screen_.stage_.gui().spots().choices(widget);
+    }
     const Watch* watched() const override { return watch_; }
     std::string save(const std::string& path) override {
         try {

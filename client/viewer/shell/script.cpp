@@ -8,6 +8,7 @@
 #include <cctype>
 #include <charconv>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 namespace evod::viewer {
@@ -26,6 +27,15 @@ link::Error usage(std::string what) {
 
 std::string in_quotes(std::string_view text) {
     return "\"" + std::string{text} + "\"";
+}
+
+/// "a, b, c".
+std::string in_order(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) {
+        text += (text.empty() ? "" : ", ") + name;
+    }
+    return text;
 }
 
 // ---- words -----------------------------------------------------------------------------------------------------
@@ -183,39 +193,76 @@ Script::Act type_act(std::string text) {
 
 // ---- mouse -----------------------------------------------------------------------------------------------------
 
+/// Moves the mouse to a widget; false if that is not on the screen.
+bool go_to(Host& host, const std::string& widget) {
+    const auto place = host.find(widget);
+    if (place) {
+        sf::Event event{};
+        event.type = sf::Event::MouseMoved;
+        event.mouseMove = {static_cast<int>(place->x), static_cast<int>(place->y)};
+        host.send(event);
+    }
+    return place.has_value();
+}
+
+/// Presses and releases the left button on a widget; false if that is not on the screen.
+bool click_on(Host& host, const std::string& widget, bool with_control) {
+    const auto place = host.find(widget);
+    if (!place) {
+        return false;
+    }
+    const Chord held{.control = with_control};
+    if (with_control) {
+        send_key(host, true, Key::LControl, held);
+    }
+    for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
+        sf::Event event{};
+        event.type = type;
+        event.mouseButton = {sf::Mouse::Left, static_cast<int>(place->x), static_cast<int>(place->y)};
+        host.send(event);
+    }
+    if (with_control) {
+        send_key(host, false, Key::LControl, {});
+    }
+    return true;
+}
+
 /// Goes there, and in a step of its own, when that has been seen, presses and releases.
-Acts click_acts(const std::string& widget, bool with_control) {
-    const auto go = [widget](Host& host) -> link::Result<bool> {
-        const auto place = host.find(widget);
-        if (place) {
-            sf::Event event{};
-            event.type = sf::Event::MouseMoved;
-            event.mouseMove = {static_cast<int>(place->x), static_cast<int>(place->y)};
-            host.send(event);
-        }
-        return place.has_value();
-    };
-    const auto click = [widget, with_control](Host& host) -> link::Result<bool> {
-        const auto place = host.find(widget);
-        if (!place) {
-            return false;
-        }
-        const Chord held{.control = with_control};
-        if (with_control) {
-            send_key(host, true, Key::LControl, held);
-        }
-        for (const auto type : {sf::Event::MouseButtonPressed, sf::Event::MouseButtonReleased}) {
-            sf::Event event{};
-            event.type = type;
-            event.mouseButton = {sf::Mouse::Left, static_cast<int>(place->x), static_cast<int>(place->y)};
-            host.send(event);
-        }
-        if (with_control) {
-            send_key(host, false, Key::LControl, {});
-        }
-        return true;
-    };
-    return {go, click};
+Acts click_acts(const std::string& widget) {
+    return {[widget](Host& host) -> link::Result<bool> { return go_to(host, widget); },
+            [widget](Host& host) -> link::Result<bool> { return click_on(host, widget, false); }};
+}
+
+/// Types a text into a field, in place of what it says; of a drop-down, opens it and clicks on what has this text.
+Acts set_acts(const std::string& widget, const std::string& text) {
+    const std::string choice = widget + ": " + text;
+    // Whether it is a drop-down is seen when it is clicked: what is chosen may take it away.
+    const auto drops_down = std::make_shared<bool>(false);
+    return {[widget](Host& host) -> link::Result<bool> { return go_to(host, widget); },
+            [widget, drops_down](Host& host) -> link::Result<bool> {
+                *drops_down = host.choices(widget) != nullptr;
+                return click_on(host, widget, !*drops_down);
+            },
+            [choice, drops_down](Host& host) -> link::Result<bool> {
+                if (*drops_down) {
+                    return go_to(host, choice);
+                }
+                press(host, {.key = Key::A, .control = true});
+                return true;
+            },
+            [choice, text, drops_down](Host& host) -> link::Result<bool> {
+                if (*drops_down) {
+                    return click_on(host, choice, false);
+                }
+                send_text(host, text);
+                return true;
+            },
+            [drops_down](Host& host) -> link::Result<bool> {
+                if (!*drops_down) {
+                    press(host, {.key = Key::Enter});
+                }
+                return true;
+            }};
 }
 
 // ---- conditions ------------------------------------------------------------------------------------------------
@@ -325,15 +372,10 @@ const Verb verbs[] = {
     {"type", "TEXT", "types into the field that has the keyboard", 1, 1,
      [](ScriptLine& line) -> link::Result<Acts> { return Acts{type_act(line.words[1])}; }},
     {"click", "NAME", "clicks on a widget, by what stands on it or beside it", 1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> { return click_acts(line.words[1], false); }},
-    {"set", "NAME TEXT", "types a value into a field or slider, in place of what it says, and Enter", 2, 2,
-     [](ScriptLine& line) -> link::Result<Acts> {
-         Acts acts = click_acts(line.words[1], true);
-         acts.push_back(press_act({.key = Key::A, .control = true}));
-         acts.push_back(type_act(line.words[2]));
-         acts.push_back(press_act({.key = Key::Enter}));
-         return acts;
-     }},
+     [](ScriptLine& line) -> link::Result<Acts> { return click_acts(line.words[1]); }},
+    {"set", "NAME TEXT",
+     "types a value into a field or slider, in place of what it says, and Enter; chooses it from a drop-down", 2, 2,
+     [](ScriptLine& line) -> link::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
     {"wait", "CONDITION", "waits until that holds", 1, 2,
      [](ScriptLine& line) -> link::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
@@ -426,8 +468,11 @@ link::Result<Script> Script::parse(std::string_view text) {
         }
         patience_s = line.patience_s;
         for (Act& act : *acts) {
-            script.steps_.push_back(
-                {number, std::string{whole}, std::chrono::duration<double>{patience_s}, std::move(act)});
+            script.steps_.push_back({.line = number,
+                                     .text = std::string{whole},
+                                     .drop_down = line.words[0] == "set" ? line.words[1] : "",
+                                     .patience = std::chrono::duration<double>{patience_s},
+                                     .act = std::move(act)});
         }
     }
     return script;
@@ -451,8 +496,12 @@ link::Result<void> Script::advance(Host& host, Clock::time_point now) {
     if (!waiting_since_) {
         waiting_since_ = now;
     } else if (now - *waiting_since_ > step.patience) {
-        return usage(place() + "it did not come to that within " +
-                     std::to_string(static_cast<long long>(step.patience.count())) + " s");
+        std::string what = place() + "it did not come to that within " +
+                           std::to_string(static_cast<long long>(step.patience.count())) + " s";
+        if (const auto* choices = host.choices(step.drop_down); choices != nullptr && !choices->empty()) {
+            what += "; " + in_quotes(step.drop_down) + " offers " + in_order(*choices);
+        }
+        return usage(std::move(what));
     }
     return {};
 }

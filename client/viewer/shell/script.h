@@ -47,6 +47,9 @@ class Script {
         virtual void send(const sf::Event& event) = 0;
         /// The middle of a widget, by the name that it was marked with.
         virtual std::optional<Point> find(const std::string& widget) const = 0;
+        /// What a drop-down offers, by the name that it was marked with, each marked "drop-down: choice"; nothing while
+        /// it is closed, and null if it is no drop-down.
+        virtual const std::vector<std::string>* choices(const std::string& widget) const = 0;
         /// Null while nothing is watched.
         virtual const Watch* watched() const = 0;
         /// Saves what is shown; says why it cannot, or nothing.
@@ -72,7 +75,8 @@ class Script {
   private:
     struct Step {
         unsigned line;
-        std::string text; // of the line
+        std::string text;      // of the line
+        std::string drop_down; // that something is chosen from, if it is one; empty: none
         std::chrono::duration<double> patience;
         Act act;
     };

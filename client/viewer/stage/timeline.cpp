@@ -190,7 +190,10 @@ void Timeline::build_buttons(Watch& watch, float pixel) {
     ImGui::TextUnformatted("generation");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 5);
-    if (ImGui::InputInt("##generation", &typed_generation_, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue)) {
+    const bool entered =
+        ImGui::InputInt("##generation", &typed_generation_, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue);
+    widgets::mark("generation");
+    if (entered) {
         watch.seek(beginning_of(static_cast<std::uint64_t>(std::max(typed_generation_, 0))));
     } else if (!ImGui::IsItemActive()) {
         typed_generation_ = static_cast<int>(shown_generation_);
@@ -223,10 +226,11 @@ void Timeline::build_fork(Watch& watch) {
         }
         const bool entered =
             ImGui::InputText("##name", fork_name_.data(), fork_name_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+        widgets::mark("Its name");
         ImGui::SameLine();
         const bool named = fork_name_[0] != '\0';
         ImGui::BeginDisabled(!named);
-        if ((ImGui::Button("Fork") || entered) && named) {
+        if ((widgets::button("Fork") || entered) && named) {
             watch.fork(fork_name_.data());
             ImGui::CloseCurrentPopup();
         }

@@ -100,6 +100,46 @@ quit
     EXPECT_EQ(chance_of(server.parameters()), 0.2);
 }
 
+std::string selection_of(const evod::v1::ParameterSet& set) {
+    for (const auto& parameter : set.parameters()) {
+        if (parameter.name() == "selection") {
+            return parameter.value().choice();
+        }
+    }
+    return "";
+}
+
+TEST_F(PanelsTest, ADropDownIsSetToWhatItOffersOrTheScriptEnds) {
+    RealServer server{{"--seed", "7"}};
+    const Ran chosen = play(server.address(), R"script(
+wait picture
+key F4
+set Search selection
+set selection truncation
+wait widget "1 edited"
+set selection tournament
+click Apply
+wait widget "Revision 2"
+key F5
+set palette cividis
+set "colour by (C)" "gene body_size"
+quit
+)script");
+    ASSERT_EQ(chosen.status, 0) << chosen.output;
+    EXPECT_EQ(selection_of(server.parameters()), "tournament");
+    const Ran unknown = play(server.address(), R"(wait picture
+key F4
+set Search selection
+wait widget selection
+timeout 0.5
+set selection turnament
+)");
+    EXPECT_EQ(unknown.status, 1);
+    EXPECT_THAT(unknown.output, HasSubstr("script:6: set selection turnament: "));
+    EXPECT_THAT(unknown.output, HasSubstr("\"selection\" offers "));
+    EXPECT_THAT(unknown.output, HasSubstr("tournament, "));
+}
+
 TEST_F(PanelsTest, WhatIsRefusedIsMarkedAndNothingIsChanged) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(

@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 namespace evod::viewer {
 namespace {
 
@@ -78,6 +80,21 @@ TEST_F(PanesTest, APastIsShownAsItWas) {
         run_evoview("--server " + server.address() + " --world one --past 99 --screenshot " + folder.file("none.png"));
     EXPECT_EQ(ran.status, 1);
     EXPECT_NE(ran.output.find("99"), std::string::npos) << ran.output;
+}
+
+TEST_F(PanesTest, AScriptGoesToAGenerationOfThePast) {
+    make_world(server, "one", 421);
+    std::ofstream{folder.file("script")} << R"(wait picture
+wait widget Present
+set generation 2
+wait generation 2
+key F8
+set Generation 1
+quit
+)";
+    const Ran ran =
+        run_evoview("--server " + server.address() + " --world one --past 1 --script " + folder.file("script"));
+    EXPECT_EQ(ran.status, 0) << ran.output;
 }
 
 /// At a window of 800 × 500 with the past of a world.

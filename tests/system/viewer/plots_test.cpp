@@ -177,6 +177,23 @@ quit
     EXPECT_TRUE(image.loadFromFile(path_of("selection", 3) + ".png"));
 }
 
+TEST_F(PlotsTest, AScriptComparesWithAnotherWorld) {
+    make_world();
+    run(3);
+    server.make_world({.name = "other", .seed = 9, .parameters = {}});
+    std::ofstream{folder.file("script")} << R"(wait picture
+key F7
+wait widget "3 generations, up to 3"
+set compare "world other"
+click Genes
+set gene body_size
+click "only the living"
+quit
+)";
+    const Ran ran = run_evoview(server.address() + " --world lab --script " + folder.file("script"));
+    EXPECT_EQ(ran.status, 0) << ran.output;
+}
+
 /// A plot that fills the window, and a mouse.
 struct PlotUnderTheMouse {
     Plot plot;

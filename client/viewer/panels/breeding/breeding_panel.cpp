@@ -215,7 +215,9 @@ void BreedingPanel::build_generation(const Context& context) {
     ImGui::SetNextItemWidth(130 * context.gui.scale());
     const std::uint64_t one = 1;
     std::uint64_t wanted = chosen_;
-    if (ImGui::InputScalar("##generation", ImGuiDataType_U64, &wanted, &one, nullptr) && newest_ > 0) {
+    const bool changed = ImGui::InputScalar("##generation", ImGuiDataType_U64, &wanted, &one, nullptr);
+    widgets::mark("Generation");
+    if (changed && newest_ > 0) {
         follow_ = false;
         chosen_ = std::clamp<std::uint64_t>(wanted, 1, newest_);
     }
@@ -286,12 +288,14 @@ void BreedingPanel::build_transport(const Gui& gui) {
                            static_cast<float>(Stepper::speed_max), "%.3g steps/s", ImGuiSliderFlags_Logarithmic)) {
         stepper_.set_speed(double{speed});
     }
+    widgets::mark("steps/s");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
     auto position = static_cast<int>(stepper_.position());
     if (ImGui::SliderInt("##position", &position, 0, static_cast<int>(stepper_.last_position()), "step %d")) {
         stepper_.go_to(static_cast<std::uint32_t>(std::max(position, 0)));
     }
+    widgets::mark("step");
 }
 
 void BreedingPanel::take_keys() {

@@ -127,17 +127,21 @@ void PhysicsPanel::build_demo() {
     if (ImGui::RadioButton("a spring", spring_)) {
         changed = spring_ = true;
     }
+    widgets::mark("a spring");
     ImGui::SameLine();
     if (ImGui::RadioButton("damped motion", !spring_)) {
         spring_ = false;
         changed = true;
     }
-    changed |= ImGui::SliderFloat(spring_ ? "ω, 1/s" : "damping, 1/s", &rate_per_s_, 0.5f, 10, "%.1f",
+    widgets::mark("damped motion");
+    const char* rate_label = spring_ ? "ω, 1/s" : "damping, 1/s";
+    changed |= ImGui::SliderFloat(rate_label, &rate_per_s_, 0.5f, 10, "%.1f",
                                   ImGuiSliderFlags_AlwaysClamp); // it is divided by
+    widgets::mark(rate_label);
     changed |= ImGui::SliderFloat("tick, ms", &tick_ms_, tick_ms_min, tick_ms_max, "%.0f",
                                   ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     widgets::mark("tick, ms");
-    if (!history_.empty() && ImGui::Button("a tick of this world")) {
+    if (!history_.empty() && widgets::button("a tick of this world")) {
         tick_ms_ = std::clamp(static_cast<float>(history_.last().tick_s() * 1000), tick_ms_min, tick_ms_max);
         changed = true;
     }

@@ -175,10 +175,10 @@ void PlotsPanel::build_choices() {
     };
     if (count > 1) {
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9);
-        if (ImGui::BeginCombo("##island", named(island_).c_str())) {
+        if (widgets::begin_drop_down("##island", named(island_).c_str(), "island")) {
             for (std::uint32_t i = 0; i <= count; ++i) {
                 const HistoryTable::Island island = i == 0 ? HistoryTable::Island{} : i - 1;
-                if (ImGui::Selectable(named(island).c_str(), island == island_)) {
+                if (widgets::choice("island", named(island), island == island_)) {
                     island_ = island;
                 }
             }
@@ -186,7 +186,7 @@ void PlotsPanel::build_choices() {
         }
         ImGui::SameLine();
     }
-    if (ImGui::Button("Fit")) {
+    if (widgets::button("Fit")) {
         view_ = histogram_view_ = {};
     }
     ImGui::SameLine();
@@ -219,12 +219,12 @@ void PlotsPanel::compare_with_file(const std::string& path) {
 void PlotsPanel::build_comparison() {
     ImGui::SetNextItemWidth(-ImGui::GetFontSize() * 5);
     const bool compares = other_world_ || file_;
-    if (ImGui::BeginCombo("compare", compares ? other_name_.c_str() : "with nothing")) {
+    if (widgets::begin_drop_down("compare", compares ? other_name_.c_str() : "with nothing")) {
         if (ImGui::IsWindowAppearing()) {
             files_ = csv_files();
             worlds_stale_ = true;
         }
-        if (ImGui::Selectable("with nothing", !compares)) {
+        if (widgets::choice("compare", "with nothing", !compares)) {
             other_world_.reset();
             file_.reset();
         }
@@ -232,8 +232,8 @@ void PlotsPanel::build_comparison() {
             if (world.name() == own_.history.world()) {
                 continue;
             }
-            if (ImGui::Selectable(("world " + world.name()).c_str(),
-                                  other_world_ && world.name() == other_world_->history.world())) {
+            if (widgets::choice("compare", "world " + world.name(),
+                                other_world_ && world.name() == other_world_->history.world())) {
                 other_world_ = std::make_unique<TrackedHistory>();
                 other_world_->history.see_run(world);
                 file_.reset();
@@ -241,14 +241,16 @@ void PlotsPanel::build_comparison() {
             }
         }
         for (const std::string& name : files_) {
-            if (ImGui::Selectable(("file " + name).c_str())) {
+            if (widgets::choice("compare", "file " + name, false)) {
                 compare_with_file(name);
             }
         }
         ImGui::Separator();
         ImGui::SetNextItemWidth(-1);
-        if (ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(), path_.size(),
-                                     ImGuiInputTextFlags_EnterReturnsTrue)) {
+        const bool entered = ImGui::InputTextWithHint("##path", "path of another CSV file, then Enter", path_.data(),
+                                                      path_.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+        widgets::mark("path of another CSV file");
+        if (entered) {
             compare_with_file(path_.data());
             ImGui::CloseCurrentPopup();
         }
@@ -280,7 +282,7 @@ void PlotsPanel::build_quantity(Context& context, Quantity quantity) {
     }
     const float line = ImGui::GetFrameHeightWithSpacing();
     plot_widget("history", figure_.plot, view_, std::max(height * 0.55f, plot_height_min));
-    ImGui::Checkbox("only the living", &only_the_living_);
+    widgets::checkbox("only the living", only_the_living_);
     ImGui::SameLine();
     const Population* population = population_.whole();
     if (const std::string trouble = population_.trouble(); !trouble.empty()) {
@@ -300,12 +302,12 @@ void PlotsPanel::build_gene_choice(const char* all) {
         gene_.clear();
     }
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
-    if (ImGui::BeginCombo("gene", gene_.empty() ? all : gene_.c_str())) {
-        if (ImGui::Selectable(all, gene_.empty())) {
+    if (widgets::begin_drop_down("gene", gene_.empty() ? all : gene_.c_str())) {
+        if (widgets::choice("gene", all, gene_.empty())) {
             gene_.clear();
         }
         for (const std::string& name : names) {
-            if (ImGui::Selectable(name.c_str(), name == gene_)) {
+            if (widgets::choice("gene", name, name == gene_)) {
                 gene_ = name;
                 histogram_view_ = {};
             }

@@ -33,5 +33,22 @@ TEST(Spots, AfterAClickItLingersOnlyOnceItHasBeenElsewhere) {
     EXPECT_TRUE(spots.lingers(apply, 5.7, false));
 }
 
+TEST(Spots, AnOpenDropDownTellsWhatItOffers) {
+    Spots spots;
+    spots.begin_panel("Plots");
+    spots.add("Fit", discard);
+    spots.add_drop_down("compare", apply);
+    spots.add_choice("compare", "with nothing", apply);
+    spots.add_choice("compare", "world b", discard);
+    EXPECT_EQ(spots.choices("compare"), nullptr) << "it is not drawn yet";
+    spots.begin_frame();
+    for (const char* name : {"compare", "Plots/compare"}) {
+        ASSERT_NE(spots.choices(name), nullptr);
+        EXPECT_EQ(*spots.choices(name), (std::vector<std::string>{"with nothing", "world b"}));
+    }
+    EXPECT_EQ(spots.find("Plots/compare: world b"), discard);
+    EXPECT_EQ(spots.choices("Fit"), nullptr) << "a button";
+}
+
 } // namespace
 } // namespace evod::viewer

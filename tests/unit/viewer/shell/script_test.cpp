@@ -42,6 +42,10 @@ struct Actor : Script::Host {
         const auto found = widgets.find(widget);
         return found == widgets.end() ? std::nullopt : std::optional{found->second};
     }
+    const std::vector<std::string>* choices(const std::string& widget) const override {
+        const auto found = drop_downs.find(widget);
+        return found == drop_downs.end() ? nullptr : &found->second;
+    }
     const Watch* watched() const override { return nullptr; }
     std::string save(const std::string& path) override {
         done.push_back("save " + path);
@@ -50,6 +54,7 @@ struct Actor : Script::Host {
     void close() override { done.push_back("close"); }
 
     std::map<std::string, Point> widgets;
+    std::map<std::string, std::vector<std::string>> drop_downs;
     bool writable = true;
     std::vector<std::string> done;
 };
@@ -132,6 +137,30 @@ TEST_F(ScriptTest, SettingReplacesWhatAFieldSays) {
     ASSERT_EQ(actor.done.size(), 12u);
     EXPECT_EQ(actor.done[9], "text 233") << "one character, after all was selected";
     EXPECT_EQ(actor.done[10], "press " + std::to_string(sf::Keyboard::Enter));
+}
+
+TEST_F(ScriptTest, SettingADropDownOpensItAndChooses) {
+    actor.widgets["selection"] = {1, 2};
+    actor.drop_downs["selection"] = {};
+    auto script = Script::parse("timeout 5\nset selection tournament\nquit").value();
+    EXPECT_EQ(advance(script, 4), "");
+    EXPECT_THAT(actor.done, ElementsAre("to 1 2", "down", "up")) << "waits for what it offers";
+    actor.drop_downs["selection"] = {"roulette", "tournament"};
+    actor.widgets["selection: tournament"] = {1, 40};
+    EXPECT_EQ(advance(script, 2), "");
+    actor.drop_downs.clear(); // what was chosen may take it away
+    EXPECT_EQ(advance(script, 2), "");
+    EXPECT_THAT(actor.done, ElementsAre("to 1 2", "down", "up", "to 1 40", "down", "up", "close"));
+}
+
+TEST_F(ScriptTest, WhatADropDownDoesNotOfferEndsItWithWhatItDoes) {
+    actor.widgets["selection"] = {1, 2};
+    actor.drop_downs["selection"] = {"roulette", "tournament"};
+    auto script = Script::parse("timeout 5\nset selection turnament").value();
+    EXPECT_EQ(advance(script, 3), "");
+    now += std::chrono::seconds{6};
+    EXPECT_EQ(advance(script, 1), "2: set selection turnament: it did not come to that within 5 s; "
+                                  "\"selection\" offers roulette, tournament");
 }
 
 TEST_F(ScriptTest, APictureThatCannotBeWrittenEndsIt) {
