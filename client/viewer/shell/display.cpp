@@ -10,10 +10,19 @@
 
 namespace evod::viewer {
 
+namespace {
+
+/// Null: there is no server, or it takes no more clients.
+Display* connection() {
+    static Display* const opened = XOpenDisplay(nullptr); // and never closed
+    return opened;
+}
+
+} // namespace
+
 void check_display() {
     const char* name = std::getenv("DISPLAY");
-    if (Display* display = XOpenDisplay(nullptr)) {
-        XCloseDisplay(display);
+    if (connection() != nullptr) {
         return;
     }
     const std::string why =
@@ -22,7 +31,7 @@ void check_display() {
 }
 
 double display_scale() {
-    Display* display = XOpenDisplay(nullptr);
+    Display* display = connection();
     if (display == nullptr) {
         return 1;
     }
@@ -32,7 +41,6 @@ double display_scale() {
     } else if (const int screen = DefaultScreen(display); DisplayWidthMM(display, screen) > 0) {
         dots_per_inch = DisplayWidth(display, screen) * 25.4 / DisplayWidthMM(display, screen);
     }
-    XCloseDisplay(display);
     return dots_per_inch > 0 ? std::clamp(std::round(dots_per_inch / 96 * 4) / 4, 0.5, 4.0) : 1;
 }
 

@@ -1,4 +1,9 @@
 // Display: whether there is a screen to draw on, and how fine it is. SFML aborts where there is none.
+//
+// The connection to the X server that is made to find out stays open until the program ends: a server may end, or begin
+// anew, when its last client leaves.
+//
+// Threads      used by the one that draws.
 #pragma once
 
 namespace evod::viewer {

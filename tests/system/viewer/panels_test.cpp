@@ -425,6 +425,19 @@ TEST_F(PanelsTest, WhatCannotBeDoneEndsEvoviewWithItsLine) {
     EXPECT_THAT(late.output, HasSubstr("script:3: click Disconnect: "));
 }
 
+TEST_F(PanelsTest, AScreenThatEndsWithItsLastClientIsDrawnOn) {
+    Process screen{"/usr/bin/env", {"Xvfb", "-displayfd", "1", "-terminate", "-nolisten", "tcp"}};
+    std::string number;
+    do { // beside it stands what the server says to the error output
+        number = screen.read_line();
+    } while (!number.empty() && number.find_first_not_of("0123456789\n") != std::string::npos);
+    ASSERT_FALSE(number.empty()) << "Xvfb did not start";
+    number.pop_back();
+    Process evoview{"/usr/bin/env",
+                    {"DISPLAY=:" + number, EVOVIEW, "--start", "--script", write("wait widget Connect\nquit\n")}};
+    EXPECT_EQ(evoview.wait(), 0);
+}
+
 TEST_F(PanelsTest, ATickOfAnyLengthCanBeTypedAndIsBroughtWithinItsRange) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
