@@ -44,4 +44,18 @@ double display_scale() {
     return dots_per_inch > 0 ? std::clamp(std::round(dots_per_inch / 96 * 4) / 4, 0.5, 4.0) : 1;
 }
 
+std::optional<Desktop> desktop() {
+    Display* display = connection();
+    if (display == nullptr) {
+        return std::nullopt;
+    }
+    const int screen = DefaultScreen(display);
+    // A window manager is the one client that is asked before windows are put anywhere.
+    XWindowAttributes root{};
+    const bool known = XGetWindowAttributes(display, RootWindow(display, screen), &root) != 0;
+    return Desktop{.width = static_cast<unsigned>(DisplayWidth(display, screen)),
+                   .height = static_cast<unsigned>(DisplayHeight(display, screen)),
+                   .managed = known && (root.all_event_masks & SubstructureRedirectMask) != 0};
+}
+
 } // namespace evod::viewer

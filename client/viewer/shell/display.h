@@ -6,6 +6,8 @@
 // Threads      used by the one that draws.
 #pragma once
 
+#include <optional>
+
 namespace evod::viewer {
 
 /// Throws std::runtime_error, with what to do, if no window could be opened.
@@ -14,5 +16,12 @@ void check_display();
 /// How much larger than at 96 dots per inch things have to be on this screen: the desktop's setting, or else what the
 /// screen says of itself; 1 where neither is known. In quarters, within 0.5 and 4.
 double display_scale();
+
+struct Desktop {
+    unsigned width, height; // in pixels
+    bool managed;           // by a window manager, which puts windows where they belong
+};
+/// Nullopt where it is not known.
+std::optional<Desktop> desktop();
 
 } // namespace evod::viewer

@@ -62,8 +62,22 @@ double scale_of(const Options& options) {
 }
 
 sf::VideoMode mode_of(const Options& options) {
-    const Options::Size size = size_of(options, scale_of(options));
+    Options::Size size = size_of(options, scale_of(options));
+    if (const auto whole = desktop(); whole && !options.size) {
+        size = {std::min(size.width, whole->width), std::min(size.height, whole->height)};
+    }
     return {size.width, size.height};
+}
+
+/// Where no window manager does it, puts the window in the middle of the desktop: SFML puts it lower.
+void place(sf::Window& window) {
+    const auto whole = desktop();
+    if (!whole || whole->managed) {
+        return;
+    }
+    const auto margin = [](unsigned of, unsigned taken) { return of > taken ? static_cast<int>((of - taken) / 2) : 0; };
+    const sf::Vector2u size = window.getSize();
+    window.setPosition({margin(whole->width, size.x), margin(whole->height, size.y)});
 }
 
 } // namespace
@@ -73,6 +87,7 @@ Screen::Screen(const Options& options)
     , stage_{scale_of(options)}
     , script_{options.script.value_or(Script{})}
     , script_path_{options.script_path} {
+    place(window_);
     window_.setVerticalSyncEnabled(true);
 }
 

@@ -68,6 +68,18 @@ TEST(RealServer, KeysCommandTheWorld) {
     EXPECT_EQ(evoview.wait(), 0);
 }
 
+TEST(RealServer, TheWindowStandsInTheMiddleOfTheScreen) {
+    for (const std::string scale : {"1", "4"}) {
+        Process evoview{EVOVIEW, {"--start", "--scale", scale}};
+        Person person;
+        ASSERT_TRUE(person.finds_window());
+        const Person::Place whole = person.whole_screen();
+        const int width = scale == "1" ? 1280 : whole.width, height = scale == "1" ? 720 : whole.height;
+        const Person::Place middle{(whole.width - width) / 2, (whole.height - height) / 2, width, height};
+        EXPECT_TRUE(Person::looks_until([&] { return person.finds_place() == middle; })) << "at scale " << scale;
+    }
+}
+
 TEST(RealServer, NothingIsSaidToRunOnceItIsGone) {
     RealServer server{{"--seed", "7"}};
     Process evoview{EVOVIEW, {"--server", server.address(), "--size", "1000x500"}};

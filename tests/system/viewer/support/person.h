@@ -50,6 +50,23 @@ class Person {
         });
     }
 
+    struct Place {
+        int x, y, width, height; // on the screen
+        friend bool operator==(const Place&, const Place&) = default;
+    };
+    Place finds_place() {
+        XWindowAttributes size{};
+        int x = 0, y = 0;
+        ::Window child;
+        XGetWindowAttributes(display_, window_, &size);
+        XTranslateCoordinates(display_, window_, DefaultRootWindow(display_), 0, 0, &x, &y, &child);
+        return {x, y, size.width, size.height};
+    }
+    Place whole_screen() {
+        const int screen = DefaultScreen(display_);
+        return {0, 0, DisplayWidth(display_, screen), DisplayHeight(display_, screen)};
+    }
+
     bool sees(Colour colour) {
         return looks_until([&] { return count(looks(), colour) > 50; });
     }
