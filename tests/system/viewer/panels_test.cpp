@@ -438,6 +438,15 @@ TEST_F(PanelsTest, AScreenThatEndsWithItsLastClientIsDrawnOn) {
     EXPECT_EQ(evoview.wait(), 0);
 }
 
+#ifdef ENDLESS_LOOK_UP_LIBRARY
+TEST_F(PanelsTest, ALookUpThatNeverEndsHoldsUpNoWindow) {
+    Process evoview{"/usr/bin/env",
+                    {std::string{"LD_PRELOAD="} + ENDLESS_LOOK_UP_LIBRARY, EVOVIEW, "lab.example", "--script",
+                     write("key F5\nwait widget palette\nquit\n")}};
+    EXPECT_EQ(evoview.wait(), 0);
+}
+#endif
+
 TEST_F(PanelsTest, ATickOfAnyLengthCanBeTypedAndIsBroughtWithinItsRange) {
     RealServer server{{"--seed", "7"}};
     const Ran ran = play(server.address(), R"(
