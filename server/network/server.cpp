@@ -405,7 +405,19 @@ void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
     if (taken.dropped_events > 0)
         limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
-    streams_.deliver(std::move(taken), clock_.now());
+    streams_.deliver(std::move(taken));
+    send_pictures();
+}
+
+void Server::send_pictures() {
+    if (sends_pictures_)
+        return;
+    sends_pictures_ = streams_.send_some(clock_.now());
+    if (sends_pictures_)
+        asio::post(context_, [this] {
+            sends_pictures_ = false;
+            send_pictures();
+        });
 }
 
 void Server::go_away() {
@@ -426,6 +438,9 @@ void Server::go_away() {
             all_written_ = all_written;
             signals_.cancel();
             deliver();
+            while (streams_.send_some(clock_.now())) {
+                // The newest that there is.
+            }
             streams_.end_sessions();
         });
     }};

@@ -97,6 +97,8 @@ class Server {
     void relieve();
     void accepted(boost::asio::ip::tcp::socket socket);
     void deliver();
+    /// Sends the next of the pictures that have come, in turns with everything else that the thread does.
+    void send_pictures();
     void wait_for_signal();
     void go_away();
     /// What it counts and measures.
@@ -134,6 +136,7 @@ class Server {
     std::size_t connections_ = 0;      // sessions, and those that are being told they have no place
     SessionHost host_{limit_counters_, buffers_};
     Streams streams_;
+    bool sends_pictures_ = false; // a call is posted
     Dispatcher dispatcher_;
     std::unique_ptr<runtime::SimulationThread> simulation_; // ends before what it uses
     bool going_away_ = false, all_written_ = true;

@@ -83,9 +83,9 @@ struct SnapshotSubscription {
     /// A picture as it waits, in one of three ways.
     struct Waiting {
         std::uint64_t sequence = 0;
-        SharedBytes columns;     // fields 1 to 49
-        ChainPicturePtr chained; // CODEC_DELTA: its form is chosen when it is sent
-        TiledPicturePtr tiled;   // with a view: so are its tiles and theirs
+        SharedBytes columns = {};     // fields 1 to 49
+        ChainPicturePtr chained = {}; // CODEC_DELTA: its form is chosen when it is sent
+        TiledPicturePtr tiled = {};   // with a view: so are its tiles and theirs
         explicit operator bool() const { return columns || chained || tiled; }
     };
     struct Island {

@@ -13,6 +13,10 @@
 namespace evod::network {
 namespace {
 
+/// After so many steps other clients have their turn: 1 to 5 ms for small islands. An island takes one step, and one
+/// for each viewer that it is handed to.
+constexpr std::size_t steps_at_once = 128;
+
 /// All of a picture's frame but what is in it, and its sequence.
 v1::SnapshotFrame about_of(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island) {
     v1::SnapshotFrame frame;
@@ -101,6 +105,7 @@ void Streams::forget_world(const std::string& world) {
         for (auto& [id, subscription] : session->snapshots)
             if (subscription.world == world)
                 subscription.islands.clear();
+    std::erase_if(in_progress_, [&](const InProgress& of) { return of.picture.snapshot->world == world; });
 }
 
 template <class Do>
@@ -111,14 +116,11 @@ void Streams::each_newest(const SnapshotSubscription& subscription, const Do& wh
     const auto wanted = [&](std::uint32_t island) { return !subscription.island || *subscription.island == island; };
     for (const auto& [island, chain] : group->second.chains)
         if (wanted(island))
-            what(island, SnapshotSubscription::Waiting{.sequence = chain.latest()->sequence(),
-                                                       .columns = nullptr,
-                                                       .chained = chain.latest(),
-                                                       .tiled = nullptr});
+            what(island,
+                 SnapshotSubscription::Waiting{.sequence = chain.latest()->sequence(), .chained = chain.latest()});
     for (const auto& [island, tiled] : group->second.tiled)
         if (wanted(island))
-            what(island, SnapshotSubscription::Waiting{
-                             .sequence = tiled->sequence(), .columns = nullptr, .chained = nullptr, .tiled = tiled});
+            what(island, SnapshotSubscription::Waiting{.sequence = tiled->sequence(), .tiled = tiled});
 }
 
 Streams::GroupName Streams::group_of(const SnapshotSubscription& subscription) {
@@ -157,14 +159,14 @@ void Streams::update_demand() {
 
 namespace {
 
+runtime::Clock::duration between_pictures(double rate_hz) {
+    return std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz});
+}
+
 /// When those who want so many pictures a second are to be shown the next.
 class Pace {
   public:
-    Pace(double rate_hz, runtime::Clock::time_point& next)
-        : between_{std::chrono::duration_cast<runtime::Clock::duration>(std::chrono::duration<double>{1 / rate_hz})}
-        , next_{next} {}
-
-    runtime::Clock::duration between() const { return between_; }
+    Pace(double rate_hz, runtime::Clock::time_point& next) : between_{between_pictures(rate_hz)}, next_{next} {}
 
     /// Whether this picture is for them; then the next is due a while later.
     bool takes(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
@@ -182,122 +184,187 @@ class Pace {
     runtime::Clock::time_point& next_;
 };
 
-/// A snapshot's islands in the forms that several viewers share, each made when it is first wanted.
-class EncodedIslands {
-  public:
-    EncodedIslands(const runtime::Snapshot& snapshot, std::uint64_t& sequence, wire::Compressor& compressor)
-        : snapshot_{snapshot}, sequence_{sequence}, compressor_{compressor}, islands_(snapshot.islands.size()) {}
+} // namespace
 
-    const std::shared_ptr<const v1::SnapshotFrame>& about(std::size_t i) {
-        Island& island = islands_[i];
-        if (!island.about) {
-            v1::SnapshotFrame about = about_of(snapshot_, snapshot_.islands[i]);
+/// An island of a snapshot in the forms that several viewers share, each made when it is first wanted.
+class EncodedIsland {
+  public:
+    EncodedIsland(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island, std::uint64_t& sequence,
+                  wire::Compressor& compressor)
+        : snapshot_{snapshot}, island_{island}, sequence_{sequence}, compressor_{compressor} {}
+
+    std::uint32_t number() const { return island_.island; }
+    const std::shared_ptr<const v1::SnapshotFrame>& about() {
+        if (!about_) {
+            v1::SnapshotFrame about = about_of(snapshot_, island_);
             about.set_sequence(++sequence_);
-            wire::describe(*scene(i), about);
-            island.about = std::make_shared<const v1::SnapshotFrame>(std::move(about));
+            wire::describe(*scene(), about);
+            about_ = std::make_shared<const v1::SnapshotFrame>(std::move(about));
         }
-        return island.about;
+        return about_;
     }
-    const SharedBytes& columns(std::size_t i) {
-        Island& island = islands_[i];
-        if (!island.columns) {
-            v1::SnapshotFrame frame = *about(i);
-            wire::encode(*scene(i), frame);
-            island.columns = std::make_shared<const std::string>(frame.SerializeAsString());
+    const SharedBytes& columns() {
+        if (!columns_) {
+            v1::SnapshotFrame frame = *about();
+            wire::encode(*scene(), frame);
+            columns_ = std::make_shared<const std::string>(frame.SerializeAsString());
         }
-        return island.columns;
+        return columns_;
     }
-    const std::shared_ptr<const wire::Scene>& scene(std::size_t i) {
-        Island& island = islands_[i];
-        if (!island.scene)
-            island.scene = std::make_shared<const wire::Scene>(scene_of(snapshot_.islands[i]));
-        return island.scene;
+    const std::shared_ptr<const wire::Scene>& scene() {
+        if (!scene_)
+            scene_ = std::make_shared<const wire::Scene>(scene_of(island_));
+        return scene_;
     }
-    const std::shared_ptr<IslandTiles>& tiles(std::size_t i) {
-        Island& island = islands_[i];
-        if (!island.tiles)
-            island.tiles = std::make_shared<IslandTiles>(*about(i), scene(i), compressor_);
-        return island.tiles;
+    const std::shared_ptr<IslandTiles>& tiles() {
+        if (!tiles_)
+            tiles_ = std::make_shared<IslandTiles>(*about(), scene(), compressor_);
+        return tiles_;
     }
 
   private:
-    struct Island {
-        std::shared_ptr<const v1::SnapshotFrame> about;
-        SharedBytes columns;
-        std::shared_ptr<const wire::Scene> scene;
-        std::shared_ptr<IslandTiles> tiles;
-    };
     const runtime::Snapshot& snapshot_;
+    const runtime::IslandSnapshot& island_;
     std::uint64_t& sequence_;
     wire::Compressor& compressor_;
-    std::vector<Island> islands_;
+    std::shared_ptr<const v1::SnapshotFrame> about_;
+    SharedBytes columns_;
+    std::shared_ptr<const wire::Scene> scene_;
+    std::shared_ptr<IslandTiles> tiles_;
 };
 
-} // namespace
+struct Streams::Viewer {
+    SessionPtr session;
+    std::uint32_t subscription_id;
+    const SnapshotSubscription* subscription;
+    Group* group; // null: in none
+    bool has_some = false;
+};
 
-void Streams::show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
-    const runtime::Snapshot& snapshot = *picture.snapshot;
-    EncodedIslands encoded{snapshot, sequence_, compressor_};
-    struct Shown {
-        double rate_hz;
-        bool in_tiles;
-        Group* group;
-        runtime::Clock::duration between;
-        std::vector<SnapshotSubscription::Waiting> islands; // what they come to with it
-    };
-    std::vector<Shown> shown; // the groups that are shown this picture
-    for (auto& [name, group] : groups_) {
-        if (name.world != snapshot.world)
+void Streams::deliver(runtime::Outbox::Taken taken) {
+    for (runtime::Delivery& delivery : taken.deliveries)
+        std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
+    if (taken.dropped_events > 0)
+        for (const auto& [number, session] : sessions_)
+            if (!session->events.empty())
+                session->count_dropped_events(taken.dropped_events);
+    for (runtime::Outbox::Picture& picture : taken.pictures) {
+        const auto of = std::ranges::find_if(in_progress_, [&](const InProgress& other) {
+            return other.picture.snapshot->world == picture.snapshot->world;
+        });
+        if (of == in_progress_.end()) {
+            in_progress_.push_back({.picture = std::move(picture)});
             continue;
-        Pace pace{name.rate_hz, group.next_picture};
-        if (pace.takes(picture, now))
-            shown.push_back({name.rate_hz, name.in_tiles, &group, pace.between(), {}});
+        }
+        if (of->next) {
+            picture.replaced_count += of->next->replaced_count + 1;
+            picture.after_change = picture.after_change || of->next->after_change;
+        }
+        of->next = std::move(picture);
     }
-    for (Shown& of_group : shown) {
-        of_group.islands.resize(snapshot.islands.size());
-        if (std::exchange(of_group.group->run_id, snapshot.run_id) != snapshot.run_id)
-            of_group.group->forget_pictures(); // a run before, which may have had more islands
+}
+
+bool Streams::send_some(runtime::Clock::time_point now) {
+    std::size_t steps_left = steps_at_once;
+    while (steps_left > 0 && !in_progress_.empty()) {
+        InProgress of = std::move(in_progress_.front());
+        in_progress_.pop_front();
+        if (!of.begun)
+            begin(of, now);
+        advance(of, steps_left);
+        if (of.next_island < of.picture.snapshot->islands.size())
+            in_progress_.push_back(std::move(of));
+        else if (of.next)
+            in_progress_.push_back({.picture = std::move(*of.next)});
     }
-    for (const auto& [number, session] : sessions_) {
-        bool has_some = false;
+    return !in_progress_.empty();
+}
+
+void Streams::begin(InProgress& of, runtime::Clock::time_point now) {
+    const runtime::Snapshot& snapshot = *of.picture.snapshot;
+    of.begun = true;
+    of.began = now;
+    for (auto& [name, group] : groups_) {
+        if (name.world != snapshot.world || !Pace{name.rate_hz, group.next_picture}.takes(of.picture, now))
+            continue;
+        of.groups.insert(name);
+        if (std::exchange(group.run_id, snapshot.run_id) != snapshot.run_id)
+            group.forget_pictures(); // a run before, which may have had more islands
+    }
+    for (const auto& [number, session] : sessions_)
         for (auto& [id, subscription] : session->snapshots) {
             if (subscription.world != snapshot.world)
                 continue;
-            const bool in_group = subscription.codec == v1::CODEC_DELTA;
-            const auto of_group = std::ranges::find_if(shown, [&wanted = subscription](const Shown& of) {
-                return of.rate_hz == wanted.rate_hz && of.in_tiles == wanted.view.has_value();
-            });
-            if (in_group ? of_group == shown.end()
-                         : !Pace{subscription.rate_hz, subscription.next_picture}.takes(picture, now))
-                continue;
-            session->count_dropped_pictures(subscription, picture.replaced_count);
-            subscription.islands.erase(subscription.islands.lower_bound(snapshot.island_count), subscription.islands.end());
-            for (std::size_t i = 0; i < snapshot.islands.size(); ++i) {
-                const std::uint32_t island = snapshot.islands[i].island;
-                if (subscription.island && *subscription.island != island)
+            if (subscription.codec == v1::CODEC_DELTA) {
+                if (!of.groups.contains(group_of(subscription)))
                     continue;
-                SnapshotSubscription::Waiting of_viewer;
-                SnapshotSubscription::Waiting& waiting = in_group ? of_group->islands[i] : of_viewer;
-                if (waiting) {
-                    // Made for another of the group.
-                } else if (!in_group) {
-                    waiting.columns = encoded.columns(i);
-                } else if (subscription.view) {
-                    TiledPicturePtr& tiled = of_group->group->tiled[island];
-                    tiled = waiting.tiled =
-                        std::make_shared<TiledPicture>(encoded.tiles(i), tiled, now, of_group->between);
-                } else {
-                    waiting.chained = of_group->group->chains[island].add(encoded.about(i), encoded.scene(i),
-                                                                          compressor_, now, of_group->between);
-                }
-                waiting.sequence = encoded.about(i)->sequence();
-                session->picture(id, island, waiting);
-                has_some = true;
+            } else {
+                if (!Pace{subscription.rate_hz, subscription.next_picture}.takes(of.picture, now))
+                    continue;
+                of.subscriptions.emplace(number, id);
+            }
+            session->count_dropped_pictures(subscription, of.picture.replaced_count);
+            subscription.islands.erase(subscription.islands.lower_bound(snapshot.island_count),
+                                       subscription.islands.end());
+        }
+}
+
+std::vector<Streams::Viewer> Streams::viewers_of(const InProgress& of) {
+    std::vector<Viewer> viewers;
+    for (const auto& [number, session] : sessions_)
+        for (const auto& [id, subscription] : session->snapshots) {
+            if (subscription.world != of.picture.snapshot->world)
+                continue;
+            if (subscription.codec != v1::CODEC_DELTA) {
+                if (of.subscriptions.contains({number, id}))
+                    viewers.push_back({session, id, &subscription, nullptr});
+            } else if (const GroupName name = group_of(subscription); of.groups.contains(name)) {
+                viewers.push_back({session, id, &subscription, &groups_.at(name)});
             }
         }
-        if (has_some)
-            session->send_waiting();
+    return viewers;
+}
+
+SnapshotSubscription::Waiting Streams::encode_for(const Viewer& viewer, EncodedIsland& island, const InProgress& of) {
+    const SnapshotSubscription& subscription = *viewer.subscription;
+    SnapshotSubscription::Waiting waiting{.sequence = island.about()->sequence()};
+    const auto between = between_pictures(subscription.rate_hz);
+    if (viewer.group == nullptr) {
+        waiting.columns = island.columns();
+    } else if (subscription.view) {
+        TiledPicturePtr& newest = viewer.group->tiled[island.number()];
+        if (!newest || newest->sequence() != waiting.sequence) // otherwise it was made for another of the group
+            newest = std::make_shared<TiledPicture>(island.tiles(), newest, of.began, between);
+        waiting.tiled = newest;
+    } else {
+        Chain& chain = viewer.group->chains[island.number()];
+        if (!chain.latest() || chain.latest()->sequence() != waiting.sequence)
+            chain.add(island.about(), island.scene(), compressor_, of.began, between);
+        waiting.chained = chain.latest();
     }
+    return waiting;
+}
+
+void Streams::advance(InProgress& of, std::size_t& steps_left) {
+    const runtime::Snapshot& snapshot = *of.picture.snapshot;
+    std::vector<Viewer> viewers = viewers_of(of);
+    if (viewers.empty())
+        of.next_island = snapshot.islands.size();
+    for (; steps_left > 0 && of.next_island < snapshot.islands.size(); ++of.next_island) {
+        EncodedIsland island{snapshot, snapshot.islands[of.next_island], sequence_, compressor_};
+        std::size_t steps = 1;
+        for (Viewer& viewer : viewers) {
+            if (viewer.subscription->island && *viewer.subscription->island != island.number())
+                continue;
+            viewer.session->picture(viewer.subscription_id, island.number(), encode_for(viewer, island, of));
+            viewer.has_some = true;
+            ++steps;
+        }
+        steps_left -= std::min(steps_left, steps);
+    }
+    for (const Viewer& viewer : viewers)
+        if (viewer.has_some)
+            viewer.session->send_waiting();
 }
 
 void Streams::tell(v1::Event event) {
@@ -331,17 +398,6 @@ Streams::outlet(runtime::Outbox& outbox) {
         for (const simulation::Event& event : events)
             outbox.event([this, told = protocol::to_proto(event, laboratory)]() mutable { tell(std::move(told)); });
     };
-}
-
-void Streams::deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point now) {
-    for (runtime::Delivery& delivery : taken.deliveries)
-        std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
-    if (taken.dropped_events > 0)
-        for (const auto& [number, session] : sessions_)
-            if (!session->events.empty())
-                session->count_dropped_events(taken.dropped_events);
-    for (const auto& picture : taken.pictures)
-        show(picture, now);
 }
 
 void Streams::announce_end() {

@@ -3,6 +3,9 @@
 // A picture is encoded once per island, whoever gets it; the sessions share the bytes. Those who take deltas of a world
 // at one rate, whole or in tiles, form a group, which is shown the same pictures.
 //
+// A world of thousands of islands takes the network thread a tenth of a second. Its islands are therefore handed out in
+// several turns, between which the thread serves other clients and other worlds.
+//
 // Owner        the server; on the network thread.
 #pragma once
 
@@ -12,15 +15,23 @@
 #include "server/runtime/outbox.h"
 
 #include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace evod::network {
 
 /// By session number.
 using Sessions = std::map<std::uint64_t, SessionPtr>;
+
+class EncodedIsland;
 
 class Streams {
   public:
@@ -46,8 +57,10 @@ class Streams {
 
     /// What the simulation thread does with events: it puts them into the outbox, as long as somebody wants them.
     std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)> outlet(runtime::Outbox& outbox);
-    /// What has come from there.
-    void deliver(runtime::Outbox::Taken taken, runtime::Clock::time_point now);
+    /// Runs the deliveries from there, and keeps the pictures for send_some().
+    void deliver(runtime::Outbox::Taken taken);
+    /// Hands the next islands of pictures to the sessions. true: there are more, for another call.
+    bool send_some(runtime::Clock::time_point now);
     void tell(v1::Event event);
     /// Tells all sessions that the server goes away.
     void announce_end();
@@ -56,7 +69,6 @@ class Streams {
 
   private:
     void update_demand();
-    void show(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now);
     /// The viewers of a world at one rate that take deltas, whole or in tiles.
     struct Group {
         runtime::Clock::time_point next_picture;        // not before then
@@ -74,6 +86,24 @@ class Streams {
         bool in_tiles;
         friend auto operator<=>(const GroupName&, const GroupName&) = default;
     };
+    using SubscriptionName = std::pair<std::uint64_t, std::uint32_t>; // number of the session, subscription id
+    /// A picture whose islands are being handed out.
+    struct InProgress {
+        runtime::Outbox::Picture picture;
+        bool begun = false;
+        runtime::Clock::time_point began = {};
+        std::size_t next_island = 0;                       // in the picture
+        std::set<GroupName> groups = {};                   // that are shown it
+        std::set<SubscriptionName> subscriptions = {};     // the same of those that are in no group
+        std::optional<runtime::Outbox::Picture> next = {}; // of the same world
+    };
+    /// Chooses who is shown it.
+    void begin(InProgress& of, runtime::Clock::time_point now);
+    /// Hands out islands until none is left, or no step: each island takes one, and one for each viewer.
+    void advance(InProgress& of, std::size_t& steps_left);
+    struct Viewer;
+    std::vector<Viewer> viewers_of(const InProgress& of);
+    SnapshotSubscription::Waiting encode_for(const Viewer& viewer, EncodedIsland& island, const InProgress& of);
     static GroupName group_of(const SnapshotSubscription& subscription);
     /// Calls what(island, picture) for each island that the subscription is shown.
     template <class Do>
@@ -85,6 +115,7 @@ class Streams {
     std::uint64_t newcomers_ = 0, sequence_ = 0;
     wire::Compressor compressor_;
     std::map<GroupName, Group> groups_;
+    std::deque<InProgress> in_progress_; // at most one of a world
 };
 
 } // namespace evod::network

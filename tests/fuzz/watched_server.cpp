@@ -226,7 +226,10 @@ void WatchedServer::compare_with_twins() {
 }
 
 void WatchedServer::deliver() {
-    streams_.deliver(outbox_.take(), clock().now());
+    streams_.deliver(outbox_.take());
+    while (streams_.send_some(clock().now())) {
+        // Until nothing is left.
+    }
 }
 
 void WatchedServer::go_away() {
