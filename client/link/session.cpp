@@ -167,7 +167,7 @@ void Session::start() {
 /// take half a minute.
 struct Session::LookUp {
     std::mutex mutex;     // guards what follows
-    asio::io_context* io; // nullptr: nobody waits for it any more
+    asio::io_context* io; // nullptr: the caller has given up waiting
     std::weak_ptr<Session> of;
 };
 

@@ -5,6 +5,7 @@
 #include "server/log/log.h"
 #include "server/network/description.h"
 #include "server/network/random_ids.h"
+#include "server/protocol/actors.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/events.h"
 #include "server/protocol/parameters.h"
@@ -317,7 +318,7 @@ void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> le
     EVOD_ASSERT(command.has_value());
     if (auto* release = std::get_if<simulation::ReleaseLease>(&*command))
         release->lease = lease;
-    carry_out(*std::move(command), request, {0, "evod", ""},
+    carry_out(*std::move(command), request, {0, std::string{protocol::by_the_server}, ""},
               [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
                   if (refused != nullptr && refused->reason != base::Reason::NoLease)
                       log::error("{} of the server itself is refused: {}", name, to_text(*refused));

@@ -2,6 +2,7 @@
 
 #include "proto/wire/snapshot_codec.h"
 #include "server/network/scene.h"
+#include "server/protocol/actors.h"
 #include "server/protocol/events.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"

@@ -1,14 +1,12 @@
 #include "server/protocol/events.h"
 
 #include "server/base/overloaded.h"
+#include "server/protocol/actors.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/refusals.h"
 #include "server/protocol/worlds.h"
 
-#include <google/protobuf/descriptor.h>
-
 #include <string>
-#include <vector>
 
 namespace evod::protocol {
 
@@ -16,7 +14,10 @@ using base::Overloaded;
 
 namespace {
 
-constexpr const char* by_the_schedule = "the schedule";
+/// planned  PlannedChange::id; 0: of the schedule.
+v1::Actor planner(std::uint64_t planned, const std::string& by) {
+    return planned == 0 ? actor_of_kind(v1::ACTOR_KIND_SCHEDULE) : actor_of(by);
+}
 
 } // namespace
 
@@ -51,7 +52,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                    [&](const simulation::ParametersChanged& changed) {
                        auto& to = *told.mutable_parameters_changed();
-                       to.set_by(changed.planned == 0 ? by_the_schedule : changed.by);
+                       *to.mutable_by() = planner(changed.planned, changed.by);
                        to.set_revision(changed.revision);
                        to.set_planned_change(changed.planned);
                        if (const auto entry = laboratory.find(event.world))
@@ -61,7 +62,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                    [&](const simulation::ChangeDropped& dropped) {
                        auto& to = *told.mutable_change_dropped();
-                       to.set_by(dropped.planned == 0 ? by_the_schedule : dropped.by);
+                       *to.mutable_by() = planner(dropped.planned, dropped.by);
                        to.set_planned_change(dropped.planned);
                        to.mutable_name()->Assign(dropped.names.begin(), dropped.names.end());
                        *to.mutable_violations() = to_proto(base::Refusal{.code = base::RefusalCode::InvalidArgument,
@@ -71,6 +72,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    },
                    [&](const simulation::GoalReached&) {
                        auto& to = *told.mutable_run_control_changed();
+                       *to.mutable_by() = actor_of_kind(v1::ACTOR_KIND_GOAL);
                        if (const auto entry = laboratory.find(event.world))
                            *to.mutable_world() = to_proto(**entry);
                    },
@@ -88,7 +90,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
     if (entry)
         told.set_run_id(to_text((*entry)->run_id));
     const auto tell_world = [&](auto& to) {
-        to.set_by(std::string{by});
+        *to.mutable_by() = actor_of(by);
         if (entry)
             *to.mutable_world() = to_proto(**entry);
     };
@@ -96,7 +98,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                    [&](const simulation::CreateWorld&) { tell_world(*told.mutable_world_created()); },
                    [&](const simulation::ForkWorld&) { tell_world(*told.mutable_world_created()); },
                    [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
-                   [&](const simulation::DeleteWorld&) { told.mutable_world_deleted()->set_by(std::string{by}); },
+                   [&](const simulation::DeleteWorld&) { *told.mutable_world_deleted()->mutable_by() = actor_of(by); },
                    [&](const simulation::SetParameters& set) {
                        if (set.dry_run)
                            return;
@@ -107,7 +109,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                        if (!applied.parameters)
                            return;
                        auto& to = *told.mutable_parameters_changed();
-                       to.set_by(std::string{by});
+                       *to.mutable_by() = actor_of(by);
                        to.set_revision(applied.parameters->revision);
                        for (const auto& assignment : set.assignments)
                            if (const auto* description = simulation::find_parameter(assignment.name))
@@ -115,7 +117,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                    },
                    [&](const simulation::CancelChange&) {
                        auto& to = *told.mutable_change_cancelled();
-                       to.set_by(std::string{by});
+                       *to.mutable_by() = actor_of(by);
                        if (applied.planned)
                            *to.mutable_change() = to_proto(*applied.planned);
                    },
@@ -131,27 +133,6 @@ v1::Event event_of(const simulation::Storage& storage) {
     v1::Event told;
     *told.mutable_storage_changed()->mutable_storage() = to_proto(storage);
     return told;
-}
-
-void keep_users_only(google::protobuf::Message& message) {
-    const google::protobuf::Reflection& in = *message.GetReflection();
-    std::vector<const google::protobuf::FieldDescriptor*> fields;
-    in.ListFields(message, &fields);
-    for (const auto* field : fields) {
-        if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-            if (!field->is_repeated())
-                keep_users_only(*in.MutableMessage(&message, field));
-            else
-                for (int i = 0; i < in.FieldSize(message, field); ++i)
-                    keep_users_only(*in.MutableRepeatedMessage(&message, field, i));
-        } else if (field->name() == "by") {
-            const std::string by = in.GetString(message, field);
-            if (const auto end = by.find(": "); end != std::string::npos)
-                in.SetString(&message, field, by.substr(0, end));
-            else if (by.find(':') != std::string::npos) // an address with its port
-                in.SetString(&message, field, "a local client");
-        }
-    }
 }
 
 } // namespace evod::protocol

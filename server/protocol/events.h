@@ -15,13 +15,9 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
 
 /// What to tell everyone of a command that was applied; nullopt for a dry run.
 ///
-/// by  who sent it: client name and address.
+/// by  who sent it, as actor_of() takes it.
 std::optional<v1::Event> event_of(const simulation::Command& command, const simulation::Applied& applied,
                                   std::string_view by, const simulation::Laboratory& laboratory);
-
-/// Leaves of each `by` in it, and in the messages within, the user's name: viewers are not told other clients' programs
-/// and addresses. A client without a user becomes "a local client".
-void keep_users_only(google::protobuf::Message& message);
 
 /// It stands so with the disk from now on.
 v1::Event event_of(const simulation::Storage& storage);

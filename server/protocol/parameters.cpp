@@ -1,5 +1,6 @@
 #include "server/protocol/parameters.h"
 
+#include "server/protocol/actors.h"
 #include "server/protocol/refusals.h"
 
 #include <cmath>
@@ -120,7 +121,7 @@ v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
         assigned.set_name(assignment.name);
         *assigned.mutable_value() = to_proto(assignment.value);
     }
-    to.set_by(change.by);
+    *to.mutable_by() = actor_of(change.by);
     return to;
 }
 

@@ -21,7 +21,7 @@ import past_test as past
 import waiting
 from past_test import EVOD, EVOCTL, c, plain
 
-from evod.v1 import session_pb2  # noqa: E402  (its folder is in sys.path now)
+from evod.v1 import session_pb2, world_pb2 as w  # noqa: E402  (its folder is in sys.path now)
 
 VIEWER, CONTROLLER, ADMIN = session_pb2.ROLE_VIEWER, session_pb2.ROLE_CONTROLLER, session_pb2.ROLE_ADMIN
 PERMISSION_DENIED, RESOURCE_EXHAUSTED, UNAVAILABLE, UNAUTHENTICATED = 7, 8, 14, 16
@@ -186,15 +186,18 @@ class Roles(Access):
             client.call(subscribe_events=c.SubscribeEvents())
         controller.call(set_parameters=plain.set_parameters(mutation_chance=0.3))
         event = other.next_event("parameters_changed")
-        self.assertTrue(event.parameters_changed.by.startswith("karl: plain 127.0.0.1:"), event)
-        self.assertEqual(viewer.next_event("parameters_changed").parameters_changed.by, "karl")
+        by = event.parameters_changed.by
+        self.assertEqual((by.kind, by.user, by.client), (w.ACTOR_KIND_CLIENT, "karl", "plain"))
+        self.assertRegex(by.address, r"^127\.0\.0\.1:\d+$")
+        of_karl = w.Actor(kind=w.ACTOR_KIND_CLIENT, user="karl")
+        self.assertEqual(viewer.next_event("parameters_changed").parameters_changed.by, of_karl)
         change = plain.set_parameters(mutation_chance=0.4)
         change.at_generation = 9
         controller.call(set_parameters=change)
-        self.assertEqual(viewer.next_event("change_planned").change_planned.change.by, "karl")
-        for client, by in ((viewer, "^karl$"), (other, "^karl: plain ")):
+        self.assertEqual(viewer.next_event("change_planned").change_planned.change.by, of_karl)
+        for client, name in ((viewer, ""), (other, "plain")):
             planned = client.call(get_parameters=c.GetParameters()).parameters.planned
-            self.assertRegex(planned[0].by, by)
+            self.assertEqual((planned[0].by.user, planned[0].by.client), ("karl", name))
 
 
 class Tokens(Access):
@@ -448,6 +451,23 @@ class Tls(Access):
             one.next_event("server_going_away")
             one.assert_closed()
         self.assertEqual(waiting.ended(server.process), 0)
+
+    def test_after_a_sighup_new_connections_are_shown_the_new_certificate(self):
+        server = self.serve(*self.files())
+        old = self.come(server, tls=self.context())
+        self.pair("new")
+        for name in ("evod.crt", "evod.key"):
+            (pathlib.Path(self.folder) / "new" / name).replace(pathlib.Path(self.folder) / "certificates" / name)
+        new = self.context()
+        server.process.send_signal(signal.SIGHUP)
+        plain.until(lambda: "certificate was read again" in server.output(), "a line in the log")
+        self.assertIsNotNone(self.come(server, tls=new).welcome)
+        old.call(list_worlds=c.ListWorlds())
+        (pathlib.Path(self.folder) / "certificates" / "evod.crt").write_text("nothing")
+        server.process.send_signal(signal.SIGHUP)
+        plain.until(lambda: "the certificate stays as it is: --tls-cert" in server.output(), "a line in the log")
+        self.assertIsNotNone(self.come(server, tls=new).welcome)
+        server.end()
 
     def test_older_tls_other_authorities_and_other_hosts_are_not_believed(self):
         server = self.serve(*self.files())

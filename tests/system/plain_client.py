@@ -787,7 +787,7 @@ class Commands(WithServer):
 
 class Control(WithServer):
     """Several who drive one world: nobody keeps it from the others, and everybody sees one order of things."""
-    BY_SERVER = "evod"
+    OF_SERVER = w.ACTOR_KIND_SERVER
 
     def setUp(self):
         super().setUp()
@@ -814,9 +814,9 @@ class Control(WithServer):
         """The result of attempt(), which must not outlast a lease."""
         return waiting.quicker_than(self.client.welcome.limits.lease_s, attempt)
 
-    def next_control(self, by, condition=lambda world: True):
+    def next_control(self, kind, condition=lambda world: True):
         event = self.other.next_event("run_control_changed",
-                                      lambda e: e.run_control_changed.by == by and e.world == self.name and
+                                      lambda e: e.run_control_changed.by.kind == kind and e.world == self.name and
                                       condition(e.run_control_changed.world))
         return event.run_control_changed.world
 
@@ -829,7 +829,7 @@ class Control(WithServer):
             self.assertTrue(self.wait_standing(tick).leased)
             return tick
         tick = self.while_lent(stand)
-        gone_on = self.next_control(self.BY_SERVER)
+        gone_on = self.next_control(self.OF_SERVER)
         self.assertEqual((gone_on.leased, gone_on.state), (False, w.RUN_STATE_RUNNING))
         self.client.wait_world(lambda x: x.tick > tick, self.name)
         self.assertIn("lease", self.renew(PRECONDITION).status.message)
@@ -849,7 +849,7 @@ class Control(WithServer):
     def test_a_lease_ends_with_its_client(self):
         with Client(self.server) as brief:
             tick = brief.call(run_until_tick=c.RunUntilTick(world=self.name, tick=0)).applied_tick
-        self.next_control(self.BY_SERVER)
+        self.next_control(self.OF_SERVER)
         self.client.wait_world(lambda x: x.tick > tick, self.name)
 
     def test_a_lease_can_be_given_back(self):
@@ -910,8 +910,8 @@ class Control(WithServer):
         self.assertEqual(sorted(by_revision), list(range(first + 1, first + 1 + 2 * rounds)))
         told = [[listener.next_event("parameters_changed") for _ in range(2 * rounds)] for listener in listeners]
         self.assertEqual(told[0], told[1])
-        addresses = {f"plain 127.0.0.1:{client.socket.getsockname()[1]}" for client in clients}
-        self.assertEqual({event.parameters_changed.by for event in told[0]}, addresses)
+        addresses = {f"127.0.0.1:{client.socket.getsockname()[1]}" for client in clients}
+        self.assertEqual({event.parameters_changed.by.address for event in told[0]}, addresses)
         for event, revision in zip(told[0], sorted(by_revision)):
             changed, answer = event.parameters_changed, by_revision[revision]
             self.assertEqual((changed.revision, event.tick), (revision, answer.applied_tick))
@@ -1106,7 +1106,9 @@ class Events(WithServer):
         world = self.new_world(seed=3)
         event = self.watcher.next_event("world_created")
         self.assertEqual((event.world, event.world_created.world.seed), (world, 3))
-        self.assertRegex(event.world_created.by, r"^plain 127\.0\.0\.1:\d+$")
+        by = event.world_created.by
+        self.assertEqual((by.kind, by.user, by.client), (w.ACTOR_KIND_CLIENT, "", "plain"))
+        self.assertRegex(by.address, r"^127\.0\.0\.1:\d+$")
         self.client.call(set_parameters=set_parameters(world, food_health=5.0, population_size=9))
         changed = self.watcher.next_event("parameters_changed").parameters_changed
         self.assertEqual([(p.name, p.HasField("pending")) for p in changed.changed],
@@ -1140,7 +1142,7 @@ class Events(WithServer):
         world = self.new_world()
         self.subscribe(world)
         self.client.call(run_until_tick=c.RunUntilTick(world=world, tick=5))
-        event = self.watcher.next_event("run_control_changed", lambda e: not e.run_control_changed.by)
+        event = self.watcher.next_event("run_control_changed", lambda e: e.run_control_changed.by.kind == w.ACTOR_KIND_GOAL)
         self.assertEqual((event.tick, event.run_control_changed.world.state), (5, w.RUN_STATE_PAUSED))
 
     def test_generations_migrations_and_the_end_of_a_run(self):

@@ -15,7 +15,7 @@ from evod.lab import Events, Frames, Lab, Past, Run, World, connect
 from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
 from evod.generations import Generation, Population
 from evod.local_server import LocalLab, local
-from evod.parameters import Parameter, Parameters, PlannedChange, Registry
+from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
 from evod.pictures import Boxes, Frame, Items, Organisms, Tile
 from evod.run_file import RunFile, open_run
 from evod.tables import GENE_NAMES
@@ -28,7 +28,7 @@ from evod.v1.world_pb2 import (
 from evod.version import __version__
 
 __all__ = [
-    "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab",
+    "Actor", "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab",
     "LocalLab", "NoConnection", "Organisms", "Parameter", "Parameters", "Past", "PAUSED", "PlannedChange", "Population", "Registry",
     "Run", "RunFile", "RUNNING", "TERMINATED", "Tile", "Timeout", "Violation", "WAITING", "World", "connect",
     "__version__", "local", "open_run",

@@ -84,6 +84,21 @@ class Parameter(Description):
 
 
 @dataclasses.dataclass(frozen=True)
+class Actor:
+    """Who, or what, caused something. Viewers are told kind and user only."""
+
+    kind: str  #: "client", "schedule", "goal" or "server"
+    user: str  #: to whom the client's token was given; empty: the client has none
+    client: str  #: the program
+    address: str  #: "127.0.0.1:51234"
+
+    @classmethod
+    def of(cls, message: world_pb2.Actor) -> Actor:
+        kind = world_pb2.ActorKind.Name(message.kind).removeprefix("ACTOR_KIND_").lower()
+        return cls(kind=kind, user=message.user, client=message.client, address=message.address)
+
+
+@dataclasses.dataclass(frozen=True)
 class PlannedChange:
     """A change of parameters that waits for its moment. There it is looked at anew: it is made, all of it, or dropped."""
 
@@ -91,7 +106,7 @@ class PlannedChange:
     generation: int | None  #: from its first tick on
     tick: int | None  #: right after this tick since the run began
     values: Mapping[str, Value]
-    by: str  #: who: client name and address
+    by: Actor  #: who planned it
 
     @classmethod
     def of(cls, message: world_pb2.PlannedChange) -> PlannedChange:
@@ -100,7 +115,7 @@ class PlannedChange:
             generation=message.generation if message.HasField("generation") else None,
             tick=message.tick if message.HasField("tick") else None,
             values={assignment.name: value_of(assignment.value) for assignment in message.parameters},
-            by=message.by,
+            by=Actor.of(message.by),
         )
 
 

@@ -1,5 +1,6 @@
 #include "client/viewer/watch/watch.h"
 
+#include "client/link/actor.h"
 #include "client/viewer/watch/readout.h"
 
 #include <algorithm>
@@ -262,7 +263,7 @@ void Watch::ask(evod::v1::Request request, Answer handler) {
 
 void Watch::next_world() {
     if (connected_count_ == 0) {
-        next_world_wanted_ = true; // there is nobody to ask yet
+        next_world_wanted_ = true; // asked for once the server has answered the hello
         return;
     }
     find_next_world([this](const std::string& world) { look_at(world, 0); });
@@ -496,10 +497,11 @@ void Watch::take_event(const evod::v1::Event& event) {
     case Kind::kWorldReset:
         see(event.world_reset().world());
         last_generation_.clear();
-        notices_.push_back("The world was reset by " + event.world_reset().by());
+        notices_.push_back("The world was reset by " + link::to_text(event.world_reset().by()));
         break;
     case Kind::kWorldDeleted:
-        notices_.push_back("The world " + event.world() + " was deleted by " + event.world_deleted().by());
+        notices_.push_back("The world " + event.world() + " was deleted by " +
+                           link::to_text(event.world_deleted().by()));
         control_.forget();
         look_at(event.world(), 0); // there may be one of this name again
         break;
@@ -508,7 +510,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& parameter : event.parameters_changed().changed()) {
             names += (names.empty() ? "" : ", ") + parameter.name();
         }
-        notices_.push_back(event.parameters_changed().by() + " changed " + names);
+        notices_.push_back(link::to_text(event.parameters_changed().by()) + " changed " + names);
         break;
     }
     case Kind::kChangePlanned:
@@ -519,7 +521,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& assignment : change.parameters()) {
             names += (names.empty() ? "" : ", ") + assignment.name();
         }
-        notices_.push_back((planned ? change.by() : event.change_cancelled().by()) +
+        notices_.push_back(link::to_text(planned ? change.by() : event.change_cancelled().by()) +
                            (planned ? " plans to change " : " cancelled the change of ") + names +
                            (change.has_tick() ? " after tick " + std::to_string(change.tick())
                                               : " from generation " + std::to_string(change.generation())));
@@ -530,7 +532,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& name : event.change_dropped().name()) {
             names += (names.empty() ? "" : ", ") + name;
         }
-        notices_.push_back("What " + event.change_dropped().by() + " planned for " + names +
+        notices_.push_back("What " + link::to_text(event.change_dropped().by()) + " planned for " + names +
                            " does not go with the other parameters: left out");
         break;
     }

@@ -207,12 +207,13 @@ TEST_F(Lived, AnOrganismIsToldCompletely) {
 }
 
 TEST_F(Lived, EveryKindOfEventIsTold) {
+    const std::string by = "karl: evoctl 127.0.0.1:5000";
     const simulation::EventKind kinds[] = {simulation::GenerationFinished{{{}}},
                                            simulation::MigrationHappened{1, {{0, 1, 2}}},
                                            simulation::Extinction{1, 2},
                                            simulation::RunTerminated{evolution::Outcome::Stagnation},
-                                           simulation::ParametersChanged{3, "karl", {"mutation_chance"}, 7},
-                                           simulation::ChangeDropped{3, "karl", {"mutation_chance"}, {{"a", "b", "c"}}},
+                                           simulation::ParametersChanged{3, by, {"mutation_chance"}, 7},
+                                           simulation::ChangeDropped{3, by, {"mutation_chance"}, {{"a", "b", "c"}}},
                                            simulation::GoalReached{}};
     std::set<int> cases;
     for (const auto& kind : kinds) {
@@ -225,22 +226,22 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
             EXPECT_THAT(unset_in(event.parameters_changed()),
                         testing::ElementsAre("changed.pending", "changed.value.choice", "changed.value.count",
                                              "changed.value.flag"));
-            EXPECT_EQ(event.parameters_changed().by(), "karl");
+            EXPECT_EQ(event.parameters_changed().by().user(), "karl");
         }
         if (event.has_change_dropped()) {
             EXPECT_THAT(unset_in(event.change_dropped()), testing::IsEmpty());
         }
     }
     const simulation::EventKind scheduled = simulation::ParametersChanged{0, "", {"mutation_chance"}, 7};
-    EXPECT_EQ(to_proto(simulation::Event{"w", {1, 2}, 3, scheduled}, laboratory).parameters_changed().by(),
-              "the schedule");
+    EXPECT_EQ(to_proto(simulation::Event{"w", {1, 2}, 3, scheduled}, laboratory).parameters_changed().by().kind(),
+              v1::ACTOR_KIND_SCHEDULE);
     const simulation::PlannedChange change{
-        .id = 4, .at = {.generation = 9, .tick = {}}, .assignments = {{"food_health", 1.0}}, .by = "karl"};
+        .id = 4, .at = {.generation = 9, .tick = {}}, .assignments = {{"food_health", 1.0}}, .by = by};
     const simulation::Applied planned{.world = "w", .tick = 3, .parameters = {}, .planned = change};
     for (const simulation::Command& command :
-         {simulation::Command{simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}, change.at, "karl"}},
+         {simulation::Command{simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}, change.at, by}},
           simulation::Command{simulation::CancelChange{"w", 4}}}) {
-        const auto event = event_of(command, planned, "karl", laboratory);
+        const auto event = event_of(command, planned, by, laboratory);
         ASSERT_TRUE(event);
         cases.insert(event->kind_case());
         auto unset = unset_in(*event);

@@ -199,7 +199,8 @@ TEST_F(ParameterEditsTest, WhereNoAnswerComesTheEditStaysAndTheSetIsAskedFor) {
 TEST_F(ParameterEditsTest, OthersChangesAppearWithWhoMadeThemAndLeaveEditsAlone) {
     edits.edit(food_count, count(30));
     evod::v1::ParametersChanged changed;
-    changed.set_by("evoctl 127.0.0.1:9");
+    changed.mutable_by()->set_client("evoctl");
+    changed.mutable_by()->set_address("127.0.0.1:9");
     changed.set_revision(8);
     *changed.add_changed() = state("mutation_chance", real(0.3));
     *changed.add_changed() = state("food_count", count(28));
@@ -225,7 +226,8 @@ TEST_F(ParameterEditsTest, AChangeAfterOnesThatWereMissedAsksForTheSet) {
 TEST_F(ParameterEditsTest, OnesOwnChangeIsNobodyElses) {
     change_chance(0.2);
     evod::v1::ParametersChanged changed;
-    changed.set_by("evoview 127.0.0.1:9");
+    changed.mutable_by()->set_client("evoview");
+    changed.mutable_by()->set_address("127.0.0.1:9");
     changed.set_revision(8);
     *changed.add_changed() = state("mutation_chance", real(0.2));
     EXPECT_TRUE(edits.see(changed));

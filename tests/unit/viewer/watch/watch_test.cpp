@@ -299,7 +299,8 @@ TEST_F(WatchTest, TellsOfOthersChangesAndFollowsThem) {
     evod::v1::ServerMessage message;
     message.mutable_event()->set_world("default");
     auto& changed = *message.mutable_event()->mutable_parameters_changed();
-    changed.set_by("evoctl 127.0.0.1");
+    changed.mutable_by()->set_client("evoctl");
+    changed.mutable_by()->set_address("127.0.0.1");
     changed.add_changed()->set_name("mutation_chance");
     session.send(message);
     until(watch, [&] { return !notices.empty(); });
@@ -572,7 +573,7 @@ TEST_F(PastTest, AForkThatIsDeletedIsForgotten) {
     until(watch, [&] { return watch.forked() == "other"; });
     evod::v1::ServerMessage deleted;
     deleted.mutable_event()->set_world("other");
-    deleted.mutable_event()->mutable_world_deleted()->set_by("somebody");
+    deleted.mutable_event()->mutable_world_deleted()->mutable_by()->set_user("somebody");
     session.send(deleted);
     until(watch, [&] { return watch.forked().empty(); });
 }
