@@ -5,7 +5,7 @@ namespace evod::network {
 void Budget::change(double bytes_per_s, v1::Detail most) {
     const double saved_bytes_more = saved_s_max * (bytes_per_s - bytes_per_s_);
     bytes_per_s_ = bytes_per_s;
-    // A picture that was longer than can be saved for does not keep away for long what is wanted now.
+    // After one huge snapshot the debt is limited, so that the next snapshot need not wait long.
     saved_bytes_ = std::clamp(saved_bytes_ + std::max(saved_bytes_more, 0.0), -saved_bytes_max(), saved_bytes_max());
     most_ = detail_ = most;
     patience_ = patience_min;

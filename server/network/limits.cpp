@@ -53,7 +53,7 @@ constexpr LimitRow table[] = {
     {Limit::Subscriptions, "subscriptions_max", subscriptions_max, "subscriptions of a session",
      "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::WatchedIslands, "watched_islands_max", watched_islands_max,
-     "islands that a session is sent pictures of, those of each subscription counted", "refused, `RESOURCE_EXHAUSTED`"},
+     "islands in all snapshot subscriptions of a session together", "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::SnapshotRate, "snapshot_rate_hz_max", static_cast<std::uint64_t>(snapshot_rate_hz_max),
      "pictures a second of a subscription", "lowered to it, and the answer says so"},
     {Limit::Tiles, "tiles_max", wire::tiles_max, "tiles of an island", "tiles are larger"},

@@ -276,7 +276,7 @@ void Server::wait_for_signal() {
             return;
         const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
         if (signal == SIGHUP) {
-            log::info("SIGHUP: ignored; a changed token file is read without it, and a new certificate needs a restart");
+            reread_certificate();
         } else if (!going_away_) {
             log::info("{}: going away", name);
             go_away();
@@ -287,6 +287,19 @@ void Server::wait_for_signal() {
         }
         wait_for_signal();
     });
+}
+
+void Server::reread_certificate() {
+    auto tls = access::server_context(options_.tls);
+    if (!tls) {
+        log::error("SIGHUP: the certificate stays as it is: {}", to_text(tls.error()));
+    } else if (!*tls) {
+        log::info("SIGHUP: there is no certificate to read again; a changed token file is read without a signal");
+    } else {
+        tls_ = *std::move(tls); // connections keep what they began with
+        host_.tls = tls_.get();
+        log::info("SIGHUP: the certificate was read again; it holds for new connections");
+    }
 }
 
 void Server::stop() {

@@ -100,6 +100,8 @@ class Server {
     /// Sends the next of the pictures that have come, in turns with everything else that the thread does.
     void send_pictures();
     void wait_for_signal();
+    /// After a failure the server goes on with what it has.
+    void reread_certificate();
     void go_away();
     /// What it counts and measures.
     v1::Metrics metrics();

@@ -392,7 +392,7 @@ void Session::on_hello(const v1::Hello& hello) {
 }
 
 void Session::log_coming_or_going(const std::string& what) const {
-    // Whoever works at the server's own machine has each evoctl call come and go.
+    // On the server's own machine each call of evoctl opens and closes a session.
     const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
     if (log::wanted(level))
         log::write(level, {.session = number_, .client = by()},

@@ -2,8 +2,8 @@
 // advances; what happens when it does is the laboratory's business and does not depend on this.
 //
 //   commands → queries → how it stands with the disk → paced worlds that are due → worlds at full speed and those that
-//   show the past, a slice each → journeys into the past, a slice → queries → events, pictures → sleep until the next
-//   is due
+//   show the past, a slice each → journeys into the past, a slice → queries → events and snapshots into the outbox →
+//   sleep until the next is due
 //
 // Pace         a world at speed factor f takes a tick every tick_s / f. One that falls behind is given at most
 //              `catch_up_max` of lost time back; beyond that its clock is slow. A slice ends when mail comes or another

@@ -193,7 +193,7 @@ def measure():
             control.call(run=c.Run(world="w"))
             control.call(run=c.Run(world="islands"))
             time.sleep(2)
-            figures["nobody"] = measure_run(server, commander)
+            figures["no_attacker"] = measure_run(server, commander)
             for name in attacks:
                 if options.only in (None, name):
                     with subprocess.Popen(["nice", "-n", "10", sys.executable, *sys.argv, "--attack", name, str(server.port), token],

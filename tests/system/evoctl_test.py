@@ -79,9 +79,9 @@ class Commands(WithServer):
         self.assertEqual(self.answer("speed", "1")["world"]["state"], "RUN_STATE_RUNNING")
 
     def test_with_json_errors_are_json(self):
-        refused = json.loads(self.evoctl("--json", "--world", "nobody", "pause", status=1))
+        refused = json.loads(self.evoctl("--json", "--world", "no-such-world", "pause", status=1))
         self.assertEqual((refused["code"], refused["reason"], refused["violations"][0]["got"]),
-                         ("CODE_NOT_FOUND", "REASON_WORLD_NOT_FOUND", "nobody"))
+                         ("CODE_NOT_FOUND", "REASON_WORLD_NOT_FOUND", "no-such-world"))
         wrong = json.loads(self.evoctl("--json", "set", "mutation_chanc=1", status=2))
         self.assertIn("did you mean mutation_chance", wrong["message"])
 
