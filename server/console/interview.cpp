@@ -72,7 +72,7 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
             std::string line;
             if (!std::getline(in, line)) {
                 out << '\n';
-                return refusal(base::RefusalCode::InvalidArgument,
+                return refusal(base::RefusalCode::FailedPrecondition,
                                "--ask: the input ended before the answer to " + std::string{description.name} +
                                    "; give an empty line for each value in brackets");
             }

@@ -118,7 +118,7 @@ int run(const RunOptions& options) {
     const auto experiment = experiment_of(options);
     if (!experiment) {
         std::cerr << "evod run: " << base::to_text(experiment.error()) << '\n';
-        return RunError;
+        return experiment.error().code == base::RefusalCode::InvalidArgument ? WrongArguments : RunError;
     }
     auto first_population = load_population(options.population, experiment->parameters);
     if (!first_population) {
@@ -198,7 +198,8 @@ void add_run_command(command_line::Command& app, std::size_t threads, base::Seed
     command.add_option("--set", &options.changes, "name=value of a parameter; see evod parameters");
     command.add_option("--csv", &options.csv, "File for the statistics of every generation");
     command.add_flag("--ask", &options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
-    command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error.");
+    command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
+                   "2 a value that is not allowed.");
     command.action([&] { return run(options); });
 }
 

@@ -30,6 +30,7 @@ struct RunOptions {
 enum RunStatus : int {
     LimitOrTargetReached = 0,
     RunError = 1,
+    WrongArguments = 2,
     Stagnated = 3,
     Extinct = 4,
     Interrupted = 130, // by SIGINT or SIGTERM, after the summary

@@ -131,7 +131,7 @@ class Run(Folder):
             ("--population", "/nowhere.csv"): ["--population: /nowhere.csv: cannot be read: No such file"],
         }.items():
             with self.subTest(arguments):
-                done = evod("run", *arguments, status=1)
+                done = evod("run", *arguments, status=2 if arguments[0] == "--set" else 1)
                 for word in words:
                     self.assertIn(word, done.stderr)
 

@@ -54,7 +54,7 @@ class Schedules(access.Access):
         client.call(subscribe_events=c.SubscribeEvents(world=world))
         client.call(run=c.Run(world=world, generations=3))
         changed = client.next_event("parameters_changed").parameters_changed
-        self.assertEqual((changed.by, [x.name for x in changed.changed], changed.revision), ("the schedule", ["food_health"], 2))
+        self.assertEqual((changed.by.kind, [x.name for x in changed.changed], changed.revision), (access.w.ACTOR_KIND_SCHEDULE, ["food_health"], 2))
         self.ended(client, world, 3)
         server.process.kill()
         waiting.ended(server.process)
@@ -107,7 +107,7 @@ class Schedules(access.Access):
         client.call(set_speed=c.SetSpeed(world="w", speed=plain.w.Speed(max=True)))
         client.call(run=c.Run(world="w", generations=4))
         dropped = client.next_event("change_dropped").change_dropped
-        self.assertEqual((dropped.by, sorted(dropped.name)), ("the schedule", ["impulse_min", "mutation_chance"]))
+        self.assertEqual((dropped.by.kind, sorted(dropped.name)), (access.w.ACTOR_KIND_SCHEDULE, ["impulse_min", "mutation_chance"]))
         self.assertEqual([x.field for x in dropped.violations], ["impulse_max"])
         self.ended(client, "w", 4)
         values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
@@ -125,10 +125,10 @@ class Schedules(access.Access):
         self.assertIn("impulse_max at generation 7 (line 3): got 90, allowed at least impulse_min (95)",
                       evod("check", str(wrong), status=1))
         self.assertIn('"mutation_chance": {"1": 0.5, "3": 0.05}', evod("check", self.file))
-        refused = evod("run", self.file, "--set", "impulse_min=95", "--set", "impulse_max=90", status=1)
+        refused = evod("run", self.file, "--set", "impulse_min=95", "--set", "impulse_max=90", status=2)
         self.assertIn("impulse_max", refused)
         steep = self.write("steep.json", {"impulse_min": {"3": 200}})
-        self.assertIn("impulse_max at generation 3: got 150", evod("run", steep, "--set", "impulse_max=150", status=1))
+        self.assertIn("impulse_max at generation 3: got 150", evod("run", steep, "--set", "impulse_max=150", status=2))
 
 
 class Planned(access.Access):
