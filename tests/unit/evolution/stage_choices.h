@@ -4,6 +4,7 @@
 
 #include "server/evolution/parameters.h"
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace evod::evolution {
 
 struct StageChoice : Parameters {
     std::string name; // "selection=tournament"
+    friend void PrintTo(const StageChoice& choice, std::ostream* out) { *out << choice.name; }
 };
 
 inline StageChoice slowest_choices() {

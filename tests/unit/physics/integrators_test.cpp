@@ -15,6 +15,9 @@ constexpr double px_per_metre = 1000; // so that the position unit, 1/4096 px, s
 struct Fall {
     double tick_s, symplectic, explicit_euler; // x(2.4 s) at a = 2 from rest without damping
 };
+void PrintTo(const Fall& fall, std::ostream* out) {
+    *out << "tick_s " << fall.tick_s;
+}
 class ConstantForce : public testing::TestWithParam<Fall> {
   protected:
     static double way_after_2_4_s(Integrator integrator) {

@@ -329,13 +329,14 @@ TEST_P(DamageTest, WithoutItsLogAFileStillTellsItsRun) {
     EXPECT_GE((*file)->last_generation(), 1u);
 }
 
-std::string name_of_left(const testing::TestParamInfo<Left>& left) {
+void PrintTo(Left left, std::ostream* out) {
     constexpr const char* names[] = {"Closed", "Killed", "Restarted", "HalfCopied"};
-    return names[static_cast<int>(left.param)];
+    *out << names[static_cast<int>(left)];
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DamageTest,
-                         testing::Values(Left::Closed, Left::Killed, Left::Restarted, Left::HalfCopied), name_of_left);
+                         testing::Values(Left::Closed, Left::Killed, Left::Restarted, Left::HalfCopied),
+                         testing::PrintToStringParamName());
 
 } // namespace
 } // namespace evod::storage

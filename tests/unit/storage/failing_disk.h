@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <ostream>
 
 namespace evod::storage {
 
@@ -12,6 +13,11 @@ enum class Failure {
     Torn, // half of a write is made, then it fails
     Gone, // it is not made and nothing after it either, as if the program had been killed before it
 };
+
+inline void PrintTo(Failure how, std::ostream* out) {
+    constexpr const char* names[] = {"InputOutput", "Full", "Torn", "Gone"};
+    *out << names[static_cast<int>(how)];
+}
 
 /// The name to hand to RunFile::Options::vfs. Registers it when first asked.
 const char* failing_disk();

@@ -397,13 +397,8 @@ TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
     fail_operation(0, GetParam());
 }
 
-std::string failure_name(const testing::TestParamInfo<Failure>& how) {
-    constexpr const char* names[] = {"InputOutput", "Full", "Torn"};
-    return names[static_cast<int>(how.param)];
-}
-
 INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput, Failure::Full, Failure::Torn),
-                         failure_name);
+                         testing::PrintToStringParamName());
 
 /// As if a server had been killed right before each of its operations of the disk in turn.
 TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
