@@ -45,7 +45,7 @@ using command_line::WholeNumber;
 
 struct ServeOptions {
     std::string bind_address = "127.0.0.1", http_bind_address = "127.0.0.1";
-    std::uint16_t port = wire::default_port;
+    std::uint16_t port = codec::default_port;
     std::optional<std::uint16_t> http_port;
     std::string log_level = "info", log_format = "text";
     bool log_begun = false; // from then on, standard output is a log

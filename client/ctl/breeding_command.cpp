@@ -124,9 +124,9 @@ std::string name_of(v1::MutationKind kind) {
 /// What became of its genes after the parents': "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
 std::string changes_of(const v1::Descendant& descendant, const v1::WorldInfo& world) {
     std::string text;
-    if (descendant.has_rearrangement()) {
-        text = descendant.rearrangement().method();
-        for (const std::uint32_t gene : descendant.rearrangement().order()) {
+    if (descendant.has_order_mutation()) {
+        text = descendant.order_mutation().method();
+        for (const std::uint32_t gene : descendant.order_mutation().order()) {
             text += " " + std::to_string(gene);
         }
     }

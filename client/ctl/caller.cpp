@@ -14,8 +14,8 @@ namespace evod::ctl {
 
 namespace {
 
-link::Endpoint endpoint_of(const std::string& text) {
-    auto endpoint = link::parse_endpoint(text);
+core::Endpoint endpoint_of(const std::string& text) {
+    auto endpoint = core::parse_endpoint(text);
     if (!endpoint) {
         throw Stop{ExitCode::Usage, endpoint.error().what};
     }
@@ -77,23 +77,23 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may writ
 } // namespace
 
 Caller::Caller(const Common& common) : timeout_{common.timeout()} {
-    link::Options options{.server = endpoint_of(common.server),
+    core::Options options{.server = endpoint_of(common.server),
                           .client_name = "evoctl",
                           .client_version = EVOD_VERSION,
                           .connect_timeout = common.timeout()};
-    if (const auto known = link::apply(common.credentials, options); !known) {
+    if (const auto known = core::apply(common.credentials, options); !known) {
         throw Stop{ExitCode::Usage, known.error().what};
     }
-    connection_ = std::make_unique<link::Connection>(options);
+    connection_ = std::make_unique<core::Connection>(options);
     auto welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});
-    if (!welcome && welcome.error().kind == link::Error::Kind::TokenNeeded && options.token.empty() &&
+    if (!welcome && welcome.error().kind == core::Error::Kind::TokenNeeded && options.token.empty() &&
         common.may_prompt) {
         options.token = prompt_for_token(common.server);
-        connection_ = std::make_unique<link::Connection>(options);
+        connection_ = std::make_unique<core::Connection>(options);
         welcome = connection_->wait_connected(timeout_ + std::chrono::seconds{1});
     }
     if (!welcome) {
-        const bool stranger = welcome.error().kind == link::Error::Kind::TokenNeeded;
+        const bool stranger = welcome.error().kind == core::Error::Kind::TokenNeeded;
         throw Stop{stranger ? ExitCode::TokenNeeded : ExitCode::NoConnection, welcome.error().what};
     }
     welcome_ = *std::move(welcome);
@@ -102,14 +102,14 @@ Caller::Caller(const Common& common) : timeout_{common.timeout()} {
 v1::Response Caller::call(v1::Request request, std::optional<std::chrono::milliseconds> timeout) {
     auto response = connection_->request(std::move(request), timeout.value_or(timeout_));
     if (!response) {
-        const bool usage = response.error().kind == link::Error::Kind::Usage;
-        const bool late = response.error().kind == link::Error::Kind::Timeout;
+        const bool usage = response.error().kind == core::Error::Kind::Usage;
+        const bool late = response.error().kind == core::Error::Kind::Timeout;
         throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection,
                    response.error().what + (late ? "; for a busy server wait longer, with --timeout" : "")};
     }
-    if (!link::accepted(*response)) {
+    if (!core::accepted(*response)) {
         const bool wrong = response->status().code() == v1::CODE_INVALID_ARGUMENT;
-        throw Stop{wrong ? ExitCode::Usage : ExitCode::Refused, link::to_text(response->status()), response->status()};
+        throw Stop{wrong ? ExitCode::Usage : ExitCode::Refused, core::to_text(response->status()), response->status()};
     }
     return *std::move(response);
 }
@@ -151,7 +151,7 @@ std::string state_of(const v1::WorldInfo& world) {
     case v1::RUN_STATE_WAITING:
         return "waiting";
     case v1::RUN_STATE_RUNNING:
-        return link::worlds_wait(world.storage()) ? "waits for the disk" : "running";
+        return core::worlds_wait(world.storage()) ? "waits for the disk" : "running";
     case v1::RUN_STATE_PAUSED:
         return "paused";
     case v1::RUN_STATE_TERMINATED:
@@ -208,14 +208,14 @@ std::string sentence(const v1::WorldInfo& world) {
                        duration(world.simulated_s()) + ")";
     // A world that shows the past waits at its end, whatever it was told.
     const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED ||
-                           (world.state() == v1::RUN_STATE_WAITING && world.has_recording());
+                           (world.state() == v1::RUN_STATE_WAITING && world.has_replay());
     if (under_way && world.has_run_until_generation()) {
         text += ", until the end of generation " + std::to_string(world.run_until_generation() - 1);
     }
     if (under_way && world.has_run_until_tick()) {
         text += ", until tick " + std::to_string(world.run_until_tick());
     }
-    if (world.has_recording() && world.tick() >= world.recording().last_tick()) {
+    if (world.has_replay() && world.tick() >= world.replay().last_tick()) {
         text += ", the last moment that its run file tells of: evoctl seek takes it to another";
     }
     return text;

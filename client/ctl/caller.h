@@ -5,8 +5,8 @@
 #include "client/ctl/registry.h"
 #include "client/ctl/stop.h"
 #include "client/ctl/text.h"
-#include "client/link/connection.h"
-#include "client/link/credentials.h"
+#include "client/core/connection.h"
+#include "client/core/credentials.h"
 #include "proto/command_line/number.h"
 
 #include <google/protobuf/message.h>
@@ -26,7 +26,7 @@ namespace evod::ctl {
 /// What every subcommand can be given.
 struct Common {
     std::string server = "localhost";
-    link::Credentials credentials;
+    core::Credentials credentials;
     std::string world; // empty: the server's only one, or `default`
     double timeout_s = 10;
     bool json = false;
@@ -55,13 +55,13 @@ class Caller {
     /// Throws Stop if the server does not know of them: it would make them at once, or not at all.
     void need_planned_changes() const;
 
-    link::Connection& connection() { return *connection_; }
+    core::Connection& connection() { return *connection_; }
     const v1::Welcome& welcome() const { return welcome_; }
     std::chrono::milliseconds timeout() const { return timeout_; }
 
   private:
     std::chrono::milliseconds timeout_;
-    std::unique_ptr<link::Connection> connection_;
+    std::unique_ptr<core::Connection> connection_;
     v1::Welcome welcome_;
 };
 

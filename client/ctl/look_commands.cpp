@@ -1,7 +1,7 @@
 // What only reads: status, worlds, stats, history, organism, describe.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-#include "client/link/history_csv.h"
+#include "client/core/history_csv.h"
 #include "proto/command_line/command.h"
 
 #include <google/protobuf/text_format.h>
@@ -44,7 +44,7 @@ void status(const Common& common) {
                        std::to_string(world.island_count()), std::to_string(world.seed())});
         }
         std::string text = "evod " + caller.welcome().server_version() + " at " +
-                           link::to_text(*link::parse_endpoint(common.server)) + "\n";
+                           core::to_text(*core::parse_endpoint(common.server)) + "\n";
         for (const std::string& line : {durability_of(caller.welcome()), trouble_of(caller.welcome().storage())}) {
             text += line.empty() ? "" : line + "\n";
         }
@@ -125,7 +125,7 @@ std::string world_at(Caller& caller, const Common& common, const MomentOptions& 
         return common.world;
     }
     v1::Request request;
-    auto& past = *request.mutable_open_past();
+    auto& past = *request.mutable_open_replay();
     past.set_world(common.world);
     if (options.generation) {
         past.mutable_at()->set_generation(*options.generation);
@@ -138,7 +138,7 @@ std::string world_at(Caller& caller, const Common& common, const MomentOptions& 
 
 /// "default as it was: generation 4, tick 9000 (2:30 min)".
 std::string past_sentence(const v1::WorldInfo& world) {
-    return world.recording().past_of() + " as it was: generation " + std::to_string(world.generation()) + ", tick " +
+    return world.replay().replay_of() + " as it was: generation " + std::to_string(world.generation()) + ", tick " +
            std::to_string(world.tick()) + " (" + duration(world.simulated_s()) + ")";
 }
 
@@ -222,9 +222,9 @@ v1::History history_of(Caller& caller, const Common& common, const HistoryOption
 }
 
 std::string csv_of(const v1::History& history, const v1::WorldInfo& world) {
-    std::string text = link::history_heading({world.gene_names().begin(), world.gene_names().end()});
+    std::string text = core::history_heading({world.gene_names().begin(), world.gene_names().end()});
     for (const auto& generation : history.generations()) {
-        text += link::history_line(link::history_numbers(generation));
+        text += core::history_line(core::history_numbers(generation));
     }
     return text;
 }

@@ -1,7 +1,7 @@
 // Parameters: set, get, params.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-#include "client/link/actor.h"
+#include "client/core/actor.h"
 #include "proto/command_line/command.h"
 
 namespace evod::ctl {
@@ -25,7 +25,7 @@ std::string line_of(const v1::PlannedChange& change) {
     for (const auto& assignment : change.parameters()) {
         text += " " + assignment.name() + "=" + to_text(assignment.value());
     }
-    return text + (change.has_by() ? ", by " + link::to_text(change.by()) : "");
+    return text + (change.has_by() ? ", by " + core::to_text(change.by()) : "");
 }
 
 const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::string& name) {

@@ -3,8 +3,8 @@
 #include "client/ctl/experiment_file.h"
 #include "client/ctl/text.h"
 #include "proto/command_line/command.h"
-#include "proto/wire/framing.h"
-#include "proto/wire/population_csv.h"
+#include "proto/codec/framing.h"
+#include "proto/codec/population_csv.h"
 
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ ExperimentFile read_experiment(const std::string& path, const Registry& registry
 
 void add_population(const std::string& path, v1::CreateWorld& command) {
     std::ifstream file = open_file("population", path);
-    const auto islands = wire::read_population(file);
+    const auto islands = codec::read_population(file);
     if (!islands) {
         throw Stop{ExitCode::Usage, "the population file " + path + " is wrong: " + islands.error().what};
     }
@@ -70,7 +70,7 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     }
     // What else is in the request takes much less than the room that is left for it here.
     constexpr std::size_t rest_bytes_max = 32 << 10;
-    if (command.ByteSizeLong() + rest_bytes_max > *wire::server_limits.control_bytes_max) {
+    if (command.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {
         throw Stop{ExitCode::Usage, "the population file " + path +
                                         " holds more than a request can carry, some 43,000 organisms: begin such a "
                                         "world with evod --population"};

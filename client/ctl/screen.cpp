@@ -42,13 +42,13 @@ void Drawing::leave() {
     lines_ = 0;
 }
 
-void ConnectionNews::tell(const link::Connection& connection, Drawing& drawing) {
+void ConnectionNews::tell(const core::Connection& connection, Drawing& drawing) {
     const auto status = connection.status();
-    if (status.state == link::State::Failed) {
+    if (status.state == core::State::Failed) {
         drawing.leave();
         throw Stop{ExitCode::NoConnection, status.reason};
     }
-    const bool lost = status.state != link::State::Connected;
+    const bool lost = status.state != core::State::Connected;
     if (lost && !lost_) {
         drawing.leave();
         std::cerr << status.reason << "; trying again\n";

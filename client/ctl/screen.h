@@ -1,7 +1,7 @@
 // Screen: what is drawn again and again over itself, and news of the connection meanwhile.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 
 #include <cstddef>
 #include <string>
@@ -33,7 +33,7 @@ class Drawing {
 class ConnectionNews {
   public:
     /// drawing  that is on the screen meanwhile, and makes way.
-    void tell(const link::Connection& connection, Drawing& drawing);
+    void tell(const core::Connection& connection, Drawing& drawing);
 
   private:
     bool lost_ = false;

@@ -1,8 +1,8 @@
 // Text: tables, sparklines and numbers for people to read.
 #pragma once
 
-#include "client/link/duration.h"
-#include "client/link/exact.h"
+#include "client/core/duration.h"
+#include "client/core/exact.h"
 
 #include <cstdint>
 #include <span>
@@ -39,10 +39,10 @@ std::string sparkline(std::span<const double> values, std::size_t width_max);
 /// What a server says, for a terminal: control characters but the end of a line become '?'.
 std::string visible(std::string utf8);
 
-using link::exact;
+using core::exact;
 /// With so many decimals.
 std::string fixed(double value, int decimals);
-using link::duration;
+using core::duration;
 /// "12 µs", "3.4 ms", "1.2 s".
 std::string short_time(double seconds);
 /// "512 B", "1.5 KiB", "12 MiB".

@@ -66,8 +66,8 @@ class Top {
         if (!response) {
             return false;
         }
-        if (!link::accepted(*response)) {
-            throw Stop{ExitCode::Refused, link::to_text(response->status())};
+        if (!core::accepted(*response)) {
+            throw Stop{ExitCode::Refused, core::to_text(response->status())};
         }
         note(*response);
         return true;

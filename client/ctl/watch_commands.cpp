@@ -2,7 +2,7 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
-#include "client/link/actor.h"
+#include "client/core/actor.h"
 #include "proto/command_line/command.h"
 
 #include <algorithm>
@@ -63,8 +63,8 @@ class Watch {
         v1::SubscribeEvents events;
         events.set_world(world_.name());
         const auto answer = caller_.connection().wait_subscribed(caller_.connection().subscribe(events));
-        if (answer && !link::accepted(*answer)) {
-            throw Stop{ExitCode::Refused, link::to_text(answer->status())};
+        if (answer && !core::accepted(*answer)) {
+            throw Stop{ExitCode::Refused, core::to_text(answer->status())};
         }
         if (redraw_) {
             load_past();
@@ -102,7 +102,7 @@ class Watch {
         history.set_world(world_.name());
         history.set_first_generation(world_.generation() > width + 1 ? world_.generation() - width : 1);
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        if (!response || !link::accepted(*response)) {
+        if (!response || !core::accepted(*response)) {
             return; // only the picture of the past is missing
         }
         const auto& generations = response->history().generations();
@@ -149,7 +149,7 @@ class Watch {
             look();
             end(world_.name() + " has ended: " + state_of(world_));
         } else if (event.has_world_deleted()) {
-            end(world_.name() + " was deleted by " + link::to_text(event.world_deleted().by()));
+            end(world_.name() + " was deleted by " + core::to_text(event.world_deleted().by()));
         } else if (event.has_world_reset()) {
             lines_.clear();
         }
@@ -171,7 +171,7 @@ class Watch {
         v1::Request request;
         request.mutable_get_statistics()->set_world(world_.name());
         const auto response = caller_.connection().request(std::move(request), std::chrono::milliseconds{1000});
-        if (response && link::accepted(*response)) {
+        if (response && core::accepted(*response)) {
             statistics_ = response->statistics();
             world_ = statistics_.world();
         }
@@ -263,7 +263,7 @@ std::string text_of(const v1::Event& event) {
         return where + text_of(line_of(event.generation_finished().statistics()));
     case v1::Event::kParametersChanged: {
         const auto& changed = event.parameters_changed();
-        std::string text = where + link::to_text(changed.by()) + " set";
+        std::string text = where + core::to_text(changed.by()) + " set";
         for (const auto& state : changed.changed()) {
             text += " " + state.name() + "=" + to_text(state.has_pending() ? state.pending() : state.value());
         }
@@ -273,7 +273,7 @@ std::string text_of(const v1::Event& event) {
     case v1::Event::kChangeCancelled: {
         const bool planned = event.has_change_planned();
         const auto& change = planned ? event.change_planned().change() : event.change_cancelled().change();
-        std::string text = where + link::to_text(planned ? change.by() : event.change_cancelled().by()) +
+        std::string text = where + core::to_text(planned ? change.by() : event.change_cancelled().by()) +
                            (planned ? " planned change " : " cancelled change ") + std::to_string(change.id()) +
                            (change.has_tick() ? " after tick " + std::to_string(change.tick())
                                               : " from generation " + std::to_string(change.generation())) +
@@ -285,7 +285,7 @@ std::string text_of(const v1::Event& event) {
     }
     case v1::Event::kChangeDropped: {
         const auto& dropped = event.change_dropped();
-        std::string text = where + "left out what " + link::to_text(dropped.by()) + " planned:";
+        std::string text = where + "left out what " + core::to_text(dropped.by()) + " planned:";
         for (const auto& name : dropped.name()) {
             text += " " + name;
         }
@@ -298,7 +298,7 @@ std::string text_of(const v1::Event& event) {
         return where +
                (event.run_control_changed().by().kind() == v1::ACTOR_KIND_GOAL
                     ? "goal reached"
-                    : link::to_text(event.run_control_changed().by())) +
+                    : core::to_text(event.run_control_changed().by())) +
                "; " + sentence(event.run_control_changed().world());
     case v1::Event::kMigration: {
         std::uint64_t migrants = 0;
@@ -314,13 +314,13 @@ std::string text_of(const v1::Event& event) {
     case v1::Event::kRunTerminated:
         return where + outcome_of(event.run_terminated().outcome());
     case v1::Event::kWorldCreated:
-        return where + "created by " + link::to_text(event.world_created().by()) + ", seed " +
+        return where + "created by " + core::to_text(event.world_created().by()) + ", seed " +
                std::to_string(event.world_created().world().seed());
     case v1::Event::kWorldReset:
-        return where + "reset by " + link::to_text(event.world_reset().by()) + ", seed " +
+        return where + "reset by " + core::to_text(event.world_reset().by()) + ", seed " +
                std::to_string(event.world_reset().world().seed());
     case v1::Event::kWorldDeleted:
-        return where + "deleted by " + link::to_text(event.world_deleted().by());
+        return where + "deleted by " + core::to_text(event.world_deleted().by());
     case v1::Event::kServerGoingAway:
         return "the server is shutting down";
     case v1::Event::kStorageChanged: {
@@ -346,8 +346,8 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
     if (!answer) {
         throw Stop{ExitCode::NoConnection, answer.error().what};
     }
-    if (!link::accepted(*answer)) {
-        throw Stop{ExitCode::Refused, link::to_text(answer->status())};
+    if (!core::accepted(*answer)) {
+        throw Stop{ExitCode::Refused, core::to_text(answer->status())};
     }
     if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
         std::cerr << trouble << '\n'; // began before

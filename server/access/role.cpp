@@ -42,7 +42,7 @@ Role role_needed(v1::Request::KindCase request, bool of_own_past) {
     case Case::kUnsubscribe:
     case Case::kRequestKeyframe:
     case Case::kSetView:
-    case Case::kOpenPast:
+    case Case::kOpenReplay:
     case Case::kExportRun:
     case Case::kContinueExport:
         return Role::Viewer;
@@ -52,7 +52,7 @@ Role role_needed(v1::Request::KindCase request, bool of_own_past) {
     case Case::kResume:
     case Case::kSetSpeed:
     case Case::kSeek:
-    case Case::kClosePast:
+    case Case::kCloseReplay:
         return of_own_past ? Role::Viewer : Role::Controller;
     case Case::kResetWorld:
     case Case::kSetParameters:

@@ -1,6 +1,6 @@
 #include "server/console/population_file.h"
 
-#include "proto/wire/population_csv.h"
+#include "proto/codec/population_csv.h"
 #include "server/files/regular_file.h"
 
 #include <memory>
@@ -26,10 +26,10 @@ base::Result<simulation::FirstPopulation> load_population(const std::string& pat
     if (!text)
         return text.error();
     std::istringstream csv{*std::move(text)};
-    const auto islands = wire::read_population(csv);
+    const auto islands = codec::read_population(csv);
     if (!islands)
         return refusal(RefusalCode::InvalidArgument, path + ": " + islands.error().what);
-    static_assert(wire::population_genes == evolution::gene_count);
+    static_assert(codec::population_genes == evolution::gene_count);
     std::vector<evolution::GeneMatrix> matrices;
     for (const std::vector<float>& genes : *islands)
         matrices.push_back(Eigen::Map<const evolution::GeneMatrix>{

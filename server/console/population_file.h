@@ -1,4 +1,4 @@
-// Population files: the chromosomes of a generation (proto/wire/population_csv.h), for another world to begin with.
+// Population files: the chromosomes of a generation (proto/codec/population_csv.h), for another world to begin with.
 #pragma once
 
 #include "server/base/result.h"

@@ -9,25 +9,25 @@
 namespace evod::network {
 
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after) {
-    if (!wire::same_unchanging(after, before) || after.generation() != before.generation() ||
+    if (!codec::same_unchanging(after, before) || after.generation() != before.generation() ||
         after.generation_tick() < before.generation_tick() ||
         after.generation_tick() - before.generation_tick() > std::numeric_limits<std::uint16_t>::max())
         return std::nullopt;
     return static_cast<std::uint16_t>(after.generation_tick() - before.generation_tick());
 }
 
-ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const wire::Scene> scene, bool with_delta) const {
+ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, bool with_delta) const {
     const auto ticks = ticks_between(*about_, *about);
-    if (!ticks || !with_delta || !wire::follows(*scene, *footing_.scene))
+    if (!ticks || !with_delta || !codec::follows(*scene, *baseline_.scene))
         return std::make_shared<ChainPicture>(std::move(about), std::move(scene), *compressor_);
-    // What stayed is paired once for both: the next footing, and the delta, which whoever keeps up is sent.
-    wire::Footing footing = wire::standing(std::move(scene));
-    footing.ticks = *ticks > 0 ? *ticks : footing_.ticks;
-    const wire::MovedOn moved{.organisms = {footing.organisms.x, footing.organisms.y},
-                              .crates = {footing.crates.x, footing.crates.y}};
-    wire::Seams seams;
-    std::string delta = wire::encode_delta(footing_, *footing.scene, *ticks, &moved, &seams);
-    auto picture = std::make_shared<ChainPicture>(std::move(about), std::move(footing), *compressor_);
+    // What stayed is paired once for both: the next baseline, and the delta, which whoever keeps up is sent.
+    codec::Baseline baseline = codec::initial_baseline(std::move(scene));
+    baseline.ticks = *ticks > 0 ? *ticks : baseline_.ticks;
+    const codec::AdvancedColumns moved{.organisms = {baseline.organisms.x, baseline.organisms.y},
+                              .crates = {baseline.crates.x, baseline.crates.y}};
+    codec::Seams seams;
+    std::string delta = codec::encode_delta(baseline_, *baseline.scene, *ticks, &moved, &seams);
+    auto picture = std::make_shared<ChainPicture>(std::move(about), std::move(baseline), *compressor_);
     picture->delta_body_ = std::move(delta);
     picture->delta_seams_ = std::move(seams);
     picture->base_sequence_ = sequence();
@@ -42,12 +42,12 @@ const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression,
     frame.set_codec(v1::CODEC_DELTA);
     if (as_delta) {
         frame.set_base_sequence(base_sequence_);
-        wire::leave_out_unchanging(frame);
+        codec::leave_out_unchanging(frame);
     }
-    wire::Seams keyframe_seams;
-    const std::string keyframe = as_delta ? "" : wire::encode_keyframe(footing_, &keyframe_seams);
+    codec::Seams keyframe_seams;
+    const std::string keyframe = as_delta ? "" : codec::encode_keyframe(baseline_, &keyframe_seams);
     const std::string& body = as_delta ? delta_body_ : keyframe;
-    frame.set_checksum(wire::checksum_of(frame, body));
+    frame.set_checksum(codec::checksum_of(frame, body));
     std::string compressed;
     const std::string_view sent =
         sent_body(frame, body, as_delta ? delta_seams_ : keyframe_seams, compression, *compressor_, compressed);
@@ -59,8 +59,8 @@ const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression,
     return bytes = std::make_shared<const std::string>(std::move(made));
 }
 
-const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const wire::Scene> scene,
-                                  wire::Compressor& compressor, runtime::Clock::time_point now,
+const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                  codec::Compressor& compressor, runtime::Clock::time_point now,
                                   runtime::Clock::duration between) {
     // The next picture would come too late to be the keyframe.
     const bool keyframe_due = now + between > keyframe_made_ + keyframe_interval;

@@ -8,8 +8,8 @@
 // Threads      the network thread.
 #pragma once
 
-#include "proto/wire/compression.h"
-#include "proto/wire/delta_codec.h"
+#include "proto/codec/compression.h"
+#include "proto/codec/delta_codec.h"
 #include "server/network/retries.h"
 #include "server/runtime/clock.h"
 
@@ -41,14 +41,14 @@ class ChainPicture {
     /// about       what the codec says of it is set here.
     /// scene       its entities, of which nothing has moved yet; or with the way they came.
     /// compressor  there as long as forms of the picture are asked for.
-    ChainPicture(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor)
-        : ChainPicture{std::move(about), wire::standing(std::move(scene)), compressor} {}
-    ChainPicture(AboutPtr about, wire::Footing footing, wire::Compressor& compressor)
-        : about_{std::move(about)}, footing_{std::move(footing)}, compressor_{&compressor} {}
+    ChainPicture(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor)
+        : ChainPicture{std::move(about), codec::initial_baseline(std::move(scene)), compressor} {}
+    ChainPicture(AboutPtr about, codec::Baseline baseline, codec::Compressor& compressor)
+        : about_{std::move(about)}, baseline_{std::move(baseline)}, compressor_{&compressor} {}
 
     /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
     /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
-    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const wire::Scene> scene, bool with_delta) const;
+    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, bool with_delta) const;
 
     std::uint64_t sequence() const { return about_->sequence(); }
     /// Who was sent that picture last can take the delta; 0: there is none.
@@ -66,11 +66,11 @@ class ChainPicture {
     const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
 
     AboutPtr about_;
-    wire::Footing footing_;
+    codec::Baseline baseline_;
     std::uint64_t base_sequence_ = 0;
     std::string delta_body_; // if there is one
-    wire::Seams delta_seams_;
-    wire::Compressor* compressor_;
+    codec::Seams delta_seams_;
+    codec::Compressor* compressor_;
     Forms keyframe_, delta_;
 };
 
@@ -80,7 +80,7 @@ using ChainPicturePtr = std::shared_ptr<ChainPicture>;
 class Chain {
   public:
     /// between  how long it usually is to the next picture.
-    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor,
+    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor,
                                runtime::Clock::time_point now, runtime::Clock::duration between);
 
     /// Null before the first.
@@ -93,11 +93,11 @@ class Chain {
 
 /// A body as it is sent: compressed, if that is asked for and makes it shorter; then the message is told so.
 ///
-/// message     a SnapshotFrame or a TilePicture.
+/// message     a SnapshotFrame or a SnapshotTile.
 /// compressed  what the answer is a view of in that case.
 template <class Message>
-std::string_view sent_body(Message& message, std::string_view body, const wire::Seams& seams,
-                           v1::Compression compression, wire::Compressor& compressor, std::string& compressed) {
+std::string_view sent_body(Message& message, std::string_view body, const codec::Seams& seams,
+                           v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {
     if (compression != v1::COMPRESSION_ZSTD)
         return body;
     compressed = compressor.compress(body, seams);

@@ -81,9 +81,9 @@ storage::WantedMoment wanted(const v1::RunMoment& moment) {
 
 /// request  of RequestKind::Past.
 runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::PastReply reply) {
-    if (request.has_open_past())
-        return {runtime::OpenPast{.world = protocol::lookup_name(request.open_past().world()),
-                                  .at = wanted(request.open_past().at()),
+    if (request.has_open_replay())
+        return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
+                                  .at = wanted(request.open_replay().at()),
                                   .owner = owner},
                 std::move(reply)};
     if (request.has_seek())
@@ -91,7 +91,7 @@ runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, run
                               .to = wanted(request.seek().to()),
                               .owner = owner},
                 std::move(reply)};
-    return {runtime::ClosePast{protocol::lookup_name(request.close_past().world())}, std::move(reply)};
+    return {runtime::CloseReplay{protocol::lookup_name(request.close_replay().world())}, std::move(reply)};
 }
 
 /// request  without faults.
@@ -123,8 +123,8 @@ bool is_of_own_past(const Session& session, const v1::Request& request) {
         return session.pasts.contains(request.set_speed().world());
     case v1::Request::kSeek:
         return session.pasts.contains(request.seek().world());
-    case v1::Request::kClosePast:
-        return session.pasts.contains(request.close_past().world());
+    case v1::Request::kCloseReplay:
+        return session.pasts.contains(request.close_replay().world());
     default:
         return false;
     }
@@ -632,7 +632,7 @@ void Dispatcher::past(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     if (auto faults = protocol::faults_of(request); !faults.empty())
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
-    auto reply = [this, id, name = name_of(request), opens = request.has_open_past(), closes = request.has_close_past(),
+    auto reply = [this, id, name = name_of(request), opens = request.has_open_replay(), closes = request.has_close_replay(),
                   weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
                                                    const base::Result<std::string>& world) {
         v1::Response response = response_to(id);

@@ -1,7 +1,7 @@
 #include "server/network/limits.h"
 
-#include "proto/wire/framing.h"
-#include "proto/wire/tiles.h"
+#include "proto/codec/framing.h"
+#include "proto/codec/tiles.h"
 #include "server/base/assert.h"
 #include "server/protocol/breeding.h"
 #include "server/protocol/commands.h"
@@ -23,11 +23,11 @@ constexpr std::uint64_t seconds(std::chrono::milliseconds duration) {
 }
 
 constexpr LimitRow table[] = {
-    {Limit::HelloFrameBytes, "hello_frame_bytes_max", *wire::hello_limits.control_bytes_max,
+    {Limit::HelloFrameBytes, "hello_frame_bytes_max", *codec::hello_limits.control_bytes_max,
      "body of a client's first frame", "told, and closed; no memory is taken for what a header declares"},
-    {Limit::ControlFrameBytes, "control_frame_bytes_max", *wire::server_limits.control_bytes_max,
+    {Limit::ControlFrameBytes, "control_frame_bytes_max", *codec::server_limits.control_bytes_max,
      "body of a later frame of a client; 65,536 below the role admin", "the same"},
-    {Limit::MessageDepth, "message_depth_max", wire::message_depth_max, "messages within messages",
+    {Limit::MessageDepth, "message_depth_max", codec::message_depth_max, "messages within messages",
      "refused, `INVALID_ARGUMENT`, with `request_id` 0; in a first frame also closed"},
     {Limit::HelloTimeout, "hello_timeout_s", seconds(hello_timeout), "from connecting to a hello, TLS included",
      "told, unless TLS has not begun, and closed"},
@@ -56,11 +56,11 @@ constexpr LimitRow table[] = {
      "islands in all snapshot subscriptions of a session together", "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::SnapshotRate, "snapshot_rate_hz_max", static_cast<std::uint64_t>(snapshot_rate_hz_max),
      "pictures a second of a subscription", "lowered to it, and the answer says so"},
-    {Limit::Tiles, "tiles_max", wire::tiles_max, "tiles of an island", "tiles are larger"},
+    {Limit::Tiles, "tiles_max", codec::tiles_max, "tiles of an island", "tiles are larger"},
     {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds", "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::PlannedChanges, "planned_changes_max", simulation::planned_changes_max, "changes planned in a world",
      "refused, `RESOURCE_EXHAUSTED`"},
-    {Limit::Pasts, "pasts_max", runtime::TimeTravel::pasts_max, "worlds of a session that show the past",
+    {Limit::Pasts, "replays_max", runtime::TimeTravel::replays_max, "worlds of a session that show the past",
      "refused, `RESOURCE_EXHAUSTED`; so too beyond 64 of all sessions"},
     {Limit::Lease, "lease_s", seconds(lease_time), "a world is lent to who steps it, from the last step", "it goes on"},
     {Limit::Exports, "exports_max", exports_max, "exports under way, of all sessions", "refused, `RESOURCE_EXHAUSTED`"},

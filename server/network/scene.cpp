@@ -1,6 +1,6 @@
 #include "server/network/scene.h"
 
-#include "proto/wire/steps.h"
+#include "proto/codec/steps.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,11 +9,11 @@
 namespace evod::network {
 namespace {
 
-using wire::Column;
+using codec::Column;
 
 /// From fixed point, as it was put there, in place: all at once, which vectors do.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
-    const wire::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
+    const codec::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
                                          position_bytes};
     for (std::uint32_t& position : positions)
         position = in_steps(static_cast<std::int32_t>(position));
@@ -30,8 +30,8 @@ void keep_first(std::size_t count, Columns&... columns) {
     (columns.resize(count), ...);
 }
 
-wire::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t position_bytes) {
-    wire::Entities to;
+codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t position_bytes) {
+    codec::Entities to;
     make_room(items.present_count, to.id, to.x, to.y);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < items.all.size(); ++i) { // without a branch: which items are away is unpredictable
@@ -47,7 +47,7 @@ wire::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posit
     return to;
 }
 
-wire::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end,
+codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end,
                         std::uint32_t position_bytes) {
     const auto part = [=](const auto& column) { return std::span{column}.subspan(begin, end - begin); };
     const auto positions = [&](const auto& column) {
@@ -57,7 +57,7 @@ wire::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, 
     };
     const auto sizes = [&](const auto& column) {
         Column steps(end - begin);
-        std::ranges::transform(part(column), steps.begin(), wire::size_in_steps);
+        std::ranges::transform(part(column), steps.begin(), codec::size_in_steps);
         return steps;
     };
     return {.id = {},
@@ -67,8 +67,8 @@ wire::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, 
             .height = sizes(boxes.half_height_px)};
 }
 
-wire::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
-    wire::Entities to;
+codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::uint32_t position_bytes) {
+    codec::Entities to;
     Column places;
     make_room(organisms.alive_count, to.id, places);
     std::size_t kept = 0;
@@ -84,8 +84,8 @@ wire::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::ui
     const auto as_it_is = [](physics::Coordinate position) { return static_cast<std::uint32_t>(position); };
     fetch(organisms.x, as_it_is, to.x);
     fetch(organisms.y, as_it_is, to.y);
-    fetch(organisms.radius_px, wire::size_in_steps, to.width);
-    fetch(organisms.health, wire::size_in_steps, to.height);
+    fetch(organisms.radius_px, codec::size_in_steps, to.width);
+    fetch(organisms.health, codec::size_in_steps, to.height);
     to_steps(to.x, position_bytes);
     to_steps(to.y, position_bytes);
     return to;
@@ -93,8 +93,8 @@ wire::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::ui
 
 } // namespace
 
-wire::Scene scene_of(const runtime::IslandSnapshot& island) {
-    const std::uint32_t position_bytes = wire::position_bytes_of(island.width_px, island.height_px);
+codec::QuantisedSnapshot scene_of(const runtime::IslandSnapshot& island) {
+    const std::uint32_t position_bytes = codec::position_bytes_of(island.width_px, island.height_px);
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
     return {.position_bytes = position_bytes,
             .organisms = organisms_of(island.organisms, position_bytes),

@@ -4,11 +4,11 @@
 // it keeps nobody from simulating.
 #pragma once
 
-#include "proto/wire/scene.h"
+#include "proto/codec/quantised_snapshot.h"
 #include "server/runtime/snapshot.h"
 
 namespace evod::network {
 
-wire::Scene scene_of(const runtime::IslandSnapshot& island);
+codec::QuantisedSnapshot scene_of(const runtime::IslandSnapshot& island);
 
 } // namespace evod::network

@@ -25,7 +25,7 @@ namespace evod::network {
 
 struct ServerOptions {
     std::string bind_address = "127.0.0.1";
-    std::uint16_t port = wire::default_port; // 0: any that is free
+    std::uint16_t port = codec::default_port; // 0: any that is free
     std::size_t threads = 1;                 // of the worker pool
     std::string data_folder;                 // where runs are kept; empty: nowhere
     std::string token_folder;                // where the token file is, or will be; empty: nowhere

@@ -74,7 +74,7 @@ void log_refusal(std::uint64_t session, const std::string& by, const v1::Respons
 }
 
 SharedBytes encode_control(const v1::ServerMessage& message) {
-    return std::make_shared<const std::string>(wire::encode_frame(wire::Channel::Control, message));
+    return std::make_shared<const std::string>(codec::encode_frame(codec::Channel::Control, message));
 }
 
 SharedBytes encode_response(v1::Response response) {
@@ -212,7 +212,7 @@ asio::awaitable<void> Session::read() {
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
-                if (frame.error().beyond == wire::Beyond::FrameBytes)
+                if (frame.error().beyond == codec::Beyond::FrameBytes)
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
                 co_await fail_when_answered(
                     refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
@@ -297,9 +297,9 @@ asio::awaitable<void> Session::discard_input() {
     close();
 }
 
-void Session::on_frame(const wire::Frame& frame) {
-    auto message = wire::parse_body<v1::ClientMessage>(frame.body);
-    if (!message && message.error().beyond == wire::Beyond::MessageDepth)
+void Session::on_frame(const codec::Frame& frame) {
+    auto message = codec::parse_body<v1::ClientMessage>(frame.body);
+    if (!message && message.error().beyond == codec::Beyond::MessageDepth)
         host_.limit_counters.met(Limit::MessageDepth);
     if (!greeted_) {
         if (!message)
@@ -318,8 +318,8 @@ void Session::on_frame(const wire::Frame& frame) {
         host_.traffic.requests.add();
         host_.handle(*this, std::move(*message->mutable_request()));
         break;
-    case v1::ClientMessage::kAcknowledgePicture:
-        on_acknowledgement(message->acknowledge_picture());
+    case v1::ClientMessage::kAcknowledgeSnapshot:
+        on_acknowledgement(message->acknowledge_snapshot());
         break;
     case v1::ClientMessage::kHello:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
@@ -351,10 +351,10 @@ void Session::on_hello(const v1::Hello& hello) {
         return fail(protocol::invalid(std::move(violations)));
     const std::uint32_t lowest = hello.protocol_version();
     const std::uint32_t highest = std::max(lowest, hello.protocol_version_max());
-    if (wire::protocol_version < lowest || wire::protocol_version > highest)
+    if (codec::protocol_version < lowest || codec::protocol_version > highest)
         return fail({.code = base::RefusalCode::FailedPrecondition,
                      .message = "this server speaks another version of the protocol: use a client of that version",
-                     .violations = {{"hello.protocol_version", std::to_string(wire::protocol_version),
+                     .violations = {{"hello.protocol_version", std::to_string(codec::protocol_version),
                                      highest == lowest ? std::to_string(lowest)
                                                        : std::to_string(lowest) + " to " + std::to_string(highest)}},
                      .reason = base::Reason::ProtocolVersion});
@@ -376,7 +376,7 @@ void Session::on_hello(const v1::Hello& hello) {
 
     v1::ServerMessage message;
     v1::Welcome& welcome = *message.mutable_welcome();
-    welcome.set_protocol_version(wire::protocol_version);
+    welcome.set_protocol_version(codec::protocol_version);
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
     for (const char* feature :
@@ -462,11 +462,11 @@ void Session::answer(SharedBytes frame) {
     if (takes(frame->size()))
         return enqueue(std::move(frame), Kind::Answer);
     v1::ServerMessage too_large;
-    too_large.ParseFromString(frame->substr(wire::header_bytes));
+    too_large.ParseFromString(frame->substr(codec::header_bytes));
     enqueue(encode_response(protocol::refusing(
                 too_large.response().request_id(),
                 refusal(base::RefusalCode::ResourceExhausted,
-                        "the answer is " + std::to_string(frame->size() - wire::header_bytes) +
+                        "the answer is " + std::to_string(frame->size() - codec::header_bytes) +
                             " bytes long, the client takes " + std::to_string(frame_bytes_max_) + ": ask for less",
                         base::Reason::AnswerTooLarge))),
             Kind::Answer);
@@ -553,7 +553,7 @@ void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, Sn
     wake_writer(); // and no more: the answer to what asked for this goes first
 }
 
-void Session::on_acknowledgement(const v1::AcknowledgePicture& acknowledged) {
+void Session::on_acknowledgement(const v1::AcknowledgeSnapshot& acknowledged) {
     const auto subscription = snapshots.find(acknowledged.subscription_id());
     if (subscription == snapshots.end())
         return; // unsubscribed while it was on its way
@@ -634,8 +634,8 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
         outgoing_.parts.push_back(&picture.chained->after(island.last_sent, subscription.compression));
     } else {
         const v1::View& view = *subscription.view;
-        const wire::TileLayout& layout = picture.tiled->layout();
-        const wire::TileRange seen = view.has_region() ? wire::tiles_of(view.region(), layout) : wire::tiles_of(layout);
+        const codec::TileLayout& layout = picture.tiled->layout();
+        const codec::TileRange seen = view.has_region() ? codec::tiles_of(view.region(), layout) : codec::tiles_of(layout);
         const auto add_parts = [&](v1::Detail detail) {
             outgoing_.parts.clear();
             island.tiles_sent.add_parts(*picture.tiled, seen, detail, subscription.compression, outgoing_.parts);
@@ -647,7 +647,7 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
                 return false;
             const auto cost = [&](v1::Detail tried) {
                 add_parts(tried);
-                return wire::header_bytes + outgoing_.body_bytes();
+                return codec::header_bytes + outgoing_.body_bytes();
             };
             const Budget::Choice choice = island.shown ? subscription.budget->look_closer(now, *island.shown, cost)
                                                        : subscription.budget->choose(now, cost);
@@ -707,7 +707,7 @@ void Session::send_outgoing() {
     const auto tail_begin = reinterpret_cast<const char*>(outgoing_.tail_room.data());
     const std::size_t body_bytes = outgoing_.body_bytes();
     outgoing_.header =
-        wire::encode_header({.channel = wire::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
+        codec::encode_header({.channel = codec::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
     const bool together = parts.size() > gathered_parts_max || body_bytes < gathered_bytes_min;
     std::array<asio::const_buffer, Line::buffers_at_once> buffers;
     std::size_t buffer_count = 0;

@@ -10,7 +10,7 @@
 #pragma once
 
 #include "evod/v1/session.pb.h"
-#include "proto/wire/framing.h"
+#include "proto/codec/framing.h"
 #include "server/access/gate.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
@@ -189,16 +189,16 @@ class Session : public std::enable_shared_from_this<Session> {
     asio::awaitable<void> fail_when_answered(base::Refusal refused);
     asio::awaitable<void> discard_input();
     asio::awaitable<void> wait_for_work(runtime::Clock::time_point until = runtime::Clock::time_point::max());
-    void on_frame(const wire::Frame& frame);
+    void on_frame(const codec::Frame& frame);
     /// Of a frame from the client, after its hello.
     std::uint32_t control_frame_bytes_max() const;
     void on_hello(const v1::Hello& hello);
-    void on_acknowledgement(const v1::AcknowledgePicture& acknowledged);
+    void on_acknowledgement(const v1::AcknowledgeSnapshot& acknowledged);
     /// A picture whose turn it is.
     struct Outgoing {
         SnapshotSubscription::Waiting picture; // has the parts
         std::vector<const SharedBytes*> parts; // fields 1 to 49
-        std::array<std::byte, wire::header_bytes> header;
+        std::array<std::byte, codec::header_bytes> header;
         std::array<std::uint8_t, 24> tail_room; // begins with fields 50 and up
         std::size_t tail_bytes = 0;
         std::size_t body_bytes() const;
@@ -219,7 +219,7 @@ class Session : public std::enable_shared_from_this<Session> {
     bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
     void enqueue(SharedBytes frame, Kind kind);
     /// Whether the client takes a frame of that size, header included.
-    bool takes(std::size_t frame_bytes) const { return frame_bytes - wire::header_bytes <= frame_bytes_max_; }
+    bool takes(std::size_t frame_bytes) const { return frame_bytes - codec::header_bytes <= frame_bytes_max_; }
     void written(const Queued& queued);
     void wake_writer();
     void log_coming_or_going(const std::string& what) const;
@@ -235,7 +235,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::string client_;
     access::Visitor visitor_;
     std::size_t frame_bytes_max_ = std::numeric_limits<std::size_t>::max(); // of a body that the client takes
-    wire::FrameReader reader_{wire::hello_limits};
+    codec::FrameReader reader_{codec::hello_limits};
     Buffers::Own reader_bytes_, expected_bytes_, held_back_bytes_;
     struct HeldBack {
         v1::Request request;
@@ -254,7 +254,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::deque<Queued> queue_;
     std::vector<Queued> sending_; // not empty: the line is being written to, or is to be
     struct Rest {
-        std::array<std::byte, wire::header_bytes> header;
+        std::array<std::byte, codec::header_bytes> header;
         std::string tail;
         std::vector<asio::const_buffer> buffers;       // of these, and of what is in sending_
     } rest_;                                           // of a picture that the line did not take at once

@@ -1,6 +1,6 @@
 #include "server/network/streams.h"
 
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 #include "server/network/scene.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/events.h"
@@ -191,7 +191,7 @@ class Pace {
 class EncodedIsland {
   public:
     EncodedIsland(const runtime::Snapshot& snapshot, const runtime::IslandSnapshot& island, std::uint64_t& sequence,
-                  wire::Compressor& compressor)
+                  codec::Compressor& compressor)
         : snapshot_{snapshot}, island_{island}, sequence_{sequence}, compressor_{compressor} {}
 
     std::uint32_t number() const { return island_.island; }
@@ -199,7 +199,7 @@ class EncodedIsland {
         if (!about_) {
             v1::SnapshotFrame about = about_of(snapshot_, island_);
             about.set_sequence(++sequence_);
-            wire::describe(*scene(), about);
+            codec::describe(*scene(), about);
             about_ = std::make_shared<const v1::SnapshotFrame>(std::move(about));
         }
         return about_;
@@ -207,14 +207,14 @@ class EncodedIsland {
     const SharedBytes& columns() {
         if (!columns_) {
             v1::SnapshotFrame frame = *about();
-            wire::encode(*scene(), frame);
+            codec::encode(*scene(), frame);
             columns_ = std::make_shared<const std::string>(frame.SerializeAsString());
         }
         return columns_;
     }
-    const std::shared_ptr<const wire::Scene>& scene() {
+    const std::shared_ptr<const codec::QuantisedSnapshot>& scene() {
         if (!scene_)
-            scene_ = std::make_shared<const wire::Scene>(scene_of(island_));
+            scene_ = std::make_shared<const codec::QuantisedSnapshot>(scene_of(island_));
         return scene_;
     }
     const std::shared_ptr<IslandTiles>& tiles() {
@@ -227,10 +227,10 @@ class EncodedIsland {
     const runtime::Snapshot& snapshot_;
     const runtime::IslandSnapshot& island_;
     std::uint64_t& sequence_;
-    wire::Compressor& compressor_;
+    codec::Compressor& compressor_;
     std::shared_ptr<const v1::SnapshotFrame> about_;
     SharedBytes columns_;
-    std::shared_ptr<const wire::Scene> scene_;
+    std::shared_ptr<const codec::QuantisedSnapshot> scene_;
     std::shared_ptr<IslandTiles> tiles_;
 };
 

@@ -113,7 +113,7 @@ class Streams {
     runtime::Demand& demand_;
     runtime::Mailbox& mailbox_;
     std::uint64_t newcomers_ = 0, sequence_ = 0;
-    wire::Compressor compressor_;
+    codec::Compressor compressor_;
     std::map<GroupName, Group> groups_;
     std::deque<InProgress> in_progress_; // at most one of a world
 };

@@ -5,9 +5,9 @@
 
 namespace evod::network {
 
-IslandTiles::IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene,
-                         wire::Compressor& compressor)
-    : scene_{std::move(scene), wire::tile_layout(about.width_px(), about.height_px())}
+IslandTiles::IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                         codec::Compressor& compressor)
+    : scene_{std::move(scene), codec::tile_layout(about.width_px(), about.height_px())}
     , about_{std::move(about)}
     , compressor_{&compressor} {
     about_.set_codec(v1::CODEC_DELTA);
@@ -20,19 +20,19 @@ const SharedBytes& IslandTiles::about_bytes() {
     return about_bytes_;
 }
 
-SharedBytes IslandTiles::encode(v1::TilePicture tile, std::string_view body, const wire::Seams& seams,
+SharedBytes IslandTiles::encode(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
                                 v1::Compression compression) {
-    wire::set_counts(scene_.counts(tile.tile()), tile);
+    codec::set_counts(scene_.counts(tile.tile()), tile);
     tile.set_sequence(about_.sequence());
-    tile.set_checksum(wire::checksum_of(about_, tile, body));
+    tile.set_checksum(codec::checksum_of(about_, tile, body));
     std::string compressed;
     const std::string_view sent = sent_body(tile, body, seams, compression, *compressor_, compressed);
-    const std::size_t bytes = tile.ByteSizeLong() + field_bytes(v1::TilePicture::kBodyFieldNumber, sent.size());
+    const std::size_t bytes = tile.ByteSizeLong() + field_bytes(v1::SnapshotTile::kBodyFieldNumber, sent.size());
     std::string field;
     field.reserve(field_bytes(v1::SnapshotFrame::kTilesFieldNumber, bytes));
     append_field_head(v1::SnapshotFrame::kTilesFieldNumber, bytes, field);
     tile.AppendToString(&field);
-    append_field_head(v1::TilePicture::kBodyFieldNumber, sent.size(), field);
+    append_field_head(v1::SnapshotTile::kBodyFieldNumber, sent.size(), field);
     field += sent;
     return std::make_shared<const std::string>(std::move(field));
 }
@@ -43,7 +43,7 @@ const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1
     const bool dots = detail == v1::DETAIL_DOTS;
     SharedBytes& bytes = coarse_[tile][(dots ? 0 : 2) + (compression == v1::COMPRESSION_ZSTD ? 1 : 0)];
     if (!bytes) {
-        v1::TilePicture picture;
+        v1::SnapshotTile picture;
         picture.set_tile(tile);
         picture.set_detail(detail);
         bytes = encode(std::move(picture), dots ? scene_.dots(tile) : scene_.density(tile), {}, compression);
@@ -54,7 +54,7 @@ const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1
 TiledPicture::TiledPicture(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledPicture>& before,
                            runtime::Clock::time_point now, runtime::Clock::duration between)
     : island_{std::move(island)}, now_{now}, between_{between}, tiles_(layout().count()) {
-    const wire::Counts counts = island_->scene().counts_before(layout().count());
+    const codec::Counts counts = island_->scene().counts_before(layout().count());
     organisms_.x.resize(counts[0]);
     organisms_.y.resize(counts[0]);
     crates_.x.resize(counts[3]);
@@ -79,19 +79,19 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
     SharedBytes& bytes = of.forms[static_cast<std::size_t>(form)][compression == v1::COMPRESSION_ZSTD ? 1 : 0];
     if (bytes)
         return bytes;
-    v1::TilePicture picture;
+    v1::SnapshotTile picture;
     picture.set_tile(tile);
     picture.set_detail(detail);
     if (form == Form::Keyframe) {
-        wire::Seams seams;
-        const std::string body = wire::encode_keyframe(footing(tile), &seams);
+        codec::Seams seams;
+        const std::string body = codec::encode_keyframe(baseline(tile), &seams);
         return bytes = island_->encode(std::move(picture), body, seams, compression);
     }
     picture.set_base_sequence(sent);
     if (form == Form::Delta)
         return bytes = island_->encode(std::move(picture), of.delta, of.delta_seams, compression);
-    const wire::FootingView here = footing(tile);
-    return bytes = island_->encode(std::move(picture), wire::encode_delta(here, here.scene, 0), {}, compression);
+    const codec::BaselineView here = baseline(tile);
+    return bytes = island_->encode(std::move(picture), codec::encode_delta(here, here.scene, 0), {}, compression);
 }
 
 TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
@@ -101,18 +101,18 @@ TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
     of.keyframe_made = now_;
     if (before_ && before_->tiles_[tile]) {
         const Tile& before = *before_->tiles_[tile];
-        const wire::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
+        const codec::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
         const auto part = [&](Displacements& all, std::size_t k) {
-            return wire::MovedOn::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
+            return codec::AdvancedColumns::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
                                                 std::span{all.y}.subspan(begin[k], count[k])};
         };
-        const wire::SceneView scene = island_->scene().full(tile);
-        const wire::MovedOn to{.organisms = part(organisms_, 0), .crates = part(crates_, 3)};
+        const codec::QuantisedView scene = island_->scene().full(tile);
+        const codec::AdvancedColumns to{.organisms = part(organisms_, 0), .crates = part(crates_, 3)};
         // Otherwise the next picture would come too late to be the keyframe. In that nothing has moved yet, as in a
         // chain's.
         if (now_ + between_ <= before.keyframe_made + keyframe_interval) {
             of.ticks = ticks_ > 0 ? ticks_ : before.ticks;
-            of.delta = wire::encode_delta(before_->footing(tile), scene, ticks_, &to, &of.delta_seams);
+            of.delta = codec::encode_delta(before_->baseline(tile), scene, ticks_, &to, &of.delta_seams);
             of.base_sequence = before_->sequence();
             of.keyframe_made = before.keyframe_made;
         }
@@ -120,21 +120,21 @@ TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
     return of;
 }
 
-wire::FootingView TiledPicture::footing(std::uint32_t tile) const {
-    const wire::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
+codec::BaselineView TiledPicture::baseline(std::uint32_t tile) const {
+    const codec::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
     const auto part = [&](const Displacements& all, std::size_t k) {
-        return wire::FootingView::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
+        return codec::BaselineView::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
                                                 std::span{all.y}.subspan(begin[k], count[k])};
     };
-    wire::FootingView footing;
-    footing.scene = island_->scene().full(tile);
-    footing.organisms = part(organisms_, 0);
-    footing.crates = part(crates_, 3);
-    footing.ticks = tiles_[tile]->ticks;
-    return footing;
+    codec::BaselineView baseline;
+    baseline.scene = island_->scene().full(tile);
+    baseline.organisms = part(organisms_, 0);
+    baseline.crates = part(crates_, 3);
+    baseline.ticks = tiles_[tile]->ticks;
+    return baseline;
 }
 
-void TilesSent::add_parts(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail,
+void TilesSent::add_parts(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail,
                           v1::Compression compression, std::vector<const SharedBytes*>& parts) const {
     parts.push_back(&picture.about());
     const std::uint32_t columns = picture.layout().columns;
@@ -147,9 +147,9 @@ void TilesSent::add_parts(TiledPicture& picture, const wire::TileRange& seen, v1
     }
 }
 
-void TilesSent::sent(const TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail) {
+void TilesSent::sent(const TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail) {
     sequence_ = picture.sequence();
-    full_ = detail == v1::DETAIL_FULL ? seen : wire::TileRange{};
+    full_ = detail == v1::DETAIL_FULL ? seen : codec::TileRange{};
 }
 
 } // namespace evod::network

@@ -7,8 +7,8 @@
 // Threads      the network thread.
 #pragma once
 
-#include "proto/wire/compression.h"
-#include "proto/wire/tiles.h"
+#include "proto/codec/compression.h"
+#include "proto/codec/tiles.h"
 #include "server/network/chains.h"
 #include "server/network/retries.h"
 #include "server/runtime/clock.h"
@@ -27,23 +27,23 @@ class IslandTiles {
   public:
     /// about       all of the frame but its tiles.
     /// compressor  there as long as tiles are asked for.
-    IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const wire::Scene> scene, wire::Compressor& compressor);
+    IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor);
 
     const v1::SnapshotFrame& about() const { return about_; }
-    wire::TiledScene& scene() { return scene_; }
+    codec::SnapshotTiles& scene() { return scene_; }
 
     /// Fields 1 to 49 but for the tiles.
     const SharedBytes& about_bytes();
-    /// One of the frame's `tiles`: all of TilePicture but what is not the same at every detail and rate is set here.
-    SharedBytes encode(v1::TilePicture tile, std::string_view body, const wire::Seams& seams,
+    /// One of the frame's `tiles`: all of SnapshotTile but what is not the same at every detail and rate is set here.
+    SharedBytes encode(v1::SnapshotTile tile, std::string_view body, const codec::Seams& seams,
                        v1::Compression compression);
     /// A tile at DETAIL_DOTS or DETAIL_DENSITY.
     const SharedBytes& coarse(std::uint32_t tile, v1::Detail detail, v1::Compression compression);
 
   private:
-    wire::TiledScene scene_;
+    codec::SnapshotTiles scene_;
     v1::SnapshotFrame about_;
-    wire::Compressor* compressor_;
+    codec::Compressor* compressor_;
     SharedBytes about_bytes_;
     std::vector<std::array<SharedBytes, 4>> coarse_; // by tile: dots and densities, as they are and compressed
 };
@@ -59,7 +59,7 @@ class TiledPicture {
                  runtime::Clock::time_point now, runtime::Clock::duration between);
 
     std::uint64_t sequence() const { return island_->about().sequence(); }
-    const wire::TileLayout& layout() const { return island_->scene().layout(); }
+    const codec::TileLayout& layout() const { return island_->scene().layout(); }
     const SharedBytes& about() { return island_->about_bytes(); }
 
     /// A tile for a viewer. sent: the picture in which it was sent this tile at DETAIL_FULL last; 0: in none.
@@ -73,11 +73,11 @@ class TiledPicture {
         std::uint64_t base_sequence = 0;          // 0: it is a keyframe for all
         runtime::Clock::time_point keyframe_made; // the last that was one for all
         std::string delta;                        // its body, if base_sequence is not 0
-        wire::Seams delta_seams;
+        codec::Seams delta_seams;
         std::array<std::array<SharedBytes, 2>, 3> forms; // each as it is, and compressed
     };
     Tile& full(std::uint32_t tile);
-    wire::FootingView footing(std::uint32_t tile) const;
+    codec::BaselineView baseline(std::uint32_t tile) const;
 
     std::shared_ptr<IslandTiles> island_;
     std::shared_ptr<TiledPicture> before_; // nothing is told from it if it is null
@@ -97,18 +97,18 @@ using TiledPicturePtr = std::shared_ptr<TiledPicture>;
 class TilesSent {
   public:
     /// Adds the parts of a frame to `parts`: together its fields 1 to 49. They are there as long as the picture is.
-    void add_parts(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail, v1::Compression compression,
+    void add_parts(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail, v1::Compression compression,
                    std::vector<const SharedBytes*>& parts) const;
 
     /// That frame has been sent.
-    void sent(const TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail);
+    void sent(const TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail);
 
     /// Keyframes are next.
     void forget() { *this = {}; }
 
   private:
     std::uint64_t sequence_ = 0;
-    wire::TileRange full_; // the tiles that were at DETAIL_FULL
+    codec::TileRange full_; // the tiles that were at DETAIL_FULL
 };
 
 } // namespace evod::network

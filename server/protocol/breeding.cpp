@@ -72,9 +72,9 @@ v1::Descendant to_proto(const evolution::BreedingRecord::Descendant& descendant,
     to.set_from_second(descendant.from_second);
     to.set_crossed(descendant.crossed);
     if (descendant.order) {
-        to.mutable_rearrangement()->set_method(
+        to.mutable_order_mutation()->set_method(
             std::string{base::ChoiceNames<evolution::Rearranging>::names[static_cast<std::size_t>(rearranging)]});
-        to.mutable_rearrangement()->mutable_order()->Add(descendant.order->begin(), descendant.order->end());
+        to.mutable_order_mutation()->mutable_order()->Add(descendant.order->begin(), descendant.order->end());
     }
     for (const evolution::GeneChange& change : descendant.changes) {
         v1::Mutation& mutation = *to.add_mutations();

@@ -203,9 +203,9 @@ void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
         violations.push_back({"subscribe_snapshots.codec", "CODEC_DELTA (2) with COMPRESSION_ZSTD (2)",
                               std::to_string(request.codec())});
     const std::uint32_t unacknowledged = request.unacknowledged_max();
-    if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_pictures_max))
+    if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_snapshots_max))
         violations.push_back({"subscribe_snapshots.unacknowledged_max",
-                              "1 to " + std::to_string(unacknowledged_pictures_max), std::to_string(unacknowledged)});
+                              "1 to " + std::to_string(unacknowledged_snapshots_max), std::to_string(unacknowledged)});
     if (request.has_view())
         add_faults(request.view(), "subscribe_snapshots.view", violations);
     if (request.has_view() && request.codec() != v1::CODEC_DELTA)
@@ -269,9 +269,9 @@ RequestKind kind_of(const v1::Request& request) {
     case RequestCase::kRequestKeyframe:
     case RequestCase::kSetView:
         return RequestKind::Subscription;
-    case RequestCase::kOpenPast:
+    case RequestCase::kOpenReplay:
     case RequestCase::kSeek:
-    case RequestCase::kClosePast:
+    case RequestCase::kCloseReplay:
         return RequestKind::Past;
     case RequestCase::kExportRun:
     case RequestCase::kContinueExport:
@@ -362,8 +362,8 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
         add_faults(request.set_view(), violations);
     } else if (request.has_seek() && !request.seek().has_to()) {
         violations.push_back({"seek.to", "a moment of the run", "nothing"});
-    } else if (request.has_close_past() && request.close_past().world().empty()) {
-        violations.push_back({"close_past.world", "a world that was opened with open_past", "nothing"});
+    } else if (request.has_close_replay() && request.close_replay().world().empty()) {
+        violations.push_back({"close_replay.world", "a world that was opened with open_replay", "nothing"});
     } else if (request.has_export_run()) {
         add_faults(request.export_run(), violations);
     }

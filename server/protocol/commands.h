@@ -14,7 +14,7 @@
 namespace evod::protocol {
 
 constexpr std::size_t client_key_bytes_max = 64;
-constexpr std::uint32_t unacknowledged_pictures_max = 1000; // of an island, that a subscription may ask for
+constexpr std::uint32_t unacknowledged_snapshots_max = 1000; // of an island, that a subscription may ask for
 constexpr std::uint64_t view_bytes_per_s_least = 1000, view_bytes_per_s_most = 1'000'000'000'000;
 
 /// What a request may need that is drawn by chance; drawn by the caller.

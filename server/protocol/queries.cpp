@@ -1,6 +1,6 @@
 #include "server/protocol/queries.h"
 
-#include "proto/wire/little_endian.h"
+#include "proto/codec/little_endian.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/parameters.h"
 #include "server/protocol/worlds.h"
@@ -43,7 +43,7 @@ void append_column(std::string& bytes, const Rows& rows, Of&& of) {
     std::size_t at = bytes.size();
     bytes.resize(at + rows.size() * sizeof(std::uint32_t));
     for (const auto& row : rows) {
-        wire::store(std::bit_cast<std::uint32_t>(of(row)), &bytes[at]);
+        codec::store(std::bit_cast<std::uint32_t>(of(row)), &bytes[at]);
         at += sizeof(std::uint32_t);
     }
 }

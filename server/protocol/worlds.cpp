@@ -89,13 +89,13 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     to.set_ticks_per_s(entry.ticks_per_s);
     for (const std::string_view name : evolution::gene_names)
         to.add_gene_names(std::string{name});
-    if (entry.recording) {
-        v1::Recording& recording = *to.mutable_recording();
-        recording.set_past_of(entry.recording->past_of);
-        recording.set_first_generation(entry.recording->first_generation);
-        recording.set_last_generation(entry.recording->last_generation);
-        recording.set_first_tick(entry.recording->first_tick);
-        recording.set_last_tick(entry.recording->last_tick);
+    if (entry.replay) {
+        v1::Replay& replay = *to.mutable_replay();
+        replay.set_replay_of(entry.replay->replay_of);
+        replay.set_first_generation(entry.replay->first_generation);
+        replay.set_last_generation(entry.replay->last_generation);
+        replay.set_first_tick(entry.replay->first_tick);
+        replay.set_last_tick(entry.replay->last_tick);
     }
     if (entry.storage)
         *to.mutable_storage() = to_proto(*entry.storage);

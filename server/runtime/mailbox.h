@@ -53,7 +53,7 @@ struct CallMail {
 // Looking at the past (time_travel.h).
 
 /// A world that shows the past of `world`.
-struct OpenPast {
+struct OpenReplay {
     std::string world;
     storage::WantedMoment at; // nothing: the first moment of the run
     std::uint64_t owner = 0;  // who asks, >= 1
@@ -64,7 +64,7 @@ struct Seek {
     storage::WantedMoment to;
     std::uint64_t owner = 0; // who asks, >= 1
 };
-struct ClosePast {
+struct CloseReplay {
     std::string world;
 };
 /// Closes all that an owner has opened, and ends the seeks that it asked for.
@@ -74,7 +74,7 @@ struct OwnerGone {
 /// Called on the simulation thread with the name of the world that shows the past, once it is at that moment.
 using PastReply = std::function<void(const simulation::Laboratory&, const base::Result<std::string>& world)>;
 struct PastMail {
-    std::variant<OpenPast, Seek, ClosePast, OwnerGone> request;
+    std::variant<OpenReplay, Seek, CloseReplay, OwnerGone> request;
     PastReply reply; // none for OwnerGone
 };
 

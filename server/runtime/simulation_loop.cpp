@@ -75,7 +75,7 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     if (waiting_since_ && !laboratory_.storage()->worlds_wait())
         at_latest(*waiting_since_ + slow_disk_patience);
     const auto has_to_be_in_time = [](const simulation::Entry& entry) {
-        return entry.control.speed.has_value() && !entry.recording;
+        return entry.control.speed.has_value() && !entry.replay;
     };
     const auto wants_tick = [this](const simulation::Entry& entry) {
         return entry.wants_tick() && !waits_for_the_disk(entry);
@@ -242,7 +242,7 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
         return std::nullopt;
     const simulation::Entry* entry = entry_in(command);
     const bool only_a_look =
-        entry && entry->recording && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
+        entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
     if (only_a_look)
         return std::nullopt;
     if (auto refused = recorder_->refusal())
@@ -312,7 +312,7 @@ void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applie
                             const std::optional<RunBefore>& before) {
     const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
-    if (entry && (*entry)->recording)
+    if (entry && (*entry)->replay)
         return give(answer); // how somebody looks at the past is nobody else's
     storage::CommandRecord command{.tick = applied.tick,
                                    .control = ends ? simulation::RunControl{} : (*entry)->control,
@@ -438,7 +438,7 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
             laboratory_.advance(entry, executor_);
             if (track.recorder)
                 track.recorder->follow(entry.world);
-            if (entry.recording)
+            if (entry.replay)
                 past_.follow(entry);
             ++taken;
             stopped = !entry.wants_tick();

@@ -128,7 +128,7 @@ class SimulationLoop {
     void mind_demand();
     void mind_storage();
     /// Whether it must not advance now, whatever it wants.
-    bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.recording; }
+    bool waits_for_the_disk(const simulation::Entry& entry) const { return worlds_wait_ && !entry.replay; }
     void follow_worlds();
     Track& follow(simulation::Entry& entry);
     void advance_slice(simulation::Entry& entry, Track& track, Clock::time_point end);

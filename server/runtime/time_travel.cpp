@@ -64,7 +64,7 @@ Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::o
 }
 
 void TimeTravel::show(Replay replay) {
-    show(replay.name, std::move(replay.past), 0, {std::move(replay.rerun), std::move(replay.recording)});
+    show(replay.name, std::move(replay.past), 0, {std::move(replay.rerun), std::move(replay.replay)});
 }
 
 void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival) {
@@ -83,12 +83,12 @@ simulation::Entry* TimeTravel::entry_of(const std::string& world) {
 }
 
 void TimeTravel::apply(PastMail mail) {
-    if (const auto* open_past = std::get_if<OpenPast>(&mail.request))
-        return open(*open_past, mail.reply);
+    if (const auto* open_replay = std::get_if<OpenReplay>(&mail.request))
+        return open(*open_replay, mail.reply);
     if (const auto* seek_moment = std::get_if<Seek>(&mail.request))
         return seek(*seek_moment, mail.reply);
-    if (const auto* close_past = std::get_if<ClosePast>(&mail.request))
-        return mail.reply(laboratory_, close(*close_past));
+    if (const auto* close_replay = std::get_if<CloseReplay>(&mail.request))
+        return mail.reply(laboratory_, close(*close_replay));
     close_all_of(std::get<OwnerGone>(mail.request).owner);
 }
 
@@ -96,14 +96,14 @@ void TimeTravel::find_run(const FindRun& mail) {
     const auto entry = std::as_const(laboratory_).find(mail.world);
     if (!entry)
         return mail.found(entry.error());
-    const auto past = past_of((*entry)->name);
+    const auto past = replay_of((*entry)->name);
     if (!past)
         return mail.found(past.error());
     once_written((*entry)->name, [found = mail.found,
                                   run = FoundRun{*past, (*entry)->world.moment().generation}](bool) { found(run); });
 }
 
-Result<storage::Past> TimeTravel::past_of(const std::string& world) const {
+Result<storage::Past> TimeTravel::replay_of(const std::string& world) const {
     const auto entry = std::as_const(laboratory_).find(world);
     if (!entry)
         return entry.error();
@@ -132,7 +132,7 @@ void TimeTravel::once_written(const std::string& world, std::function<void(bool)
 
 storage::KnownUntil TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
     const auto living = std::as_const(laboratory_).find(world);
-    if (!living || (*living)->recording || (*living)->run_id != run_id) {
+    if (!living || (*living)->replay || (*living)->run_id != run_id) {
         return {};
     }
     const simulation::Moment& now = (*living)->world.moment();
@@ -188,7 +188,7 @@ void TimeTravel::give_up(std::uint64_t number, const Refusal& why) {
 }
 
 void TimeTravel::begin_journey(const std::string& world, std::uint64_t generation, Arrived arrived) {
-    const auto past = past_of(world);
+    const auto past = replay_of(world);
     if (!past)
         return arrived(past.error());
     const auto known = known_of(world, past->run_id());
@@ -239,12 +239,12 @@ void TimeTravel::arrive_in(simulation::Entry& entry, Look& look, Arrival arrival
     look.entries_read = look.changes.last_entry();
     look.refreshed = {};
     entry.world = std::move(arrival.rerun).take();
-    entry.recording = std::move(arrival.there);
+    entry.replay = std::move(arrival.there);
     (void)entry.world.take_events(); // of the way there
     arrivals_.push_back(entry.name);
 }
 
-void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
+void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
     const auto origin = std::as_const(laboratory_).find(request.world);
     if (!origin)
         return reply(laboratory_, origin.error());
@@ -255,17 +255,17 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
         of_owner += owner == request.owner ? count : 0;
         of_all += count;
     }
-    if (of_owner >= pasts_max || of_all >= pasts_of_all_max)
+    if (of_owner >= replays_max || of_all >= pasts_of_all_max)
         return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
-                                          of_owner >= pasts_max
-                                              ? "this session looks at " + std::to_string(pasts_max) +
+                                          of_owner >= replays_max
+                                              ? "this session looks at " + std::to_string(replays_max) +
                                                     " pasts already: close one first"
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
                                                     " pasts already: try again when one of them is closed",
                                           base::Reason::PastsMax));
-    const std::string name = (*origin)->is_look_back() ? (*origin)->recording->past_of : (*origin)->name;
+    const std::string name = (*origin)->is_look_back() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;
-    const auto past = past_of(world);
+    const auto past = replay_of(world);
     if (!past)
         return reply(laboratory_, past.error());
     ++opening_[request.owner];
@@ -282,7 +282,7 @@ void TimeTravel::open(const OpenPast& request, const PastReply& reply) {
         const auto arrived = [this, name, past, owner = request.owner, opened](Result<Arrival> arrival) {
             if (!arrival)
                 return opened(within(arrival.error(), "at"));
-            arrival->there.past_of = name;
+            arrival->there.replay_of = name;
             const std::string look_name = name + "@" + std::to_string(++last_look_);
             show(look_name, past, owner, *std::move(arrival));
             opened(look_name);
@@ -308,8 +308,8 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
                         "past, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
                     .violations = {},
                     .reason = base::Reason::WorldIsLive});
-    const std::string& past_of = (*entry)->recording->past_of;
-    const std::string origin = past_of.empty() ? name : past_of;
+    const std::string& replay_of = (*entry)->replay->replay_of;
+    const std::string origin = replay_of.empty() ? name : replay_of;
     const auto known_now = known_of(origin, looks_.find(name)->second.past.run_id());
     ++seeking_[request.owner];
     const auto sought = [this, owner = request.owner, reply](const Result<std::string>& world) {
@@ -327,19 +327,19 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
         }
         const storage::Past& past = look->second.past;
         // The world may have begun another run: what is looked at is still the one of the look.
-        const simulation::Recording& seen = *entry_of(name)->recording;
+        const simulation::Replay& seen = *entry_of(name)->replay;
         storage::KnownUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
         if (all_is_written) {
             known.generation = std::max(known.generation, known_now.generation);
             known.tick = std::max(known.tick, known_now.tick);
         }
-        const auto arrived = [this, name, past_of = seen.past_of, sought](Result<Arrival> arrival) {
+        const auto arrived = [this, name, replay_of = seen.replay_of, sought](Result<Arrival> arrival) {
             if (!arrival)
                 return sought(within(arrival.error(), "to"));
             const auto seen_from = looks_.find(name);
             if (seen_from == looks_.end())
                 return sought(closed_since());
-            arrival->there.past_of = past_of;
+            arrival->there.replay_of = replay_of;
             arrive_in(*entry_of(name), seen_from->second, *std::move(arrival));
             sought(name);
         };
@@ -354,12 +354,12 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
     });
 }
 
-Result<std::string> TimeTravel::close(const ClosePast& request) {
+Result<std::string> TimeTravel::close(const CloseReplay& request) {
     const auto look = looks_.find(request.world);
     if (look == looks_.end() || look->second.owner == 0)
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "there is no such look at the past",
-                       .violations = {{"world", "one that was opened with OpenPast", request.world}},
+                       .violations = {{"world", "one that was opened with OpenReplay", request.world}},
                        .reason = base::Reason::WorldNotFound};
     give_up(look->second.journey, closed_since());
     laboratory_.dismiss(request.world);
@@ -405,7 +405,7 @@ std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
     std::optional<Clock::time_point> next;
     for (auto& [name, look] : looks_) {
         simulation::Entry& entry = *entry_of(name);
-        const bool at_its_end = entry.world.moment().tick >= entry.recording->last_tick;
+        const bool at_its_end = entry.world.moment().tick >= entry.replay->last_tick;
         if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || look.being_read)
             continue;
         if (now >= look.refreshed + refresh_time) {
@@ -434,16 +434,16 @@ void TimeTravel::ask_for_news(const std::string& name, Look& look) {
 
 void TimeTravel::go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news) {
     // Asked for before the look was taken to another moment, the news may begin after what is known there.
-    if (news.there.last_tick <= entry.recording->last_tick || news.after_entry > look.entries_read)
+    if (news.there.last_tick <= entry.replay->last_tick || news.after_entry > look.entries_read)
         return;
     // Commands may have come since the last time.
     if (!look.changes.extend(news.path, news.changes))
         return;
     look.entries_read = std::max(look.entries_read, news.last_entry);
     look.changes.make_due(entry.world);
-    const std::string past_of = entry.recording->past_of;
-    entry.recording = news.there;
-    entry.recording->past_of = past_of;
+    const std::string replay_of = entry.replay->replay_of;
+    entry.replay = news.there;
+    entry.replay->replay_of = replay_of;
 }
 
 } // namespace evod::runtime

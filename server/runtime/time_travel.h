@@ -23,7 +23,7 @@ namespace evod::runtime {
 
 class TimeTravel {
   public:
-    static constexpr std::size_t pasts_max = 4;         // of one client
+    static constexpr std::size_t replays_max = 4;         // of one client
     static constexpr std::size_t pasts_of_all_max = 64; // of all clients
     static constexpr std::size_t journeys_max = 64;     // under way at a time
     static constexpr std::chrono::milliseconds refresh_time{250};
@@ -38,7 +38,7 @@ class TimeTravel {
         std::string name;
         storage::Past past;
         storage::Rerun rerun;
-        simulation::Recording recording;
+        simulation::Replay replay;
     };
     /// At its first moment, or that of a generation.
     static base::Result<Replay> replay_of(const std::string& path, std::optional<std::uint64_t> generation,
@@ -57,7 +57,7 @@ class TimeTravel {
     /// A journey's end, or why it came to none.
     struct Arrival {
         storage::Rerun rerun;
-        simulation::Recording there;
+        simulation::Replay there;
     };
     using Arrived = std::function<void(base::Result<Arrival>)>;
     /// To the first moment of a generation of a world's run. `arrived` is called in a later slice.
@@ -86,7 +86,7 @@ class TimeTravel {
         std::uint64_t number = 0, owner = 0; // owner 0: the server itself
         storage::Rerun rerun;
         storage::PastMoment to;
-        simulation::Recording there;
+        simulation::Replay there;
         Arrived arrived;
     };
     /// Called with the journey's number before it begins. Returns whether its arrival is still wanted.
@@ -98,12 +98,12 @@ class TimeTravel {
         Arrived arrived;
     };
 
-    void open(const OpenPast& request, const PastReply& reply);
+    void open(const OpenReplay& request, const PastReply& reply);
     void seek(const Seek& request, const PastReply& reply);
-    base::Result<std::string> close(const ClosePast& request);
+    base::Result<std::string> close(const CloseReplay& request);
     void close_all_of(std::uint64_t owner);
     /// Where the past of a world is told; refused where it is not.
-    base::Result<storage::Past> past_of(const std::string& world) const;
+    base::Result<storage::Past> replay_of(const std::string& world) const;
     /// Calls `then` on this thread when all that a world has done is on the disk; with false if nobody knows, because
     /// the disk makes trouble, or nothing of it is written.
     void once_written(const std::string& world, std::function<void(bool all_is_written)> then);

@@ -48,7 +48,7 @@ template <class C>
 std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
                                           std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
-    if (!changes_what_happens || !entry.recording)
+    if (!changes_what_happens || !entry.replay)
         return std::nullopt;
     return refusal(RefusalCode::FailedPrecondition,
                    "this world shows what has been, and that cannot be changed: fork it", base::Reason::WorldIsReplay);
@@ -119,7 +119,7 @@ bool mind_goals(RunControl& control, const World& world) {
 }
 
 bool Entry::wants_tick() const {
-    if (world.outcome() != evolution::Outcome::Running || (recording && world.moment().tick >= recording->last_tick))
+    if (world.outcome() != evolution::Outcome::Running || (replay && world.moment().tick >= replay->last_tick))
         return false;
     if (control.until_tick)
         return world.moment().tick < *control.until_tick;
@@ -284,7 +284,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command)
         if (auto refused = refusal_if_terminated(entry.world))
             return *refused;
     // One that shows the past belongs to who opened it.
-    entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.recording;
+    entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
     if (entry.control.leased)
         ++entry.control.lease;
     entry.control.paused = true;
@@ -398,7 +398,7 @@ Applied Laboratory::add(std::unique_ptr<Entry> entry) {
 void Laboratory::set_storage(const Storage& storage) {
     storage_ = storage;
     for (const auto& entry : entries_)
-        if (!entry->recording)
+        if (!entry->replay)
             entry->storage = storage;
 }
 

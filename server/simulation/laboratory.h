@@ -38,8 +38,8 @@ struct RunControl {
 bool mind_goals(RunControl& control, const World& world);
 
 /// What there is to be seen in a world that shows what a run file tells.
-struct Recording {
-    std::string past_of; // the world that is looked back at; empty: the run of the file has no other world here
+struct Replay {
+    std::string replay_of; // the world that is looked back at; empty: the run of the file has no other world here
     std::uint64_t first_generation = 1, last_generation = 1;
     std::uint64_t first_tick = 0, last_tick = 0;
 };
@@ -68,11 +68,11 @@ struct Entry {
     // Measured by whoever drives the laboratory; no part of the state.
     double ticks_per_s = 0;
     bool slowed = false;                               // its speed is more than the machine can do
-    std::optional<Recording> recording = std::nullopt; // nothing: the world lives. What happens in others is past
+    std::optional<Replay> replay = std::nullopt; // nothing: the world lives. What happens in others is past
     std::optional<Storage> storage = std::nullopt;     // nothing: what it does is not written down
 
     /// Whether it shows the past of another: such worlds are there for those who ask for them by name.
-    bool is_look_back() const { return recording && !recording->past_of.empty(); }
+    bool is_look_back() const { return replay && !replay->replay_of.empty(); }
 
     RunState state() const;
     /// Whether a tick is due as far as goals and pause are concerned.

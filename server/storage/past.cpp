@@ -11,8 +11,8 @@ using base::Result;
 
 namespace {
 
-simulation::Recording recording_of(RunFile& file) {
-    return {.past_of = {},
+simulation::Replay replay_of_file(RunFile& file) {
+    return {.replay_of = {},
             .first_generation = file.identity().first_generation,
             .last_generation = std::max(file.identity().first_generation, file.last_generation()),
             .first_tick = file.identity().first_tick,
@@ -31,7 +31,7 @@ Refusal no_such(const char* field, const std::string& there_are, std::uint64_t g
             .reason = base::Reason::MomentNotFound};
 }
 
-Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulation::Recording& there) {
+Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulation::Replay& there) {
     const auto generations = range_text(there.first_generation, there.last_generation);
     if (!wanted.generation) {
         const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
@@ -105,7 +105,7 @@ Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownU
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held.error();
-    simulation::Recording there = recording_of(**file);
+    simulation::Replay there = replay_of_file(**file);
     there.last_generation = std::max(there.last_generation, known.generation);
     there.last_tick = std::max(there.last_tick, known.tick);
     const auto to =
@@ -124,7 +124,7 @@ Result<PastNews> Past::news(std::uint64_t after_entry) const {
         return file.error();
     if (auto held = (*file)->hold_still(); !held)
         return held.error();
-    PastNews news{.there = recording_of(**file),
+    PastNews news{.there = replay_of_file(**file),
                   .path = (*file)->path(),
                   .after_entry = after_entry,
                   .last_entry = std::max(after_entry, (*file)->last_journal_entry()),

@@ -30,7 +30,7 @@ struct PastMoment {
 
 /// The way to a moment.
 struct Departure {
-    simulation::Recording there; // what there is to be seen; past_of is left empty
+    simulation::Replay there; // what there is to be seen; replay_of is left empty
     PastMoment to;
     Rerun from; // the last moment up to that one that is known without simulating
 };
@@ -43,7 +43,7 @@ struct KnownUntil {
 
 /// What a run that goes on has come to.
 struct PastNews {
-    simulation::Recording there;                   // past_of is left empty
+    simulation::Replay there;                   // replay_of is left empty
     std::string path;                              // of its file
     std::uint64_t after_entry = 0, last_entry = 0; // of the journal, between which the changes were looked for
     std::vector<ParameterChange> changes;

@@ -142,7 +142,7 @@ class Attacker:
         while True:
             before = self.answered
             for _ in range(4):
-                self.ask(open_past=c.OpenPast(world="w"))
+                self.ask(open_replay=c.OpenReplay(world="w"))
             while self.answered < before + 4:
                 self.read()
             self.socket.close()

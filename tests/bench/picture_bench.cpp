@@ -5,7 +5,7 @@
 // Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
 // bytes. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
 // --movers`; pictures are 3 ticks apart, or 300 to 302, as a world at full speed has them.
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 #include "server/base/inline_executor.h"
 #include "server/network/chains.h"
 #include "server/network/scene.h"
@@ -64,7 +64,7 @@ std::vector<runtime::SnapshotPtr> snapshots_of(const Kind& kind) {
 
 void pictures(benchmark::State& state, const Kind& kind, v1::Compression compression) {
     const std::vector<runtime::SnapshotPtr> snapshots = snapshots_of(kind);
-    wire::Compressor compressor;
+    codec::Compressor compressor;
     std::chrono::duration<double> scene{0}, delta{0}, bytes{0};
     std::uint64_t entities = 0, size = 0;
     for (auto _ : state) {
@@ -76,8 +76,8 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             about.set_generation(snapshot.moment.generation);
             about.set_generation_tick(snapshot.moment.generation_tick);
             const auto began = Clock::now();
-            auto made = std::make_shared<const wire::Scene>(network::scene_of(snapshot.islands.front()));
-            wire::describe(*made, about);
+            auto made = std::make_shared<const codec::QuantisedSnapshot>(network::scene_of(snapshot.islands.front()));
+            codec::describe(*made, about);
             const auto ready = Clock::now();
             const network::ChainPicturePtr& picture =
                 chain.add(std::make_shared<const v1::SnapshotFrame>(about), std::move(made), compressor, {}, {});

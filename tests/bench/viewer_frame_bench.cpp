@@ -47,8 +47,8 @@ namespace {
 constexpr double px2_per_organism = 46'080; // and 2.5 food and 1.5 poison each: the benchmark world
 constexpr std::chrono::milliseconds picture_interval{33};
 
-wire::ItemPicture items(std::size_t count, double width, double step) {
-    wire::ItemPicture all;
+codec::DecodedItems items(std::size_t count, double width, double step) {
+    codec::DecodedItems all;
     for (std::size_t i = 0; i < count; ++i) {
         all.id.push_back(static_cast<std::uint32_t>(i));
         all.x_px.push_back(static_cast<float>(std::fmod(static_cast<double>(i) * step, width)));
@@ -57,8 +57,8 @@ wire::ItemPicture items(std::size_t count, double width, double step) {
     return all;
 }
 
-std::shared_ptr<wire::Picture> picture(std::size_t organism_count, std::uint64_t tick) {
-    auto made = std::make_shared<wire::Picture>();
+std::shared_ptr<codec::DecodedSnapshot> picture(std::size_t organism_count, std::uint64_t tick) {
+    auto made = std::make_shared<codec::DecodedSnapshot>();
     const double width = std::sqrt(static_cast<double>(organism_count) * px2_per_organism);
     made->about.set_width_px(width);
     made->about.set_height_px(width);
@@ -74,8 +74,8 @@ std::shared_ptr<wire::Picture> picture(std::size_t organism_count, std::uint64_t
 }
 
 /// Where no server is.
-link::Options nobody() {
-    link::Options options;
+core::Options nobody() {
+    core::Options options;
     options.server = {.host = "127.0.0.1", .port = 1};
     return options;
 }
@@ -92,7 +92,7 @@ void draw_frame(benchmark::State& state) {
     options.connection = nobody();
     Panes panes{wanted_of(options)};
     Pane& pane = panes.focused();
-    auto now = link::WorldView::Clock::now();
+    auto now = core::WorldView::Clock::now();
     std::uint64_t tick = 2;
     const std::array pictures{picture(organism_count, 0), picture(organism_count, tick)};
     pane.watch.view().add(pictures[0], now);

@@ -8,7 +8,7 @@
 //
 // When tick n was, is known from the clock of the world: n / rate after a moment which the answers to many questions
 // of which tick it is close in on, each from above. A picture is on the screen when the window was told to show it.
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 #include "client/viewer/panels/parameters_panel.h"
 #include "client/viewer/shell/screen.h"
 #include "client/viewer/stage/pane.h"
@@ -28,7 +28,7 @@
 namespace evod::viewer {
 namespace {
 
-using Clock = link::WorldView::Clock;
+using Clock = core::WorldView::Clock;
 using Ms = std::chrono::duration<double, std::milli>;
 
 constexpr std::chrono::milliseconds frame_min{15}; // as Screen waits
@@ -61,7 +61,7 @@ void make_benchmark_world(RealServer& server, const std::string& name, std::uint
 class Viewer {
   public:
     Viewer(const std::string& server, const std::string& world) {
-        options_.connection.server = link::parse_endpoint(server).value();
+        options_.connection.server = core::parse_endpoint(server).value();
         options_.world = world;
         screen_.emplace(options_);
         panes_.emplace(wanted_of(options_));
@@ -164,7 +164,7 @@ class TickClock {
         question_.mutable_get_statistics()->set_world(world);
     }
     void ask() {
-        server_.connection->send(question_, [this](const link::Result<evod::v1::Response>& response) {
+        server_.connection->send(question_, [this](const core::Result<evod::v1::Response>& response) {
             if (response && response->has_statistics()) {
                 const std::lock_guard lock{mutex_};
                 const auto now = Clock::now();

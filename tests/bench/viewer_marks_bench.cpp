@@ -15,8 +15,8 @@ namespace {
 
 constexpr double px2_per_organism = 46'080;
 
-std::shared_ptr<const wire::Picture> picture(std::size_t count, std::uint64_t tick) {
-    auto made = std::make_shared<wire::Picture>();
+std::shared_ptr<const codec::DecodedSnapshot> picture(std::size_t count, std::uint64_t tick) {
+    auto made = std::make_shared<codec::DecodedSnapshot>();
     const double width = std::sqrt(static_cast<double>(count) * px2_per_organism);
     made->about.set_width_px(width);
     made->about.set_height_px(width);
@@ -36,15 +36,15 @@ std::shared_ptr<const wire::Picture> picture(std::size_t count, std::uint64_t ti
 
 struct Setting {
     explicit Setting(std::size_t count) : before{picture(count, 0)}, latest{picture(count, 15)} {
-        const auto start = link::WorldView::Clock::now();
+        const auto start = core::WorldView::Clock::now();
         view.add(before, start);
         view.add(latest, start + std::chrono::milliseconds{33});
         population.add(page_of(0, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count), 1, 6));
         camera.set_viewport({0, 0, 1280, 652});
         camera.set_island(latest->about.width_px(), latest->about.height_px());
     }
-    std::shared_ptr<const wire::Picture> before, latest;
-    link::WorldView view;
+    std::shared_ptr<const codec::DecodedSnapshot> before, latest;
+    core::WorldView view;
     Population population{6};
     Camera camera;
 };

@@ -38,47 +38,47 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/physics", {"server/base"}},
     {"server/evolution", {"server/base"}},
     {"server/simulation", {"server/evolution", "server/physics", "server/base"}},
-    {"server/protocol", {"server/simulation", "server/evolution", "server/base", "proto/wire", "proto/evod"}},
+    {"server/protocol", {"server/simulation", "server/evolution", "server/base", "proto/codec", "proto/evod"}},
     {"server/files", {"server/base"}},
     {"server/access", {"server/files", "server/base", "proto/evod"}},
     {"server/log", {}},
     {"server/metrics", {"proto/evod"}},
     {"server/storage",
      {"server/protocol", "server/metrics", "server/log", "server/files", "server/simulation", "server/evolution",
-      "server/base", "proto/wire", "proto/evod"}},
+      "server/base", "proto/codec", "proto/evod"}},
     {"server/tables", {"server/storage", "server/simulation", "server/evolution", "server/base", "proto/evod"}},
     {"server/runtime",
      {"server/tables", "server/storage", "server/protocol", "server/metrics", "server/log", "server/simulation",
-      "server/evolution", "server/physics", "server/base", "proto/wire", "proto/evod",
+      "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod",
       "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/console",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/files",
-      "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/wire", "proto/evod"}},
+      "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/codec", "proto/evod"}},
     {"server/network",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/metrics",
-      "server/log", "server/simulation", "server/evolution", "server/base", "proto/wire", "proto/evod"}},
+      "server/log", "server/simulation", "server/evolution", "server/base", "proto/codec", "proto/evod"}},
     {"server", // main.cpp knows everyone
      {"server/network", "server/console", "server/access", "server/log", "server/runtime", "server/storage",
       "server/protocol", "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line",
-      "proto/wire", "proto/evod"}},
+      "proto/codec", "proto/evod"}},
     {"proto/command_line", {}},
-    {"proto/wire", {"proto/evod"}},
-    {"client/link", {"proto/command_line", "proto/wire", "proto/evod"}},
-    {"client/ctl", {"client/link", "proto/command_line", "proto/wire", "proto/evod"}},
+    {"proto/codec", {"proto/evod"}},
+    {"client/core", {"proto/command_line", "proto/codec", "proto/evod"}},
+    {"client/ctl", {"client/core", "proto/command_line", "proto/codec", "proto/evod"}},
     {"client/viewer/text", {}},
     {"client/viewer/drawing", {"client/viewer/text"}},
-    {"client/viewer/watch", {"client/viewer/text", "client/link", "proto/wire", "proto/evod"}},
+    {"client/viewer/watch", {"client/viewer/text", "client/core", "proto/codec", "proto/evod"}},
     {"client/viewer/scene",
-     {"client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/link", "proto/wire", "proto/evod"}},
+     {"client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/core", "proto/codec", "proto/evod"}},
     {"client/viewer/panels",
-     {"client/viewer/scene", "client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/link",
-      "proto/wire", "proto/evod"}},
+     {"client/viewer/scene", "client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/core",
+      "proto/codec", "proto/evod"}},
     {"client/viewer/stage",
      {"client/viewer/panels", "client/viewer/scene", "client/viewer/watch", "client/viewer/drawing",
-      "client/viewer/text", "client/link", "proto/wire", "proto/evod"}},
+      "client/viewer/text", "client/core", "proto/codec", "proto/evod"}},
     {"client/viewer/shell",
      {"client/viewer/stage", "client/viewer/panels", "client/viewer/scene", "client/viewer/watch",
-      "client/viewer/drawing", "client/viewer/text", "client/link", "proto/command_line", "proto/wire", "proto/evod"}},
+      "client/viewer/drawing", "client/viewer/text", "client/core", "proto/command_line", "proto/codec", "proto/evod"}},
 };
 
 std::string without_comments(const std::string& text) {
@@ -249,7 +249,7 @@ TEST(Core, AsksNoReductionOfTheStandardLibraryForFloats) {
 
 TEST(ProtocolAndStorage, OpenNoSockets) {
     for (const Source& source : sources())
-        if (source.folder == "server/protocol" || source.folder == "server/storage" || source.folder == "proto/wire") {
+        if (source.folder == "server/protocol" || source.folder == "server/storage" || source.folder == "proto/codec") {
             for (const std::string& include : source.libraries)
                 EXPECT_FALSE(include.starts_with("boost/asio") || include.starts_with("boost/beast") ||
                              include.starts_with("sys/socket"))

@@ -3,7 +3,7 @@
 // The first byte says for whose limits they are read. All bytes are cut in ways that are drawn by them, short ones byte
 // by byte too. One input in 32, and which is drawn as well, is cut in every way: of up to 8 bytes all 2^(n-1); of up to
 // 16, which is a header, a body and the beginning of the next, all pairs of places; of up to 64 each place.
-#include "proto/wire/framing.h"
+#include "proto/codec/framing.h"
 
 #include "evod/v1/session.pb.h"
 #include "evod/v1/stream.pb.h"
@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace evod::wire;
+using namespace evod::codec;
 using Bytes = std::span<const std::byte>;
 
 void require(bool holds) {

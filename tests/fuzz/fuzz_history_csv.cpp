@@ -1,10 +1,10 @@
 // Any text as the history of an earlier run: rows, which are written and read back the same, or a refusal.
-#include "client/link/history_csv.h"
+#include "client/core/history_csv.h"
 
 #include <cstdlib>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace evod::link;
+    using namespace evod::core;
     const auto read = read_history_csv({reinterpret_cast<const char*>(data), size});
     if (!read)
         return 0;

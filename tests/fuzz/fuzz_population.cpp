@@ -1,5 +1,5 @@
 // Any text as a population file: islands of whole organisms, as many as there are lines, or what is wrong.
-#include "proto/wire/population_csv.h"
+#include "proto/codec/population_csv.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -7,7 +7,7 @@
 #include <string>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace evod::wire;
+    using namespace evod::codec;
     const std::string text{reinterpret_cast<const char*>(data), size};
     std::istringstream in{text};
     const auto islands = read_population(in);

@@ -1,6 +1,6 @@
 // Any bytes a client may send as a message: parsed, judged and turned into a command, or refused with fields named.
 #include "evod/v1/session.pb.h"
-#include "proto/wire/framing.h"
+#include "proto/codec/framing.h"
 #include "server/protocol/commands.h"
 #include "server/protocol/refusals.h"
 #include "server/simulation/world_name.h"
@@ -9,7 +9,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod;
-    const auto message = wire::parse_body<v1::ClientMessage>(std::as_bytes(std::span{data, size}));
+    const auto message = codec::parse_body<v1::ClientMessage>(std::as_bytes(std::span{data, size}));
     if (!message || !message->has_request())
         return 0;
     const v1::Request& request = message->request();

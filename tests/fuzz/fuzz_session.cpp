@@ -156,7 +156,7 @@ class Play {
         const std::string keys[] = {"k1", "k2", "k3", "", std::string(65, 'k')};
         request.set_client_key(keys[how % 8 % std::size(keys)]);
         request.set_request_id(how / 8 % 8 < 6 ? client.next_request_id() : script_.take() % 4);
-        last_asked_ = wire::encode_frame(wire::Channel::Control, message);
+        last_asked_ = codec::encode_frame(codec::Channel::Control, message);
         client.say(last_asked_);
     }
 
@@ -164,20 +164,20 @@ class Play {
         const auto which = script_.take();
         v1::ClientMessage message;
         if (const auto newest = client.newest_picture(which / 4)) {
-            *message.mutable_acknowledge_picture() = *newest;
+            *message.mutable_acknowledge_snapshot() = *newest;
             if (which % 4 == 1)
-                message.mutable_acknowledge_picture()->set_sequence(newest->sequence() + 1);
+                message.mutable_acknowledge_snapshot()->set_sequence(newest->sequence() + 1);
             else if (which % 4 == 2)
-                message.mutable_acknowledge_picture()->set_sequence(newest->sequence() - 1);
+                message.mutable_acknowledge_snapshot()->set_sequence(newest->sequence() - 1);
         } else {
-            fill(*message.mutable_acknowledge_picture(), script_);
+            fill(*message.mutable_acknowledge_snapshot(), script_);
         }
         client.say(message);
     }
 
     static std::string frame(const std::string& body) {
-        const auto header = wire::encode_header(
-            {.channel = wire::Channel::Control, .body_bytes = static_cast<std::uint32_t>(body.size())});
+        const auto header = codec::encode_header(
+            {.channel = codec::Channel::Control, .body_bytes = static_cast<std::uint32_t>(body.size())});
         return std::string{reinterpret_cast<const char*>(header.data()), header.size()} + body;
     }
 

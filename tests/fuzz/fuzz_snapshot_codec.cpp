@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!frame.ParseFromArray(data, static_cast<int>(size))) {
         return 0;
     }
-    const auto picture = evod::wire::decode(std::move(frame));
+    const auto picture = evod::codec::decode(std::move(frame));
     if (picture) {
         evod::fuzz::require_sound(*picture);
     } else {

@@ -2,7 +2,7 @@
 // tells, ids that rise.
 #pragma once
 
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,8 @@ inline void require_rising(const std::vector<std::uint32_t>& ids) {
     require(std::adjacent_find(ids.begin(), ids.end(), std::greater_equal<>{}) == ids.end());
 }
 
-inline void require_sound_tile(const wire::TilePicture& tile) {
-    const wire::DotPicture& dots = tile.dots;
+inline void require_sound_tile(const codec::DecodedTile& tile) {
+    const codec::DecodedDots& dots = tile.dots;
     for (const auto* places : {&dots.organisms, &dots.food, &dots.poison, &dots.crates, &dots.obstacles}) {
         require_finite(places->x_px, places->x_px.size());
         require_finite(places->y_px, places->x_px.size());
@@ -39,7 +39,7 @@ inline void require_sound_tile(const wire::TilePicture& tile) {
     }
 }
 
-inline void require_sound(const wire::Picture& picture) {
+inline void require_sound(const codec::DecodedSnapshot& picture) {
     const auto& organisms = picture.organisms;
     require_rising(organisms.id);
     for (const auto* column : {&organisms.x_px, &organisms.y_px, &organisms.radius_px, &organisms.health}) {
@@ -56,7 +56,7 @@ inline void require_sound(const wire::Picture& picture) {
             require_finite(*column, boxes->id.size());
         }
     }
-    require(std::ranges::adjacent_find(picture.tiles, std::ranges::greater_equal{}, &wire::TilePicture::tile) ==
+    require(std::ranges::adjacent_find(picture.tiles, std::ranges::greater_equal{}, &codec::DecodedTile::tile) ==
             picture.tiles.end());
     for (const auto& tile : picture.tiles) {
         require_sound_tile(tile);

@@ -78,23 +78,23 @@ void WatchingClient::said(std::span<const std::byte> bytes) {
     }
 }
 
-void WatchingClient::said(const wire::Frame& frame) {
-    const auto message = wire::parse_body<v1::ClientMessage>(frame.body);
+void WatchingClient::said(const codec::Frame& frame) {
+    const auto message = codec::parse_body<v1::ClientMessage>(frame.body);
     if (!greeted_) {
         greeted_ = message && message->has_hello() && is_right(message->hello());
         if (!greeted_)
             refused_since_ = clock().now();
         else {
             role_ = admit(message->hello().token())->role;
-            said_.set_limits(wire::server_limits);
+            said_.set_limits(codec::server_limits);
         }
         return;
     }
     if (!message || message->kind_case() == v1::ClientMessage::kHello ||
         message->kind_case() == v1::ClientMessage::KIND_NOT_SET)
         return owed(0, {});
-    if (message->has_acknowledge_picture()) {
-        const v1::AcknowledgePicture& acknowledged = message->acknowledge_picture();
+    if (message->has_acknowledge_snapshot()) {
+        const v1::AcknowledgeSnapshot& acknowledged = message->acknowledge_snapshot();
         const auto watch = watches_.find(acknowledged.subscription_id());
         if (watch == watches_.end())
             return;
@@ -146,14 +146,14 @@ bool WatchingClient::hear(std::size_t count) {
     }
 }
 
-void WatchingClient::heard(const wire::Frame& frame) {
+void WatchingClient::heard(const codec::Frame& frame) {
     require(!told_of_end_);
-    if (frame.channel == wire::Channel::Stream) {
-        auto picture = wire::parse_body<v1::SnapshotFrame>(frame.body);
+    if (frame.channel == codec::Channel::Stream) {
+        auto picture = codec::parse_body<v1::SnapshotFrame>(frame.body);
         require(welcomed_ && picture);
         return heard(*std::move(picture));
     }
-    const auto message = wire::parse_body<v1::ServerMessage>(frame.body);
+    const auto message = codec::parse_body<v1::ServerMessage>(frame.body);
     require(message.has_value());
     switch (message->kind_case()) {
     case v1::ServerMessage::kWelcome:
@@ -235,7 +235,7 @@ void WatchingClient::heard(v1::SnapshotFrame frame) {
     // The same one comes again only as a keyframe that was asked for, or in another view.
     const std::uint64_t before = std::exchange(island.sequence, frame.sequence());
     require(frame.sequence() > before ||
-            (frame.sequence() == before && (wire::is_keyframe(frame) || watch.asked.has_view())));
+            (frame.sequence() == before && (codec::is_keyframe(frame) || watch.asked.has_view())));
     if (watch.asked.has_unacknowledged_max() && frame.sequence() > island.acknowledged_up_to) {
         island.unacknowledged.insert(frame.sequence());
         require(island.unacknowledged.size() <= watch.asked.unacknowledged_max());
@@ -245,13 +245,13 @@ void WatchingClient::heard(v1::SnapshotFrame frame) {
     require_sound(*picture);
 }
 
-std::optional<v1::AcknowledgePicture> WatchingClient::newest_picture(std::size_t wanted) const {
+std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_picture(std::size_t wanted) const {
     const auto watch = watches_.find(subscription(wanted));
     if (watch == watches_.end() || watch->second.islands.empty())
         return std::nullopt;
     const auto& [island, of] =
         *std::next(watch->second.islands.begin(), static_cast<std::ptrdiff_t>(wanted % watch->second.islands.size()));
-    v1::AcknowledgePicture acknowledgement;
+    v1::AcknowledgeSnapshot acknowledgement;
     acknowledgement.set_subscription_id(watch->first);
     acknowledgement.set_island(island);
     acknowledgement.set_sequence(of.sequence);

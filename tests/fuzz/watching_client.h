@@ -10,8 +10,8 @@
 #pragma once
 
 #include "evod/v1/session.pb.h"
-#include "proto/wire/framing.h"
-#include "proto/wire/picture_decoder.h"
+#include "proto/codec/framing.h"
+#include "proto/codec/snapshot_decoder.h"
 #include "server/access/role.h"
 #include "server/runtime/clock.h"
 
@@ -41,7 +41,7 @@ class WatchingClient {
 
     /// Puts bytes behind those that wait to be sent.
     void say(const std::string& bytes) { unsent_ += bytes; }
-    void say(const v1::ClientMessage& message) { say(wire::encode_frame(wire::Channel::Control, message)); }
+    void say(const v1::ClientMessage& message) { say(codec::encode_frame(codec::Channel::Control, message)); }
     std::size_t unsent_bytes() const { return unsent_.size(); }
     /// The first `count` of those that wait, as far as they are taken.
     void send(std::size_t count);
@@ -63,7 +63,7 @@ class WatchingClient {
 
     std::uint64_t next_request_id() { return ++request_id_; }
     /// The picture that was heard last for the subscription that is `wanted` among all, if there is one.
-    std::optional<v1::AcknowledgePicture> newest_picture(std::size_t wanted) const;
+    std::optional<v1::AcknowledgeSnapshot> newest_picture(std::size_t wanted) const;
     /// The id of the subscription that is `wanted` among all; 0 if there is none.
     std::uint32_t subscription(std::size_t wanted) const;
 
@@ -73,7 +73,7 @@ class WatchingClient {
         std::uint64_t place = 0; // among all that were sent
     };
     struct Island {
-        wire::PictureDecoder decoder;
+        codec::SnapshotDecoder decoder;
         std::uint64_t sequence = 0;             // of the last
         std::uint64_t acknowledged_up_to = 0;   // perhaps before it was heard
         std::set<std::uint64_t> unacknowledged; // sequences
@@ -84,9 +84,9 @@ class WatchingClient {
     };
 
     void said(std::span<const std::byte> bytes);
-    void said(const wire::Frame& frame);
+    void said(const codec::Frame& frame);
     void owed(std::uint64_t request_id, Asked asked);
-    void heard(const wire::Frame& frame);
+    void heard(const codec::Frame& frame);
     void heard(const v1::Response& response);
     void granted(const Asked& asked, const v1::Response& response);
     void heard(const v1::Event& event);
@@ -95,7 +95,7 @@ class WatchingClient {
     const int descriptor_;
     Answers& answers_;
     std::string unsent_;
-    wire::FrameReader said_{wire::hello_limits}, heard_{wire::client_limits};
+    codec::FrameReader said_{codec::hello_limits}, heard_{codec::client_limits};
     bool greeted_ = false, welcomed_ = false, finished_ = false, closed_ = false;
     bool told_of_end_ = false;
     bool ids_are_mixed_ = false, may_have_stalled_ = false;

@@ -124,7 +124,7 @@ class Commands(unittest.TestCase):
             world = lab.create_world("other", {"population_size": 20, "generation_s": 1})
             self.assertTrue(world.info().speed.max, "worlds that are created have the speed of local(), too")
             world.run(generations=3).wait()
-            with world.open_past(generation=2) as past:
+            with world.open_replay(generation=2) as past:
                 self.assertEqual(past.info().generation, 2)
             self.assertEqual(world.fork("twin", at_generation=2).info().generation, 2)
             self.assertEqual(len(world.table("generations")), 3)

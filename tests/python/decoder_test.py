@@ -240,7 +240,7 @@ class Decoder(Told):
         self.assertEqual(sorted(come(deltas[0])[1]), ["acknowledged", "request_keyframe"])
         self.assertEqual(come(deltas[1]), (1, ["acknowledged"]))
         self.assertEqual(come(keyframe), (2, []))
-        self.assertEqual(core.damaged_picture_count, 1)
+        self.assertEqual(core.damaged_snapshot_count, 1)
 
     def test_tiles_that_lie_are_refused(self):
         lies = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
@@ -308,11 +308,11 @@ class Streams(Told):
 
     def test_a_past_that_opens_too_late_is_closed(self):
         core = self.core()
-        pending = core.request(c.Request(open_past=c.OpenPast(world="w")))
+        pending = core.request(c.Request(open_replay=c.OpenReplay(world="w")))
         self.assertEqual(len(self.sent(core)), 1)
         core.forget(pending)
         self.answer(core, 1, world=world_pb2.WorldInfo(name="w@1"))
-        self.assertEqual([message.request.close_past.world for message in self.sent(core)], ["w@1"])
+        self.assertEqual([message.request.close_replay.world for message in self.sent(core)], ["w@1"])
 
     def test_a_refused_view_is_not_asked_for_in_the_next_session(self):
         core = self.core()

@@ -101,7 +101,7 @@ async def walk_all(lab):
     assert (await there(world.motion())).tick_s > 0
     assert (await there(world.export("generations"))).startswith("generation,island,")
     assert len(await there(world.table("organisms"))) >= 40
-    past = await there(world.open_past(2))
+    past = await there(world.open_replay(2))
     assert (await there(past.info())).generation == 2
     assert (await there(past.seek(1, 7))).generation_tick == 7
     await there(past.close())

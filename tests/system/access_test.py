@@ -31,11 +31,11 @@ LEAST = {
     "create_world": ADMIN, "delete_world": ADMIN, "fork_world": ADMIN, "shut_down": ADMIN,
     "reset_world": CONTROLLER, "release_lease": CONTROLLER, "renew_lease": CONTROLLER, "run": CONTROLLER, "run_until_tick": CONTROLLER, "pause": CONTROLLER,
     "resume": CONTROLLER, "set_speed": CONTROLLER, "set_parameters": CONTROLLER, "cancel_change": CONTROLLER, "seek": CONTROLLER,
-    "close_past": CONTROLLER,
+    "close_replay": CONTROLLER,
     "list_worlds": VIEWER, "get_parameters": VIEWER, "get_statistics": VIEWER, "get_history": VIEWER,
     "get_organism": VIEWER, "describe": VIEWER, "get_metrics": VIEWER, "get_breeding": VIEWER,
     "get_population": VIEWER, "get_motion": VIEWER, "subscribe_snapshots": VIEWER, "subscribe_events": VIEWER,
-    "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_past": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
+    "unsubscribe": VIEWER, "request_keyframe": VIEWER, "open_replay": VIEWER, "export_run": VIEWER, "continue_export": VIEWER,
     "set_view": VIEWER,
 }
 NAMES = {VIEWER: "viewer", CONTROLLER: "controller", ADMIN: "admin"}
@@ -167,12 +167,12 @@ class Roles(Access):
         controller, viewer, other = (self.come(server, secret) for secret in (karl, anna, otto))
         controller.call(run_until_tick=c.RunUntilTick(tick=3000))
         plain.until(lambda: viewer.world().tick == 3000, "ticks")
-        past_world = viewer.call(open_past=c.OpenPast()).world.name
+        past_world = viewer.call(open_replay=c.OpenReplay()).world.name
         for request in ({"run_until_tick": c.RunUntilTick(world=past_world, tick=20)},
                         {"seek": c.Seek(world=past_world, to=c.RunMoment(tick=40))},
                         {"set_speed": c.SetSpeed(world=past_world, speed=plain.w.Speed(max=True))},
                         {"pause": c.Pause(world=past_world)}, {"run": c.Run(world=past_world)},
-                        {"resume": c.Resume(world=past_world)}, {"close_past": c.ClosePast(world=past_world)}):
+                        {"resume": c.Resume(world=past_world)}, {"close_replay": c.CloseReplay(world=past_world)}):
             other.call(PERMISSION_DENIED, **request)
             viewer.call(**request)
         viewer.call(PERMISSION_DENIED, run=c.Run(world="default"))

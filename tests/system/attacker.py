@@ -210,7 +210,7 @@ def churn():
     wishes = [subscribing(), *(subscribing(view(i)) for i in range(3)),
               asking(subscribe_events=c.SubscribeEvents()), asking(get_history=c.GetHistory(world="w")),
               asking(get_organism=c.GetOrganism(world="w")), asking(list_worlds=c.ListWorlds()),
-              asking(describe=c.Describe()), asking(get_metrics=c.GetMetrics()), asking(open_past=c.OpenPast(world="w")),
+              asking(describe=c.Describe()), asking(get_metrics=c.GetMetrics()), asking(open_replay=c.OpenReplay(world="w")),
               asking(unsubscribe=c.Unsubscribe(subscription_id=1)), b"EV\x01\x01\x03\0\0\0\xff\xff\xff"]
 
     def come(i):

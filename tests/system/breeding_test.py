@@ -97,7 +97,7 @@ class Breeding(export_test.Runs):
         self.assertEqual(self.breeding(client, island=1), told[4, 1])
 
         # The same of the past, where the last is the one before what is shown; and of a file that is served again.
-        look = client.call(open_past=c.OpenPast(world="w", at=c.RunMoment(generation=3))).world.name
+        look = client.call(open_replay=c.OpenReplay(world="w", at=c.RunMoment(generation=3))).world.name
         self.assertEqual(self.breeding(client, world=look), told[2, 0])
         self.assertEqual(self.breeding(client, world=look, generation=4), told[4, 0])
         server.end()

@@ -45,7 +45,7 @@ class Body:
 
 
 def content(picture, position_bytes, before, decompress):
-    """The body of a SnapshotFrame or TilePicture, once it is known to be whole, and the counts of its entities."""
+    """The body of a SnapshotFrame or SnapshotTile, once it is known to be whole, and the counts of its entities."""
     data = decompress(picture.body) if picture.compression == 2 else picture.body
     counts = [getattr(picture, field) for field in
               ("organism_count", "food_count", "poison_count", "crate_count", "obstacle_count")]

@@ -124,7 +124,7 @@ class Export(Runs):
         server, client = self.serve()
         self.run_world(client, 4)
         live, _ = self.table(client, table=c.RUN_TABLE_ORGANISMS)
-        look = client.call(open_past=c.OpenPast(world="w")).world.name
+        look = client.call(open_replay=c.OpenReplay(world="w")).world.name
         self.assertEqual(self.table(client, world=look, table=c.RUN_TABLE_ORGANISMS)[0], live)
         server.end()
         replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))

@@ -296,13 +296,13 @@ class Walk(access.Access):
                     if not first.HasField("welcome"):
                         self.assertTrue(first.goodbye.status.code and first.goodbye.status.message)
                         stranger.assert_closed()
-        acknowledgement = self.pool.FindMessageTypeByName("evod.v1.AcknowledgePicture")
-        number = {f.name: f for f in self.pool.FindMessageTypeByName("evod.v1.ClientMessage").fields}["acknowledge_picture"].number
+        acknowledgement = self.pool.FindMessageTypeByName("evod.v1.AcknowledgeSnapshot")
+        number = {f.name: f for f in self.pool.FindMessageTypeByName("evod.v1.ClientMessage").fields}["acknowledge_snapshot"].number
         subscription = self.client.call(subscribe_snapshots=c.SubscribeSnapshots(
             world="walked", rate_hz=60, unacknowledged_max=2)).subscription.subscription_id
         for field in acknowledgement.fields:
             for value in WHOLE:
-                body = session_pb2.AcknowledgePicture(subscription_id=subscription).SerializeToString()
+                body = session_pb2.AcknowledgeSnapshot(subscription_id=subscription).SerializeToString()
                 self.client.send_body(delimited(number, body + encoded(field, value)))
         self.client.call(unsubscribe=c.Unsubscribe(subscription_id=subscription))
 

@@ -260,7 +260,7 @@ class FullDisk(unittest.TestCase):
         self.assertEqual(newcomer.welcome.storage, world.storage)
         newcomer.call(1, subscribe_snapshots=c.SubscribeSnapshots(rate_hz=60))
         self.assertEqual(newcomer.picture(lambda picture: True).tick, world.tick)
-        look = newcomer.call(2, open_past=c.OpenPast(at=c.RunMoment(generation=5)))
+        look = newcomer.call(2, open_replay=c.OpenReplay(at=c.RunMoment(generation=5)))
         self.assertEqual((look.status.code, look.world.generation), (0, 5), look.status.message)
         self.assertFalse(look.world.HasField("storage"))
         name = look.world.name

@@ -418,11 +418,11 @@ class Worlds(Case):
         server = self.serve()
         client, other = self.come(server), self.come(server)
         limits = client.welcome.limits
-        for _ in range(limits.pasts_max):
-            client.call(open_past=c.OpenPast(world="default"))
-        with self.meets(other, "pasts_max"):
-            client.call(EXHAUSTED, open_past=c.OpenPast(world="default"))
-        other.call(open_past=c.OpenPast(world="default"))
+        for _ in range(limits.replays_max):
+            client.call(open_replay=c.OpenReplay(world="default"))
+        with self.meets(other, "replays_max"):
+            client.call(EXHAUSTED, open_replay=c.OpenReplay(world="default"))
+        other.call(open_replay=c.OpenReplay(world="default"))
         small = plain.assignments(population_size=1, food_count=0, poison_count=0)
         while len(client.call(list_worlds=c.ListWorlds()).worlds.worlds) < limits.worlds_max:
             client.call(create_world=c.CreateWorld(name=f"w{client.request_id}", parameters=small))

@@ -181,7 +181,7 @@ class Counts(Case):
         with self.client(server) as client:
             client.call(run_until_tick=c.RunUntilTick(tick=100))
             plain.until(lambda: client.world().tick == 100, "ticks")
-            client.call(open_past=c.OpenPast())
+            client.call(open_replay=c.OpenReplay())
             self.assertEqual(self.metrics(server)("evod_worlds"), 1)
 
     def test_what_a_subscriber_takes_and_does_not_take(self):

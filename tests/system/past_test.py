@@ -1,4 +1,4 @@
-"""Looking back: evod replay, OpenPast, Seek and ForkWorld over real sockets. EVOD and EVOCTL name the programs, MESSAGES
+"""Looking back: evod replay, OpenReplay, Seek and ForkWorld over real sockets. EVOD and EVOCTL name the programs, MESSAGES
 the folder of the message classes."""
 import os
 import pathlib
@@ -75,7 +75,7 @@ class Case(unittest.TestCase):
         return hashes
 
 
-class OpenPast(Case):
+class OpenReplay(Case):
     def setUp(self):
         super().setUp()
         self.served = self.server("--data", self.folder)
@@ -85,11 +85,11 @@ class OpenPast(Case):
     def test_every_moment_is_as_it_was_and_the_living_world_is_not_touched(self):
         viewer = self.client(self.served)
         before = self.live.world("w")
-        past = viewer.call(open_past=c.OpenPast(world="w")).world
+        past = viewer.call(open_replay=c.OpenReplay(world="w")).world
         self.assertEqual((past.name, past.tick, past.state), ("w@1", 0, w.RUN_STATE_PAUSED))
-        self.assertEqual((past.recording.past_of, past.recording.first_generation, past.recording.last_generation),
+        self.assertEqual((past.replay.replay_of, past.replay.first_generation, past.replay.last_generation),
                          ("w", 1, 4))
-        self.assertEqual((past.recording.first_tick, past.recording.last_tick), (0, 421))
+        self.assertEqual((past.replay.first_tick, past.replay.last_tick), (0, 421))
         for tick in (421, 0, 250, 119, 121, 1, 120):
             there = viewer.call(seek=c.Seek(world=past.name, to=at(tick=tick))).world
             self.assertEqual((there.tick, there.state_hash), (tick, self.hashes[tick]))
@@ -98,7 +98,7 @@ class OpenPast(Case):
 
     def test_moments_are_named_by_generation_and_tick(self):
         viewer = self.client(self.served)
-        past = viewer.call(open_past=c.OpenPast(world="w", at=at(generation=2))).world
+        past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(generation=2))).world
         self.assertEqual((past.generation, past.generation_tick, past.tick), (2, 0, 120))
         to = lambda **moment: viewer.call(seek=c.Seek(world=past.name, to=at(**moment))).world
         end = to(generation=1, tick=120)
@@ -116,7 +116,7 @@ class OpenPast(Case):
 
     def test_it_plays_to_the_end_of_what_is_known_and_on_as_the_run_does(self):
         viewer = self.client(self.served)
-        past = viewer.call(open_past=c.OpenPast(world="w", at=at(tick=100))).world.name
+        past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=100))).world.name
         viewer.call(set_speed=c.SetSpeed(world=past, speed=w.Speed(max=True)))
         viewer.call(resume=c.Resume(world=past))
         there = viewer.wait_world(lambda world: world.tick == 421, past)
@@ -124,14 +124,14 @@ class OpenPast(Case):
         later = self.live.run_to(600, "w")
         there = viewer.wait_world(lambda world: world.tick == 600, past)
         self.assertEqual(there.state_hash, later.state_hash)
-        self.assertEqual(there.recording.last_tick, 600)
+        self.assertEqual(there.replay.last_tick, 600)
         back = viewer.call(seek=c.Seek(world=past, to=at(tick=120))).world  # it runs, so it goes on
         self.assertNotEqual(back.state, w.RUN_STATE_PAUSED)
         viewer.wait_world(lambda world: world.tick == 600, past)
 
     def test_it_is_watched_stepped_and_asked_as_any_world(self):
         viewer = self.client(self.served)
-        past = viewer.call(open_past=c.OpenPast(world="w", at=at(tick=249))).world.name
+        past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=249))).world.name
         viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=past, rate_hz=60))
         self.assertEqual(viewer.next_picture().tick, 249)
         viewer.call(run_until_tick=c.RunUntilTick(world=past, tick=250))
@@ -157,15 +157,15 @@ class OpenPast(Case):
 
     def test_what_has_been_cannot_be_changed(self):
         viewer = self.client(self.served)
-        past = viewer.call(open_past=c.OpenPast(world="w")).world.name
+        past = viewer.call(open_replay=c.OpenReplay(world="w")).world.name
         for request in ({"set_parameters": plain.set_parameters(past, food_health=3.0)},
                         {"reset_world": c.ResetWorld(world=past)}, {"delete_world": c.DeleteWorld(world=past)}):
             refused = viewer.call(c.CODE_FAILED_PRECONDITION, **request)
             self.assertIn("what has been", refused.status.message)
         viewer.call(c.CODE_FAILED_PRECONDITION, seek=c.Seek(world="w", to=at(tick=1)))
         viewer.call(c.CODE_INVALID_ARGUMENT, seek=c.Seek(world=past))
-        viewer.call(c.CODE_INVALID_ARGUMENT, close_past=c.ClosePast())
-        viewer.call(c.CODE_NOT_FOUND, open_past=c.OpenPast(world="nowhere"))
+        viewer.call(c.CODE_INVALID_ARGUMENT, close_replay=c.CloseReplay())
+        viewer.call(c.CODE_NOT_FOUND, open_replay=c.OpenReplay(world="nowhere"))
         journal = sqlite3.connect(f"file:{self.folder}/w.evod?mode=ro", uri=True)
         count = lambda: journal.execute("SELECT count(*) FROM journal").fetchone()[0]
         entries = count()
@@ -176,14 +176,14 @@ class OpenPast(Case):
 
     def test_looks_belong_to_their_session(self):
         with Client(self.served) as viewer:
-            names = [viewer.call(open_past=c.OpenPast(world="w")).world.name for _ in range(4)]
+            names = [viewer.call(open_replay=c.OpenReplay(world="w")).world.name for _ in range(4)]
             self.assertEqual(len(set(names)), 4)
-            self.assertEqual(viewer.welcome.limits.pasts_max, 4)
-            viewer.call(c.CODE_RESOURCE_EXHAUSTED, open_past=c.OpenPast(world="w"))
-            viewer.call(close_past=c.ClosePast(world=names[0]))
-            viewer.call(c.CODE_NOT_FOUND, close_past=c.ClosePast(world=names[0]))
-            viewer.call(c.CODE_NOT_FOUND, close_past=c.ClosePast(world="w"))
-            viewer.call(open_past=c.OpenPast(world=names[1]))  # the same past
+            self.assertEqual(viewer.welcome.limits.replays_max, 4)
+            viewer.call(c.CODE_RESOURCE_EXHAUSTED, open_replay=c.OpenReplay(world="w"))
+            viewer.call(close_replay=c.CloseReplay(world=names[0]))
+            viewer.call(c.CODE_NOT_FOUND, close_replay=c.CloseReplay(world=names[0]))
+            viewer.call(c.CODE_NOT_FOUND, close_replay=c.CloseReplay(world="w"))
+            viewer.call(open_replay=c.OpenReplay(world=names[1]))  # the same past
             self.assertEqual([world.name for world in viewer.call(list_worlds=c.ListWorlds()).worlds.worlds],
                              ["default", "w"])
         asked = lambda: self.live.response(self.live.ask(get_statistics=c.GetStatistics(world=names[1])))
@@ -192,7 +192,7 @@ class OpenPast(Case):
 
     def test_the_run_may_end_meanwhile(self):
         viewer = self.client(self.served)
-        past = viewer.call(open_past=c.OpenPast(world="w", at=at(tick=10))).world
+        past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=10))).world
         self.live.call(reset_world=c.ResetWorld(world="w", seed=99))
         there = viewer.call(seek=c.Seek(world=past.name, to=at(tick=250))).world
         self.assertEqual(there.state_hash, self.hashes[250])
@@ -201,7 +201,7 @@ class OpenPast(Case):
 
     def test_a_server_that_keeps_nothing_says_so(self):
         viewer = self.client(self.server("--keep-nothing"))
-        refused = viewer.call(c.CODE_FAILED_PRECONDITION, open_past=c.OpenPast())
+        refused = viewer.call(c.CODE_FAILED_PRECONDITION, open_replay=c.OpenReplay())
         self.assertIn("keeps no runs", refused.status.message)
 
 
@@ -273,8 +273,8 @@ class Fork(Case):
             self.assertEqual(client.world(name).tick, tick)
             client.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
             self.assertEqual(client.run_to(500, name).state_hash, end, name)
-        past = client.call(open_past=c.OpenPast(world="now-310")).world
-        self.assertEqual((past.tick, past.recording.first_tick), (310, 310))
+        past = client.call(open_replay=c.OpenReplay(world="now-310")).world
+        self.assertEqual((past.tick, past.replay.first_tick), (310, 310))
         again.end()
         for tick in (0, 77, 120, 310):
             verified = waiting.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
@@ -306,7 +306,7 @@ class Fork(Case):
         refused(c.CODE_NOT_FOUND, world="nowhere", name="f")
 
     def test_a_past_can_be_forked(self):
-        past = self.live.call(open_past=c.OpenPast(world="w", at=at(generation=3))).world.name
+        past = self.live.call(open_replay=c.OpenReplay(world="w", at=at(generation=3))).world.name
         self.live.call(fork_world=c.ForkWorld(world=past, name="f", at_generation=3))
         self.lives_as_its_origin(self.live, "f", [250])
 
@@ -324,7 +324,7 @@ class Replay(Case):
         viewer = self.client(self.server("replay", self.run_file, "--generation", "2"))
         world = viewer.world()
         self.assertEqual((world.name, world.generation, world.tick), ("w", 2, 120))
-        self.assertEqual((world.recording.past_of, world.recording.last_tick), ("", 421))
+        self.assertEqual((world.replay.replay_of, world.replay.last_tick), ("", 421))
         viewer.call(subscribe_events=c.SubscribeEvents())
         viewer.call(set_speed=c.SetSpeed(speed=w.Speed(max=True)))
         viewer.call(resume=c.Resume())

@@ -1363,7 +1363,7 @@ class Deltas(WithServer):
             world=world, codec=codec, rate_hz=rate_hz, **fields)).subscription.subscription_id
 
     def acknowledge(self, picture):
-        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
             subscription_id=picture.subscription_id, island=picture.island, sequence=picture.sequence)))
 
     def next(self, condition=lambda picture: True):
@@ -1529,7 +1529,7 @@ class Deltas(WithServer):
         for _ in range(20):
             picture, _ = self.next()
             self.acknowledge(picture)
-        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
             subscription_id=subscription + 1, island=7, sequence=1)))  # means nothing
 
     def test_columns_can_be_acknowledged_too(self):
@@ -1813,7 +1813,7 @@ class Views(WithServer):
             other.next_picture(lambda p: p.tick == paused.tick)
         self.viewer.call(list_worlds=c.ListWorlds())
         self.assertEqual(self.viewer.pictures, [])
-        self.viewer.send(session_pb2.ClientMessage(acknowledge_picture=session_pb2.AcknowledgePicture(
+        self.viewer.send(session_pb2.ClientMessage(acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
             subscription_id=subscription, island=0, sequence=first.sequence)))
         newest, _ = self.next()
         self.assertEqual(newest.tick, paused.tick)

@@ -32,7 +32,7 @@ PICTURES_AHEAD = 8
 _KEYFRAME_REQUESTS_MAX = 3  # for one damaged picture after another
 
 #: For the answer to these, generations may have to be simulated again: it may take so many times as long as others.
-_REPLAYING = frozenset(("open_past", "seek", "get_breeding", "export_run", "continue_export"))
+_REPLAYING = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
 _REPLAYING_TIMES = 20
 
 #: Of these, a session that has ended leaves nothing that could be asked for again.
@@ -114,7 +114,7 @@ class Core:
         self.connected = False  # welcomed, on the line there is now
         self.failed: Error | None = None  # why there will be no other session
         self.loss: Error | None = None  # why there is no line, after one was lost
-        self.damaged_picture_count = 0  # thrown away because they could not be decoded
+        self.damaged_snapshot_count = 0  # thrown away because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
         self._last_request_id = 0
@@ -207,7 +207,7 @@ class Core:
         """Nobody waits for it any more. A past that it opens all the same is closed when its name is known."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
-        if pending.kind == "open_past" and pending.sent and not pending.done:
+        if pending.kind == "open_replay" and pending.sent and not pending.done:
             self._late_pasts.add(pending.request.request_id)
 
     # ---- subscriptions --------------------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ class Core:
         if subscription.server_id is not None and frame.sequence:
             self._send(
                 session_pb2.ClientMessage(
-                    acknowledge_picture=session_pb2.AcknowledgePicture(
+                    acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
                         subscription_id=subscription.server_id, island=frame.island, sequence=frame.sequence
                     )
                 )
@@ -302,7 +302,7 @@ class Core:
         if response.request_id in self._late_pasts:
             self._late_pasts.discard(response.request_id)
             if response.HasField("world"):
-                self.request(commands_pb2.Request(close_past=commands_pb2.ClosePast(world=response.world.name)))
+                self.request(commands_pb2.Request(close_replay=commands_pb2.CloseReplay(world=response.world.name)))
         pending = self._pending.get(response.request_id)
         if pending is not None and pending.sent:
             del self._pending[response.request_id]
@@ -374,7 +374,7 @@ class Core:
             try:
                 frame = sight.decoder.decode(message)
             except DamagedData:
-                self.damaged_picture_count += 1
+                self.damaged_snapshot_count += 1
                 sight.keyframe_needed = True
                 # A server whose keyframes are damaged too is not asked again and again.
                 if message.codec == stream_pb2.CODEC_DELTA and sight.keyframe_requests < _KEYFRAME_REQUESTS_MAX:
@@ -386,7 +386,7 @@ class Core:
         if frame is None:
             self._send(
                 session_pb2.ClientMessage(
-                    acknowledge_picture=session_pb2.AcknowledgePicture(
+                    acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
                         subscription_id=server_id, island=message.island, sequence=message.sequence
                     )
                 )

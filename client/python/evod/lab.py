@@ -96,9 +96,9 @@ class Lab(_Closing):
         return self._link.core.client_key
 
     @property
-    def damaged_picture_count(self) -> int:
+    def damaged_snapshot_count(self) -> int:
         """Pictures that were thrown away because they could not be decoded; others were asked for."""
-        return self._link.core.damaged_picture_count
+        return self._link.core.damaged_snapshot_count
 
     @property
     def role(self) -> str:
@@ -407,11 +407,11 @@ class World:
         """How its bodies move: energy, momentum, overlaps."""
         return self._link.perform(plans.ask("get_motion", world=self.name, island=island)).motion
 
-    def open_past(self, generation: int | None = None, tick: int | None = None) -> Past:
+    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Past:
         """Its past, as a world beside it: from a generation, a tick of it, or a tick of the run; without a number from the
         beginning. The server has to keep its runs."""
-        at = plans.moment_of("open_past.at.", generation, tick) if (generation, tick) != (None, None) else None
-        return Past(self._lab, self._command("open_past", at=at).name)
+        at = plans.moment_of("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
+        return Past(self._lab, self._command("open_replay", at=at).name)
 
     def export(
         self,
@@ -483,14 +483,14 @@ class World:
 
 
 class Past(World, _Closing):
-    """A world that shows the past of another one; made by World.open_past(), gone with close() or the connection."""
+    """A world that shows the past of another one; made by World.open_replay(), gone with close() or the connection."""
 
     def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
         """To a generation, a tick of it, or a tick of the run; without a number to the last moment that is known."""
         return self._command("seek", to=plans.moment_of("seek.to.", generation, tick))
 
     def close(self) -> None:
-        self._link.perform(plans.close_past(self.name))
+        self._link.perform(plans.close_replay(self.name))
 
 
 class LiveParameters(Mapping[str, Any]):

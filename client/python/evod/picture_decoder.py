@@ -179,7 +179,7 @@ def _counts_of(picture: Any) -> list[int]:
 
 
 def _body_of(picture: Any, position_bytes: int, checked_before: bytes, bytes_max: int) -> _Body:
-    """The body of a SnapshotFrame or a TilePicture, once it is known to be whole. bytes_max: it is refused beyond."""
+    """The body of a SnapshotFrame or a SnapshotTile, once it is known to be whole. bytes_max: it is refused beyond."""
     data = picture.body
     if picture.compression == stream_pb2.COMPRESSION_ZSTD:
         data = _unpack(data, bytes_max)
@@ -249,7 +249,7 @@ class _Deltas:
         self._content: Content = {}
 
     def decode(self, picture: Any, position_bytes: int, checked_before: bytes = b"") -> Content:
-        """picture: a SnapshotFrame or a TilePicture."""
+        """picture: a SnapshotFrame or a SnapshotTile."""
         base, self._sequence = self._sequence, 0
         keyframe = picture.base_sequence == 0
         if not keyframe and picture.base_sequence != base:

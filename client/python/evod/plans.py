@@ -408,9 +408,9 @@ def _goal_of(info: world_pb2.WorldInfo) -> int | None:
     return info.run_until_generation if info.HasField("run_until_generation") else None
 
 
-def close_past(world: str) -> Plan[None]:
+def close_replay(world: str) -> Plan[None]:
     try:
-        yield from ask("close_past", world=world)
+        yield from ask("close_replay", world=world)
     except Error as error:
         if error.code != c.CODE_NOT_FOUND:  # gone with the session that it belonged to
             raise

@@ -1,6 +1,6 @@
 #include "client/viewer/panels/organism_panel.h"
 
-#include "client/link/duration.h"
+#include "client/core/duration.h"
 #include "client/viewer/drawing/ink.h"
 #include "client/viewer/drawing/widgets.h"
 #include "client/viewer/panels/plots/plot.h"
@@ -50,7 +50,7 @@ void build_health(const std::vector<OrganismStory::Health>& points) {
     plot.series.push_back({.colour = palette::organism, .x = s, .y = health});
     curve_widget(plot, {0, most}, 5 * ImGui::GetFontSize());
     ImGui::TextDisabled("%s", points.size() > 1
-                                  ? ("health over " + link::duration(points.back().s - points.front().s)).c_str()
+                                  ? ("health over " + core::duration(points.back().s - points.front().s)).c_str()
                                   : "health, from now on");
 }
 

@@ -20,7 +20,7 @@ class Panel {
     struct Context {
         Watch& watch;
         const Gui& gui;
-        link::WorldView::Clock::time_point now;
+        core::WorldView::Clock::time_point now;
         Sight& sight;
         /// The first time since it was hidden: the events of meanwhile were not heard.
         bool shown_anew = false;

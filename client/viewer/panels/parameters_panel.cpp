@@ -71,7 +71,7 @@ void ParametersPanel::build(Context& context) {
     Watch& watch = context.watch;
     follow(context);
     std::string_view why = watch.why_only_watching();
-    if (watch.recording() != nullptr) {
+    if (watch.replay() != nullptr) {
         why = "This world shows the past, which stays as it was.";
     }
     const bool may = why.empty();

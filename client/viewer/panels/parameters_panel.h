@@ -46,7 +46,7 @@ class ParametersPanel : public Panel {
     Inquiry values_inquiry_;                    // when they may have changed
     bool stale_ = true;                         // the values
     std::uint64_t transaction_ = 0;             // number of the last: an answer to another is late
-    link::WorldView::Clock::time_point sent_{}; // the last; it is never sent twice
+    core::WorldView::Clock::time_point sent_{}; // the last; it is never sent twice
     std::array<char, 64> search_{};
     bool apply_on_release_ = false;
     bool apply_ = false; // as soon as no transaction is under way

@@ -101,7 +101,7 @@ void RunPanel::build_state(const Watch& watch) {
     }
     widgets::say(control.world() + ": " + state, palette::text);
     std::string where = "tick " + with_separators(control.tick());
-    if (const wire::Picture* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = watch.picture()) {
         where = "generation " + with_separators(picture->about.generation()) + ", " + where;
     }
     const std::string seed = "seed " + std::to_string(told.seed());
@@ -183,7 +183,7 @@ void RunPanel::build_speed(Watch& watch) {
 }
 
 void RunPanel::build_reset(Watch& watch, float scale) {
-    if (watch.recording() != nullptr) {
+    if (watch.replay() != nullptr) {
         widgets::say("This world shows the past, which stays as it was.");
         return;
     }

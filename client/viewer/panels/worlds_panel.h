@@ -19,7 +19,7 @@ class WorldsPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
 
     // Ticks rise all the time; nobody reads them faster.
     static constexpr std::chrono::seconds ask_again{1};

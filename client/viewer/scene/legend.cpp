@@ -37,7 +37,7 @@ std::string gene_title(const std::string& name) {
     return name + (name == "food_radius" || name == "poison_radius" ? ", px" : ", gene units");
 }
 
-Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<ColourScale>& density,
+Legend legend_of(const Sight& sight, const codec::DecodedSnapshot& picture, const std::optional<ColourScale>& density,
                  double density_cell_px) {
     Legend legend;
     const Population* population = sight.population();

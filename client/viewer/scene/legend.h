@@ -34,7 +34,7 @@ std::string gene_title(const std::string& name);
 /// Of what is shown of a picture; empty where colours say nothing but what is what.
 ///
 /// density  of the densities that are drawn, if they are
-Legend legend_of(const Sight& sight, const wire::Picture& picture, const std::optional<ColourScale>& density,
+Legend legend_of(const Sight& sight, const codec::DecodedSnapshot& picture, const std::optional<ColourScale>& density,
                  double density_cell_px);
 
 /// Between Gui::begin() and Gui::draw(); nothing of an empty one.

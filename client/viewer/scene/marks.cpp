@@ -42,7 +42,7 @@ Colour colour_of(evod::v1::Choice choice) {
 
 } // namespace
 
-ColourScale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp) {
+ColourScale health_scale(const codec::DecodedOrganisms& organisms, palette::Ramp ramp) {
     float most = 100;
     for (const float health : organisms.health) {
         most = std::max(most, health);
@@ -84,7 +84,7 @@ void put_discs(const Positions& at, std::span<const float> radius_px, std::vecto
     }
 }
 
-void put_health_colours(const wire::OrganismPicture& organisms, const ColourScale& scale,
+void put_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
                         std::vector<Colour>& colours) {
     const Table table{scale};
     for (const float health : organisms.health) {
@@ -92,7 +92,7 @@ void put_health_colours(const wire::OrganismPicture& organisms, const ColourScal
     }
 }
 
-void put_gene_colours(const wire::OrganismPicture& organisms, const Population& population, std::size_t gene,
+void put_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours) {
     const Table table{scale};
     const auto values = population.gene(gene);
@@ -101,14 +101,14 @@ void put_gene_colours(const wire::OrganismPicture& organisms, const Population& 
     }
 }
 
-void put_family_colours(const wire::OrganismPicture& organisms, const Population& population,
+void put_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,
                         const FamilyColours& families, std::vector<Colour>& colours) {
     for (const std::uint32_t id : organisms.id) {
         colours.push_back(id < population.size() ? families.of(population.family(id)) : palette::unknown);
     }
 }
 
-void put_radii(const wire::OrganismPicture& organisms, const Positions& at, const Population& population,
+void put_radii(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
                std::size_t gene, const Rectangle& seen, std::vector<Shape>& shapes) {
     const auto radii = population.gene(gene);
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
@@ -119,7 +119,7 @@ void put_radii(const wire::OrganismPicture& organisms, const Positions& at, cons
     }
 }
 
-void put_forces(const wire::OrganismPicture& organisms, const Positions& at, const Population& population,
+void put_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
                 const Rectangle& seen, ColouredLines& arrows, ColouredLines& targets) {
     constexpr float reach_px = 200; // beyond which nobody sees
     for (std::size_t i = 0; i < organisms.id.size(); ++i) {
@@ -145,7 +145,7 @@ void put_forces(const wire::OrganismPicture& organisms, const Positions& at, con
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 
-void Trails::see(const std::shared_ptr<const wire::Picture>& picture) {
+void Trails::see(const std::shared_ptr<const codec::DecodedSnapshot>& picture) {
     if (!pictures_.empty()) {
         const auto& last = pictures_.back()->about;
         const auto& next = picture->about;
@@ -162,7 +162,7 @@ void Trails::see(const std::shared_ptr<const wire::Picture>& picture) {
     });
 }
 
-void put_ways(const wire::OrganismPicture& from, const wire::OrganismPicture& to, std::span<const float> to_x_px,
+void put_ways(const codec::DecodedOrganisms& from, const codec::DecodedOrganisms& to, std::span<const float> to_x_px,
               std::span<const float> to_y_px, std::vector<Line>& lines) {
     for (std::size_t i = 0, j = 0; i < from.id.size() && j < to.id.size();) {
         if (from.id[i] < to.id[j]) {
@@ -216,11 +216,11 @@ DensityGrid density_of(const Positions& at, const Rectangle& part, double cell_p
     return grid;
 }
 
-DensityGrid overview_of(const wire::Picture& picture, std::size_t cells_max) {
+DensityGrid overview_of(const codec::DecodedSnapshot& picture, std::size_t cells_max) {
     const double width = picture.about.width_px(), height = picture.about.height_px();
     DensityGrid grid = grid_of({0, 0, width, height}, std::max(width, height) / static_cast<double>(cells_max));
     count(grid, picture.organisms.x_px, picture.organisms.y_px);
-    for (const wire::TilePicture& tile : picture.tiles) {
+    for (const codec::DecodedTile& tile : picture.tiles) {
         count(grid, tile.dots.organisms.x_px, tile.dots.organisms.y_px);
     }
     for (const DensityGrid& tile : densities_of(picture)) {
@@ -247,9 +247,9 @@ void put_density(const DensityGrid& grid, Point island, const ColourScale& scale
     }
 }
 
-std::vector<DensityGrid> densities_of(const wire::Picture& picture) {
+std::vector<DensityGrid> densities_of(const codec::DecodedSnapshot& picture) {
     std::vector<DensityGrid> grids;
-    for (const wire::TilePicture& tile : picture.tiles) {
+    for (const codec::DecodedTile& tile : picture.tiles) {
         if (tile.detail == evod::v1::DETAIL_DENSITY) {
             const std::size_t cells = tile.density.cells_per_side;
             grids.push_back({tile.left_px, tile.top_px,

@@ -6,7 +6,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/link/world_view.h"
+#include "client/core/world_view.h"
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/colour_scale.h"
 #include "client/viewer/scene/shapes.h"
@@ -21,13 +21,13 @@
 
 namespace evod::viewer {
 
-using Positions = link::WorldView::Positions;
+using Positions = core::WorldView::Positions;
 
 /// What organisms are coloured by.
 enum class ColourBy { Nothing, Gene, Health, Lineage };
 
 /// 0 to the greatest health of the picture rounded up to hundreds, at least 100: so it stays from picture to picture.
-ColourScale health_scale(const wire::OrganismPicture& organisms, palette::Ramp ramp);
+ColourScale health_scale(const codec::DecodedOrganisms& organisms, palette::Ramp ramp);
 
 /// From the least to the greatest value in the population.
 ColourScale gene_scale(const Population& population, std::size_t gene, palette::Ramp ramp);
@@ -46,15 +46,15 @@ class FamilyColours {
 
 void put_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);
 
-void put_health_colours(const wire::OrganismPicture& organisms, const ColourScale& scale, std::vector<Colour>& colours);
+void put_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale, std::vector<Colour>& colours);
 /// Who is not in the population is `unknown`.
-void put_gene_colours(const wire::OrganismPicture& organisms, const Population& population, std::size_t gene,
+void put_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);
-void put_family_colours(const wire::OrganismPicture& organisms, const Population& population,
+void put_family_colours(const codec::DecodedOrganisms& organisms, const Population& population,
                         const FamilyColours& families, std::vector<Colour>& colours);
 
 /// Circles as large as a gene says, of whom something is seen.
-void put_radii(const wire::OrganismPicture& organisms, const Positions& at, const Population& population,
+void put_radii(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
                std::size_t gene, const Rectangle& seen, std::vector<Shape>& shapes);
 
 /// px of the world that an arrow is long for each kg px/s2 of force.
@@ -67,7 +67,7 @@ struct ColouredLines {
 };
 
 /// From each organism that is seen an arrow along its force, and a line to what it acts on; coloured by its choice.
-void put_forces(const wire::OrganismPicture& organisms, const Positions& at, const Population& population,
+void put_forces(const codec::DecodedOrganisms& organisms, const Positions& at, const Population& population,
                 const Rectangle& seen, ColouredLines& arrows, ColouredLines& targets);
 
 // ---- trails ----------------------------------------------------------------------------------------------------
@@ -78,17 +78,17 @@ class Trails {
     static constexpr double between_s = 0.25, kept_s = 3; // simulated
 
     /// Of another generation, run or island, or from before: begins anew.
-    void see(const std::shared_ptr<const wire::Picture>& picture);
+    void see(const std::shared_ptr<const codec::DecodedSnapshot>& picture);
     void clear() { pictures_.clear(); }
     /// The oldest first.
-    const std::vector<std::shared_ptr<const wire::Picture>>& pictures() const { return pictures_; }
+    const std::vector<std::shared_ptr<const codec::DecodedSnapshot>>& pictures() const { return pictures_; }
 
   private:
-    std::vector<std::shared_ptr<const wire::Picture>> pictures_;
+    std::vector<std::shared_ptr<const codec::DecodedSnapshot>> pictures_;
 };
 
 /// A line for everyone who is in both, to where they are of those in `to`.
-void put_ways(const wire::OrganismPicture& from, const wire::OrganismPicture& to, std::span<const float> to_x_px,
+void put_ways(const codec::DecodedOrganisms& from, const codec::DecodedOrganisms& to, std::span<const float> to_x_px,
               std::span<const float> to_y_px, std::vector<Line>& lines);
 
 // ---- density ---------------------------------------------------------------------------------------------------
@@ -117,10 +117,10 @@ void put_density(const DensityGrid& grid, Point island, const ColourScale& scale
                  std::vector<Colour>& colours);
 
 /// The densities of tiles as grids, those that there are.
-std::vector<DensityGrid> densities_of(const wire::Picture& picture);
+std::vector<DensityGrid> densities_of(const codec::DecodedSnapshot& picture);
 
 /// All of an island that the picture tells of, whatever it tells, in at most `cells_max` cells along its longer side.
-DensityGrid overview_of(const wire::Picture& picture, std::size_t cells_max);
+DensityGrid overview_of(const codec::DecodedSnapshot& picture, std::size_t cells_max);
 
 /// 0 to the most in one cell, rounded up.
 ColourScale density_scale(std::span<const DensityGrid> grids, palette::Ramp ramp);

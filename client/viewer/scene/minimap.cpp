@@ -45,7 +45,7 @@ bool sees_all(const Camera& camera, double island_width, double island_height) {
 }
 
 void Minimap::build(Watch& watch, Camera& camera, const Gui& gui, int number) {
-    const std::shared_ptr<const wire::Picture> picture =
+    const std::shared_ptr<const codec::DecodedSnapshot> picture =
         watch.overview() != nullptr ? watch.overview() : watch.view().latest();
     const double width = picture->about.width_px(), height = picture->about.height_px();
     if (sees_all(camera, width, height)) {

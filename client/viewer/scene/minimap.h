@@ -47,7 +47,7 @@ class Minimap {
     bool take_press() { return std::exchange(pressed_, false); }
 
   private:
-    std::shared_ptr<const wire::Picture> counted_; // the picture of which grid_ is
+    std::shared_ptr<const codec::DecodedSnapshot> counted_; // the picture of which grid_ is
     DensityGrid grid_;
     bool pressed_ = false;
 };

@@ -73,8 +73,8 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count) {
            static_cast<double>(visible_count) * label_area <= covered_max * seen_area;
 }
 
-std::optional<std::size_t> organism_at(Point screen, const wire::Picture& picture,
-                                       const link::WorldView::Positions& organisms, const Camera& camera) {
+std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& picture,
+                                       const core::WorldView::Positions& organisms, const Camera& camera) {
     if (!camera.viewport().contains(screen)) {
         return std::nullopt;
     }
@@ -93,7 +93,7 @@ std::optional<std::size_t> organism_at(Point screen, const wire::Picture& pictur
     return found;
 }
 
-void Scene::set_circles(Layer& layer, const wire::ItemPicture& items, float radius) {
+void Scene::set_circles(Layer& layer, const codec::DecodedItems& items, float radius) {
     shapes_.resize(items.x_px.size());
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
         shapes_[i] = {items.x_px[i], items.y_px[i], radius, radius};
@@ -101,7 +101,7 @@ void Scene::set_circles(Layer& layer, const wire::ItemPicture& items, float radi
     layer.set(shapes_);
 }
 
-void Scene::set_boxes(Layer& layer, const wire::BoxPicture& boxes, const std::vector<float>& x,
+void Scene::set_boxes(Layer& layer, const codec::DecodedBoxes& boxes, const std::vector<float>& x,
                       const std::vector<float>& y) {
     shapes_.resize(x.size());
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
@@ -110,7 +110,7 @@ void Scene::set_boxes(Layer& layer, const wire::BoxPicture& boxes, const std::ve
     layer.set(shapes_);
 }
 
-void Scene::upload_picture(const std::shared_ptr<const wire::Picture>& picture, const Camera& camera) {
+void Scene::upload_picture(const std::shared_ptr<const codec::DecodedSnapshot>& picture, const Camera& camera) {
     if (picture != uploaded_) {
         uploaded_ = picture;
         const auto item_radius = static_cast<float>(picture->about.item_radius_px());
@@ -125,7 +125,7 @@ void Scene::upload_picture(const std::shared_ptr<const wire::Picture>& picture, 
     walls_.set(std::array{Shape{half_width, half_height, half_width + thickness, half_height + thickness}});
 }
 
-void Scene::draw(link::WorldView& view, double blend, const Camera& camera, unsigned width_pixels,
+void Scene::draw(core::WorldView& view, double blend, const Camera& camera, unsigned width_pixels,
                  unsigned height_pixels, const Sight& sight, const Marked& marked) {
     painter_.begin(camera, width_pixels, height_pixels, palette::background);
     density_scale_.reset();
@@ -162,14 +162,14 @@ void Scene::draw(link::WorldView& view, double blend, const Camera& camera, unsi
     painter_.end();
 }
 
-void Scene::draw_items(const wire::Picture& picture) {
+void Scene::draw_items(const codec::DecodedSnapshot& picture) {
     painter_.draw(poison_, poison_look);
     painter_.draw(food_, food_look);
     // Of tiles that are told in dots: where everything is, and nothing more.
-    const auto draw_dots = [&](wire::DotPicture::Places wire::DotPicture::*which, double radius_px, const Look& look) {
+    const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px, const Look& look) {
         shapes_.clear();
         const auto radius = static_cast<float>(radius_px);
-        for (const wire::TilePicture& tile : picture.tiles) {
+        for (const codec::DecodedTile& tile : picture.tiles) {
             const auto& places = tile.dots.*which;
             for (std::size_t i = 0; i < places.x_px.size(); ++i) {
                 shapes_.push_back({places.x_px[i], places.y_px[i], radius, radius});
@@ -180,14 +180,14 @@ void Scene::draw_items(const wire::Picture& picture) {
             painter_.draw(dots_, look);
         }
     };
-    draw_dots(&wire::DotPicture::obstacles, ordinary_radius_px, obstacle_look);
-    draw_dots(&wire::DotPicture::crates, ordinary_radius_px, crate_look);
-    draw_dots(&wire::DotPicture::poison, picture.about.item_radius_px(), poison_look);
-    draw_dots(&wire::DotPicture::food, picture.about.item_radius_px(), food_look);
-    draw_dots(&wire::DotPicture::organisms, ordinary_radius_px, organism_look);
+    draw_dots(&codec::DecodedDots::obstacles, ordinary_radius_px, obstacle_look);
+    draw_dots(&codec::DecodedDots::crates, ordinary_radius_px, crate_look);
+    draw_dots(&codec::DecodedDots::poison, picture.about.item_radius_px(), poison_look);
+    draw_dots(&codec::DecodedDots::food, picture.about.item_radius_px(), food_look);
+    draw_dots(&codec::DecodedDots::organisms, ordinary_radius_px, organism_look);
 }
 
-void Scene::draw_organisms(const wire::Picture& picture, const Positions& at, const Camera& camera,
+void Scene::draw_organisms(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
                            const Sight& sight) {
     shapes_.clear();
     colours_.clear();
@@ -211,7 +211,7 @@ void Scene::draw_organisms(const wire::Picture& picture, const Positions& at, co
     painter_.draw(organisms_, camera.zoom() >= outline_zoom_min ? coloured_look : coloured_small_look);
 }
 
-void Scene::draw_density(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
     auto grids = densities_of(picture);
     if (grids.empty()) { // a whole picture, or tiles that are still told in full
         grids.push_back(density_of(at, camera.visible(), viewer::density_cell_px(camera, density_cell_pixels)));
@@ -227,7 +227,7 @@ void Scene::draw_density(const wire::Picture& picture, const Positions& at, cons
     painter_.draw(density_, density_look);
 }
 
-void Scene::draw_radii(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
     const Population* population = sight.population();
     if (!sight.shown.radii || population == nullptr || camera.zoom() < marks_zoom_min) {
         return;
@@ -243,7 +243,7 @@ void Scene::draw_radii(const wire::Picture& picture, const Positions& at, const 
     }
 }
 
-void Scene::draw_forces(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
     const Population* population = sight.population();
     if (!sight.shown.forces || population == nullptr || camera.zoom() < marks_zoom_min) {
         return;
@@ -257,7 +257,7 @@ void Scene::draw_forces(const wire::Picture& picture, const Positions& at, const
     painter_.draw(arrows_, arrow_look);
 }
 
-void Scene::draw_trails(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
     const auto& pictures = sight.trails().pictures();
     if (!sight.shown.trails || pictures.empty() || camera.zoom() < marks_zoom_min) {
         ways_.clear();
@@ -283,7 +283,7 @@ void Scene::draw_trails(const wire::Picture& picture, const Positions& at, const
     painter_.draw(trail_ends_, trail_look(0));
 }
 
-void Scene::draw_labels(link::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font) {
+void Scene::draw_labels(core::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font) {
     const auto& picture = view.latest();
     if (!picture || camera.zoom() < label_zoom_min) {
         return;

@@ -8,7 +8,7 @@
 // Threads      none; used by the thread that draws.
 #pragma once
 
-#include "client/link/world_view.h"
+#include "client/core/world_view.h"
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/scene/marks.h"
 #include "client/viewer/scene/shapes.h"
@@ -34,8 +34,8 @@ bool labels_are_readable(const Camera& camera, std::size_t visible_count);
 /// The organism that is seen at `screen`; of several the one whose centre is nearest. Up to 3 pixels beside is a hit.
 ///
 /// returns  index in picture.organisms
-std::optional<std::size_t> organism_at(Point screen, const wire::Picture& picture,
-                                       const link::WorldView::Positions& organisms, const Camera& camera);
+std::optional<std::size_t> organism_at(Point screen, const codec::DecodedSnapshot& picture,
+                                       const core::WorldView::Positions& organisms, const Camera& camera);
 
 class Scene {
   public:
@@ -45,7 +45,7 @@ class Scene {
     };
 
     /// Draws the latest picture of `view`, its organisms and crates at `blend`; nothing but the background without one.
-    void draw(link::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
+    void draw(core::WorldView& view, double blend, const Camera& camera, unsigned width_pixels, unsigned height_pixels,
               const Sight& sight, const Marked& marked);
 
     /// What the densities that were drawn last mean; nullopt if none were.
@@ -53,18 +53,18 @@ class Scene {
     double density_cell_px() const { return density_cell_px_; }
 
     /// Adds the health of the organisms that are seen. To be called after draw(), with the same view, blend and camera.
-    void draw_labels(link::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font);
+    void draw_labels(core::WorldView& view, double blend, const Camera& camera, ImDrawList& list, ImFont& font);
 
   private:
-    void upload_picture(const std::shared_ptr<const wire::Picture>& picture, const Camera& camera);
-    void draw_items(const wire::Picture& picture);
-    void draw_organisms(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_density(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_radii(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_forces(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_trails(const wire::Picture& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void set_circles(Layer& layer, const wire::ItemPicture& items, float radius);
-    void set_boxes(Layer& layer, const wire::BoxPicture& boxes, const std::vector<float>& x,
+    void upload_picture(const std::shared_ptr<const codec::DecodedSnapshot>& picture, const Camera& camera);
+    void draw_items(const codec::DecodedSnapshot& picture);
+    void draw_organisms(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void set_circles(Layer& layer, const codec::DecodedItems& items, float radius);
+    void set_boxes(Layer& layer, const codec::DecodedBoxes& boxes, const std::vector<float>& x,
                    const std::vector<float>& y);
 
     ShapePainter painter_;
@@ -72,11 +72,11 @@ class Scene {
     Layer dots_, density_, radii_, arrows_, targets_, trail_ends_;
     /// The ways from one picture of the trails to the next, uploaded once.
     struct Ways {
-        std::shared_ptr<const wire::Picture> from, to;
+        std::shared_ptr<const codec::DecodedSnapshot> from, to;
         std::unique_ptr<Layer> layer;
     };
     std::deque<Ways> ways_;
-    std::shared_ptr<const wire::Picture> uploaded_;
+    std::shared_ptr<const codec::DecodedSnapshot> uploaded_;
     std::optional<ColourScale> density_scale_;
     double density_cell_px_ = 1;
     std::vector<Shape> shapes_; // being put together

@@ -106,7 +106,7 @@ void Sight::forget() {
     *this = std::move(fresh);
 }
 
-void Sight::see(Watch& watch, const std::shared_ptr<const wire::Picture>& picture) {
+void Sight::see(Watch& watch, const std::shared_ptr<const codec::DecodedSnapshot>& picture) {
     const auto& about = picture->about;
     if (place_.run_id != about.run_id()) {
         if (!place_.run_id.empty()) { // it was reset

@@ -23,7 +23,7 @@ namespace evod::viewer {
 /// hand that moves the picture does not outrun it, and not more often than every `between`.
 class StreamedRegion {
   public:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
     static constexpr std::chrono::milliseconds between{200};
 
     /// The view to ask for now; nullopt: the one that was returned last will do.
@@ -38,7 +38,7 @@ class StreamedRegion {
 
 class Sight {
   public:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
 
     // The switches.
     struct Shown {
@@ -95,14 +95,14 @@ class Sight {
     PopulationInquiry::Of population_of(const Watch& watch) const;
     bool needs_population() const;
     void forget();
-    void see(Watch& watch, const std::shared_ptr<const wire::Picture>& picture);
+    void see(Watch& watch, const std::shared_ptr<const codec::DecodedSnapshot>& picture);
     void take_population();
     void ask_organism(Watch& watch, Clock::time_point now);
     void stream(Watch& watch, const Camera& camera, Clock::time_point now);
 
     Place place_;
     std::uint64_t generation_ = 0, tick_ = 0;   // of the picture
-    std::shared_ptr<const wire::Picture> seen_; // the last picture that was taken in
+    std::shared_ptr<const codec::DecodedSnapshot> seen_; // the last picture that was taken in
 
     std::vector<std::string> gene_names_;
     PopulationInquiry population_{poll};

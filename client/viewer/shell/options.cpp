@@ -1,6 +1,6 @@
 #include "client/viewer/shell/options.h"
 
-#include "client/link/credentials.h"
+#include "client/core/credentials.h"
 #include "client/viewer/drawing/gui.h"
 #include "proto/command_line/command.h"
 #include "proto/command_line/number.h"
@@ -56,9 +56,9 @@ std::string parse_size(const std::string& text, Options::Size& size) {
            std::to_string(pixels_max);
 }
 
-link::Result<Script> read_script(const std::string& path) {
+core::Result<Script> read_script(const std::string& path) {
     const auto wrong = [&](const std::string& why) {
-        return link::Error{.kind = link::Error::Kind::Usage, .what = "--script: " + path + ":" + why};
+        return core::Error{.kind = core::Error::Kind::Usage, .what = "--script: " + path + ":" + why};
     };
     std::error_code ignored;
     std::ifstream file;
@@ -104,7 +104,7 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
     const auto where = app.add_option("server,--server", &server, "where evod is: HOST, HOST:PORT, [IPV6]:PORT")
                            .environment("EVOD_SERVER")
                            .show_default();
-    link::Credentials credentials;
+    core::Credentials credentials;
     add_options(app, credentials);
     app.add_option("--world", &options.world, "the world to look at; else the only one, or \"default\"")
         .environment("EVOD_WORLD");
@@ -156,13 +156,13 @@ std::variant<Options, int> parse_options(int argc, const char* const* argv) {
         return *ended;
     }
 
-    const auto endpoint = link::parse_endpoint(server);
+    const auto endpoint = core::parse_endpoint(server);
     if (!endpoint) {
         return app.reject("--server: " + endpoint.error().what);
     }
     options.connection.server = *endpoint;
     options.server_given = where.is_given();
-    if (const auto known = link::apply(credentials, options.connection); !known) {
+    if (const auto known = core::apply(credentials, options.connection); !known) {
         return app.reject(known.error().what);
     }
     if (timeout.is_given() && screenshot.path.empty() && record.path.empty()) {

@@ -1,7 +1,7 @@
 // Options: the command line of evoview.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 #include "client/viewer/shell/script.h"
 #include "client/viewer/watch/watch.h"
 
@@ -13,7 +13,7 @@
 namespace evod::viewer {
 
 struct Options {
-    link::Options connection; // to where, as whom
+    core::Options connection; // to where, as whom
     std::string world;        // empty: the server's choice
     std::uint32_t island = 0;
     bool all_islands = false;                     // at once, as tiles

@@ -52,13 +52,13 @@ void RecentServers::read() {
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
-        const auto address = link::parse_endpoint(line.substr(0, line_bytes_max));
+        const auto address = core::parse_endpoint(line.substr(0, line_bytes_max));
         const bool clean = std::ranges::all_of(line, [](unsigned char sign) { return std::isgraph(sign) != 0; });
         if (number > lines_max || line.size() > line_bytes_max || !clean || !address) {
             problem_ = file_.string() + ":" + std::to_string(number) + ": this is no address; the file is left alone";
             return;
         }
-        read.push_back(link::to_text(*address));
+        read.push_back(core::to_text(*address));
     }
     if (!in.eof()) {
         problem_ = file_.string() + ": cannot be read; the servers of before are not listed";
@@ -68,8 +68,8 @@ void RecentServers::read() {
     addresses_ = std::move(read);
 }
 
-void RecentServers::add(const link::Endpoint& server) {
-    const std::string address = link::to_text(server);
+void RecentServers::add(const core::Endpoint& server) {
+    const std::string address = core::to_text(server);
     std::erase(addresses_, address);
     addresses_.insert(addresses_.begin(), address);
     addresses_.resize(std::min(addresses_.size(), kept_max));

@@ -7,7 +7,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 
 #include <filesystem>
 #include <optional>
@@ -29,7 +29,7 @@ class RecentServers {
     const std::vector<std::string>& addresses() const { return addresses_; }
 
     /// Puts it in front, and writes the file.
-    void add(const link::Endpoint& server);
+    void add(const core::Endpoint& server);
 
     /// What a person has to know of the file; empty if all is well.
     const std::string& problem() const { return problem_; }

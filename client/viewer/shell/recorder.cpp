@@ -1,6 +1,6 @@
 #include "client/viewer/shell/recorder.h"
 
-#include "client/link/duration.h"
+#include "client/core/duration.h"
 #include "client/viewer/shell/film.h"
 #include "client/viewer/shell/waiting.h"
 #include "client/viewer/shell/window.h"
@@ -22,7 +22,7 @@ namespace evod::viewer {
 
 namespace {
 
-using Clock = link::WorldView::Clock;
+using Clock = core::WorldView::Clock;
 
 constexpr double film_rate_hz = 60; // of pictures that come by themselves; the end of a step is shown at once
 constexpr std::chrono::seconds give_back_max{2};
@@ -120,8 +120,8 @@ class Recorder {
             Watch& watch = panes_[i].watch;
             const std::uint64_t tick = watch.picture()->about.tick();
             std::uint64_t target = tick + wanted_.every_ticks;
-            if (watch.recording() != nullptr && watch.may_command()) {
-                target = std::min(target, watch.recording()->last_tick());
+            if (watch.replay() != nullptr && watch.may_command()) {
+                target = std::min(target, watch.replay()->last_tick());
             }
             if (is_over(watch) || target <= tick) {
                 if (i == 0) {
@@ -142,10 +142,10 @@ class Recorder {
         evod::v1::Request request;
         request.mutable_run_until_tick()->set_world(watch.control().world());
         request.mutable_run_until_tick()->set_tick(tick);
-        watch.ask(std::move(request), [this, &watch, pane](const link::Result<evod::v1::Response>& response) {
+        watch.ask(std::move(request), [this, &watch, pane](const core::Result<evod::v1::Response>& response) {
             if (!response) {
                 refusal_ = response.error().what;
-            } else if (!link::accepted(*response) && !is_over(watch)) {
+            } else if (!core::accepted(*response) && !is_over(watch)) {
                 refusal_ = shown_refusal(response->status());
             } else {
                 targets_[pane] = std::max(targets_[pane], response->world().tick());
@@ -154,7 +154,7 @@ class Recorder {
     }
 
     bool was_reset(std::size_t pane) {
-        const wire::Picture* picture = panes_[pane].watch.picture();
+        const codec::DecodedSnapshot* picture = panes_[pane].watch.picture();
         return picture != nullptr && picture->about.run_id() != run_ids_[pane];
     }
 
@@ -192,7 +192,7 @@ class Recorder {
                 return false;
             }
             if (limited && Clock::now() >= end) {
-                throw std::runtime_error{"no picture came within " + link::duration(wanted_.timeout_s) + ": " +
+                throw std::runtime_error{"no picture came within " + core::duration(wanted_.timeout_s) + ": " +
                                          standing(leader())};
             }
             std::this_thread::sleep_for(look_again);
@@ -203,7 +203,7 @@ class Recorder {
     void give_back() {
         for (std::size_t i = 0; i < panes_.size(); ++i) {
             Watch& watch = panes_[i].watch;
-            if (watch.may_command() && watch.recording() == nullptr) {
+            if (watch.may_command() && watch.replay() == nullptr) {
                 evod::v1::Request request;
                 request.mutable_release_lease()->set_world(watch.control().world());
                 watch.ask(std::move(request), [](const auto&) {}); // without a lease there is nothing to give back

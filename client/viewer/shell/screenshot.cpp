@@ -1,6 +1,6 @@
 #include "client/viewer/shell/screenshot.h"
 
-#include "client/link/duration.h"
+#include "client/core/duration.h"
 #include "client/viewer/drawing/png.h"
 #include "client/viewer/shell/screen.h"
 #include "client/viewer/shell/waiting.h"
@@ -32,7 +32,7 @@ void check_hope(const Watch& watch, std::uint64_t tick) {
 } // namespace
 
 void take_screenshot(const Options& options, const Options::Screenshot& screenshot) {
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
     const auto end =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{screenshot.timeout_s});
     sf::Context context{context_settings(), 1, 1};
@@ -63,7 +63,7 @@ void take_screenshot(const Options& options, const Options::Screenshot& screensh
         }
         if (Clock::now() >= end) {
             throw std::runtime_error{"no picture of tick " + std::to_string(screenshot.tick) + " came within " +
-                                     link::duration(screenshot.timeout_s) + ": " + standing(*watch)};
+                                     core::duration(screenshot.timeout_s) + ": " + standing(*watch)};
         }
         std::this_thread::sleep_for(look_again);
     }

@@ -21,8 +21,8 @@ using Acts = std::vector<Script::Act>;
 
 constexpr double patience_s_first = 60, patience_s_max = 86'400;
 
-link::Error usage(std::string what) {
-    return {.kind = link::Error::Kind::Usage, .what = std::move(what)};
+core::Error usage(std::string what) {
+    return {.kind = core::Error::Kind::Usage, .what = std::move(what)};
 }
 
 std::string in_quotes(std::string_view text) {
@@ -41,7 +41,7 @@ std::string in_order(const std::vector<std::string>& names) {
 // ---- words -----------------------------------------------------------------------------------------------------
 
 /// The words of a line; those in quotes without them. Refused if a quote is not closed.
-link::Result<std::vector<std::string>> words_of(std::string_view line) {
+core::Result<std::vector<std::string>> words_of(std::string_view line) {
     std::vector<std::string> words;
     for (std::size_t i = 0; i < line.size();) {
         if (std::isspace(static_cast<unsigned char>(line[i])) != 0) {
@@ -178,14 +178,14 @@ void press(Host& host, const Chord& chord) {
 }
 
 Script::Act press_act(Chord chord) {
-    return [chord](Host& host) -> link::Result<bool> {
+    return [chord](Host& host) -> core::Result<bool> {
         press(host, chord);
         return true;
     };
 }
 
 Script::Act type_act(std::string text) {
-    return [text = std::move(text)](Host& host) -> link::Result<bool> {
+    return [text = std::move(text)](Host& host) -> core::Result<bool> {
         send_text(host, text);
         return true;
     };
@@ -229,8 +229,8 @@ bool click_on(Host& host, const std::string& widget, bool with_control) {
 
 /// Goes there, and in a step of its own, when that has been seen, presses and releases.
 Acts click_acts(const std::string& widget) {
-    return {[widget](Host& host) -> link::Result<bool> { return go_to(host, widget); },
-            [widget](Host& host) -> link::Result<bool> { return click_on(host, widget, false); }};
+    return {[widget](Host& host) -> core::Result<bool> { return go_to(host, widget); },
+            [widget](Host& host) -> core::Result<bool> { return click_on(host, widget, false); }};
 }
 
 /// Types a text into a field, in place of what it says; of a drop-down, opens it and clicks on what has this text.
@@ -238,26 +238,26 @@ Acts set_acts(const std::string& widget, const std::string& text) {
     const std::string choice = widget + ": " + text;
     // Whether it is a drop-down is seen when it is clicked: what is chosen may take it away.
     const auto drops_down = std::make_shared<bool>(false);
-    return {[widget](Host& host) -> link::Result<bool> { return go_to(host, widget); },
-            [widget, drops_down](Host& host) -> link::Result<bool> {
+    return {[widget](Host& host) -> core::Result<bool> { return go_to(host, widget); },
+            [widget, drops_down](Host& host) -> core::Result<bool> {
                 *drops_down = host.choices(widget) != nullptr;
                 return click_on(host, widget, !*drops_down);
             },
-            [choice, drops_down](Host& host) -> link::Result<bool> {
+            [choice, drops_down](Host& host) -> core::Result<bool> {
                 if (*drops_down) {
                     return go_to(host, choice);
                 }
                 press(host, {.key = Key::A, .control = true});
                 return true;
             },
-            [choice, text, drops_down](Host& host) -> link::Result<bool> {
+            [choice, text, drops_down](Host& host) -> core::Result<bool> {
                 if (*drops_down) {
                     return click_on(host, choice, false);
                 }
                 send_text(host, text);
                 return true;
             },
-            [drops_down](Host& host) -> link::Result<bool> {
+            [drops_down](Host& host) -> core::Result<bool> {
                 if (!*drops_down) {
                     press(host, {.key = Key::Enter});
                 }
@@ -347,7 +347,7 @@ struct ScriptLine {
 };
 
 /// What is wrong with a word of a line, counted from 1.
-link::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
+core::Error bad_word(const ScriptLine& line, std::size_t number, const std::string& allowed) {
     return usage("word " + std::to_string(number) + ": " + in_quotes(line.words[number - 1]) + "; allowed: " + allowed);
 }
 
@@ -356,13 +356,13 @@ struct Verb {
     std::string_view words; // after it, in capitals
     std::string_view meaning;
     std::size_t words_min, words_max; // the verb not counted
-    link::Result<Acts> (*parse)(ScriptLine& line);
+    core::Result<Acts> (*parse)(ScriptLine& line);
 };
 
 const Verb verbs[] = {
     {"key", "NAME", "presses a key: A to Z, F1 to F12, Space, Enter, Escape, Tab, …, a sign; with Ctrl+, Shift+, Alt+",
      1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> core::Result<Acts> {
          const auto chord = parse_chord(line.words[1]);
          if (!chord) {
              return bad_word(line, 2, "a key like A, F4, Space, +, Ctrl+Z");
@@ -370,14 +370,14 @@ const Verb verbs[] = {
          return Acts{press_act(*chord)};
      }},
     {"type", "TEXT", "types into the field that has the keyboard", 1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> { return Acts{type_act(line.words[1])}; }},
+     [](ScriptLine& line) -> core::Result<Acts> { return Acts{type_act(line.words[1])}; }},
     {"click", "NAME", "clicks on a widget, by what stands on it or beside it", 1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> { return click_acts(line.words[1]); }},
+     [](ScriptLine& line) -> core::Result<Acts> { return click_acts(line.words[1]); }},
     {"set", "NAME TEXT",
      "types a value into a field or slider, in place of what it says, and Enter; chooses it from a drop-down", 2, 2,
-     [](ScriptLine& line) -> link::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
+     [](ScriptLine& line) -> core::Result<Acts> { return set_acts(line.words[1], line.words[2]); }},
     {"wait", "CONDITION", "waits until that holds", 1, 2,
-     [](ScriptLine& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> core::Result<Acts> {
          const auto* condition = std::ranges::find(conditions, line.words[1], &Condition::name);
          if (condition == std::end(conditions)) {
              return bad_word(line, 2, condition_names());
@@ -393,10 +393,10 @@ const Verb verbs[] = {
          if (const std::string allowed = condition->fault(word); !allowed.empty()) {
              return bad_word(line, 3, allowed);
          }
-         return Acts{[condition, word](Host& host) -> link::Result<bool> { return condition->holds(host, word); }};
+         return Acts{[condition, word](Host& host) -> core::Result<bool> { return condition->holds(host, word); }};
      }},
     {"timeout", "SECONDS", "how long each of the next lines may take; 60 at first", 1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> {
+     [](ScriptLine& line) -> core::Result<Acts> {
          const auto seconds = number_in<double>(line.words[1]);
          if (!seconds || !(*seconds > 0 && *seconds <= patience_s_max)) {
              return bad_word(line, 2, "more than 0, to 86400");
@@ -405,8 +405,8 @@ const Verb verbs[] = {
          return Acts{};
      }},
     {"screenshot", "FILE", "saves the window as PNG", 1, 1,
-     [](ScriptLine& line) -> link::Result<Acts> {
-         return Acts{[path = line.words[1]](Host& host) -> link::Result<bool> {
+     [](ScriptLine& line) -> core::Result<Acts> {
+         return Acts{[path = line.words[1]](Host& host) -> core::Result<bool> {
              if (std::string trouble = host.save(path); !trouble.empty()) {
                  return usage(std::move(trouble));
              }
@@ -414,8 +414,8 @@ const Verb verbs[] = {
          }};
      }},
     {"quit", "", "closes the window", 0, 0,
-     [](ScriptLine&) -> link::Result<Acts> {
-         return Acts{[](Host& host) -> link::Result<bool> {
+     [](ScriptLine&) -> core::Result<Acts> {
+         return Acts{[](Host& host) -> core::Result<bool> {
              host.close();
              return true;
          }};
@@ -430,7 +430,7 @@ std::string verb_names() {
     return names;
 }
 
-link::Result<Acts> acts_of(ScriptLine& line) {
+core::Result<Acts> acts_of(ScriptLine& line) {
     const auto* verb = std::ranges::find(verbs, line.words[0], &Verb::name);
     if (verb == std::end(verbs)) {
         return bad_word(line, 1, verb_names());
@@ -448,7 +448,7 @@ link::Result<Acts> acts_of(ScriptLine& line) {
 
 } // namespace
 
-link::Result<Script> Script::parse(std::string_view text) {
+core::Result<Script> Script::parse(std::string_view text) {
     Script script;
     double patience_s = patience_s_first;
     unsigned number = 0;
@@ -462,7 +462,7 @@ link::Result<Script> Script::parse(std::string_view text) {
             continue;
         }
         ScriptLine line{.words = words ? *std::move(words) : std::vector<std::string>{}, .patience_s = patience_s};
-        auto acts = words ? acts_of(line) : link::Result<Acts>{words.error()};
+        auto acts = words ? acts_of(line) : core::Result<Acts>{words.error()};
         if (!acts) {
             return usage(std::to_string(number) + ": " + acts.error().what);
         }
@@ -478,7 +478,7 @@ link::Result<Script> Script::parse(std::string_view text) {
     return script;
 }
 
-link::Result<void> Script::advance(Host& host, Clock::time_point now) {
+core::Result<void> Script::advance(Host& host, Clock::time_point now) {
     if (done()) {
         return {};
     }

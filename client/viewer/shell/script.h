@@ -18,7 +18,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 #include "client/viewer/drawing/camera.h"
 
 #include <SFML/Window/Event.hpp>
@@ -58,19 +58,19 @@ class Script {
     };
 
     /// Refused, with line and word, if there is anything in it that cannot be understood: '3: word 2: "generaton": …'.
-    static link::Result<Script> parse(std::string_view text);
+    static core::Result<Script> parse(std::string_view text);
 
     bool done() const { return steps_.empty(); }
 
     /// Carries out the next step, or finds that it has to wait. Refused, with its line, when that takes too long or
     /// cannot be done.
-    link::Result<void> advance(Host& host, Clock::time_point now);
+    core::Result<void> advance(Host& host, Clock::time_point now);
 
     /// Each verb with its words and what it does, a line each, for the documentation.
     static std::string reference();
 
     /// True when it is done, false if it has to wait.
-    using Act = std::function<link::Result<bool>(Host&)>;
+    using Act = std::function<core::Result<bool>(Host&)>;
 
   private:
     struct Step {

@@ -20,21 +20,21 @@ void put(std::array<char, size>& field, const std::string& text) {
 
 } // namespace
 
-StartScreen::StartScreen(Screen& screen, const link::Options& begin_with)
+StartScreen::StartScreen(Screen& screen, const core::Options& begin_with)
     : screen_{screen}
     , options_{begin_with}
     , recent_{RecentServers::default_file().value_or(std::filesystem::path{})}
     , tls_{begin_with.tls.has_value()} {
-    put(address_, link::to_text(begin_with.server));
+    put(address_, core::to_text(begin_with.server));
     put(token_, begin_with.token);
     put(ca_, begin_with.tls ? begin_with.tls->ca : "");
 }
 
-void StartScreen::remember(const link::Endpoint& server) {
+void StartScreen::remember(const core::Endpoint& server) {
     recent_.add(server);
 }
 
-std::optional<link::Options> StartScreen::run() {
+std::optional<core::Options> StartScreen::run() {
     chosen_.reset();
     closing_ = false;
     sf::Window& window = screen_.window();
@@ -147,7 +147,7 @@ void StartScreen::build_recent() {
 }
 
 void StartScreen::choose() {
-    const auto server = link::parse_endpoint(address_.data());
+    const auto server = core::parse_endpoint(address_.data());
     if (!server) {
         reason_ = server.error().what;
         return;
@@ -155,7 +155,7 @@ void StartScreen::choose() {
     options_.server = *server;
     options_.token = token_.data();
     if (tls_) {
-        link::Options::Tls files = options_.tls.value_or(link::Options::Tls{});
+        core::Options::Tls files = options_.tls.value_or(core::Options::Tls{});
         files.ca = ca_.data();
         options_.tls = files;
     } else {

@@ -18,16 +18,16 @@ namespace evod::viewer {
 class StartScreen {
   public:
     /// begin_with  what the fields say at first
-    StartScreen(Screen& screen, const link::Options& begin_with);
+    StartScreen(Screen& screen, const core::Options& begin_with);
 
     /// Until a person has chosen; nullopt if the window was closed.
-    std::optional<link::Options> run();
+    std::optional<core::Options> run();
 
     /// Why it is shown again: there is no connection. Empty: a person wants it.
     void tell(std::string reason) { reason_ = std::move(reason); }
 
     /// A server that there was a connection with.
-    void remember(const link::Endpoint& server);
+    void remember(const core::Endpoint& server);
 
   private:
     void build(const Gui& gui);
@@ -40,14 +40,14 @@ class StartScreen {
     using Field = std::array<char, size>;
 
     Screen& screen_;
-    link::Options options_; // what the fields do not say
+    core::Options options_; // what the fields do not say
     RecentServers recent_;
     Field<300> address_{};
     Field<4096> token_{};
     Field<4096> ca_{};
     bool tls_ = false;
     std::string reason_;
-    std::optional<link::Options> chosen_;
+    std::optional<core::Options> chosen_;
     bool closing_ = false;
 };
 

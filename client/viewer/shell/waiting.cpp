@@ -11,18 +11,18 @@ std::string quoted(const std::string& world) {
 
 std::string standing(const Watch& watch) {
     const auto status = watch.connection_status();
-    if (status.state != link::State::Connected) {
-        return status.reason.empty() ? "no connection to " + link::to_text(watch.server()) : status.reason;
+    if (status.state != core::State::Connected) {
+        return status.reason.empty() ? "no connection to " + core::to_text(watch.server()) : status.reason;
     }
     const RunControl& control = watch.control();
     if (!control.known()) {
-        return link::to_text(watch.server()) + " has shown no picture of " + quoted(watch.world());
+        return core::to_text(watch.server()) + " has shown no picture of " + quoted(watch.world());
     }
     return quoted(control.world()) + " is " + watch.state_words() + " at tick " + std::to_string(control.tick());
 }
 
 void check_hope(const Watch& watch) {
-    if (watch.connection_status().state == link::State::Failed) {
+    if (watch.connection_status().state == core::State::Failed) {
         throw std::runtime_error{standing(watch)};
     }
     if (const auto refusal = watch.refusal()) {
@@ -31,7 +31,7 @@ void check_hope(const Watch& watch) {
 }
 
 bool all_have_pictures(Panes& panes) {
-    panes.update(link::WorldView::Clock::now());
+    panes.update(core::WorldView::Clock::now());
     bool all = true;
     for (std::size_t i = 0; i < panes.size(); ++i) {
         const std::vector<Tile> tiles = panes[i].tiles();

@@ -20,7 +20,7 @@ Window::Window(Screen& screen, const Options& options)
     : screen_{screen}, window_{screen.window()}, stage_{screen.stage()}, panes_{wanted_of(options), options.beside} {}
 
 Window::Ending Window::run(bool must_connect, const std::function<void()>& connected) {
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
     now_ = Clock::now();
     bool was_connected = false;
     while (window_.isOpen() && !elsewhere_) {
@@ -161,20 +161,20 @@ void Window::look_at_past_or_present() {
     if (watch.opened_past()) {
         return watch.return_to_present();
     }
-    if (watch.recording() != nullptr) {
+    if (watch.replay() != nullptr) {
         return stage_.overlay().notice("A run file is replayed: it has no present", now_);
     }
     evod::v1::RunMoment now;
-    if (const wire::Picture* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = watch.picture()) {
         now.set_tick(picture->about.tick());
     }
-    watch.open_past(std::move(now));
+    watch.open_replay(std::move(now));
 }
 
 void Window::save_screenshot() {
     const Watch& watch = panes_.focused().watch;
     std::string name = "evoview";
-    if (const wire::Picture* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = watch.picture()) {
         name += "-" + picture->about.world() + "-island-" + std::to_string(picture->about.island()) + "-tick-" +
                 std::to_string(picture->about.tick());
     }

@@ -41,8 +41,8 @@ class Window {
     Stage& stage_;
     Panes panes_;
     Input input_;
-    link::WorldView::Clock::time_point now_{};
-    link::WorldView::Clock::time_point asked_to_quit_{}; // for a while the next Esc does
+    core::WorldView::Clock::time_point now_{};
+    core::WorldView::Clock::time_point asked_to_quit_{}; // for a while the next Esc does
     bool elsewhere_ = false;                             // a person wants to go to the start screen
 };
 

@@ -39,7 +39,7 @@ float sheet(ImDrawList& list, const Gui& gui, Rectangle place, float top, Colour
 
 Colour state_colour(const Watch& watch) {
     const bool runs = watch.connected() && watch.control().state() == evod::v1::RUN_STATE_RUNNING &&
-                      !link::worlds_wait(watch.storage());
+                      !core::worlds_wait(watch.storage());
     return runs ? palette::running : palette::stopped;
 }
 
@@ -78,15 +78,15 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, 
     if (focused) {
         list.AddRectFilled({left, top}, {right, top + 3 * scale}, ink(palette::focus));
     }
-    const wire::Picture* picture = watch.picture();
+    const codec::DecodedSnapshot* picture = watch.picture();
     if (picture == nullptr) {
         return;
     }
     const ImFont& text = gui.text();
     float title_begin = left + margin;
     const float top_line = top + (title_height - text.FontSize) / 2 - 1;
-    if (watch.recording() != nullptr) {
-        const std::string mark = past_mark(*watch.recording());
+    if (watch.replay() != nullptr) {
+        const std::string mark = past_mark(*watch.replay());
         const float mark_end = title_begin + size_of(mark, text).x + 16 * scale;
         list.AddRectFilled({title_begin, top + 7 * scale}, {mark_end, top + title_height - 8 * scale},
                            ink(palette::past), 4 * scale);
@@ -124,14 +124,14 @@ void Overlay::build_strips(const Watch& watch, const Gui& gui, Rectangle place, 
 }
 
 void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle place) {
-    const link::ConnectionStatus status = watch.connection_status();
-    const std::string server = link::to_text(watch.server());
+    const core::ConnectionStatus status = watch.connection_status();
+    const std::string server = core::to_text(watch.server());
     const std::string trouble = shown_storage(watch.storage());
     std::string text;
-    if (status.state == link::State::Failed) {
+    if (status.state == core::State::Failed) {
         text =
             "No connection to " + server + "\n" + watch.no_connection() + "\nCtrl+Backspace goes to the start screen";
-    } else if (status.state != link::State::Connected) {
+    } else if (status.state != core::State::Connected) {
         const std::string why = watch.no_connection();
         text = "Connecting to " + server + " …" + (why.empty() ? "" : "\n" + why + "; retrying");
     } else if (const auto refusal = watch.refusal()) {
@@ -143,8 +143,8 @@ void Overlay::build_connection(const Watch& watch, const Gui& gui, Rectangle pla
     } else {
         return;
     }
-    const bool bad = status.state == link::State::Failed || watch.refusal() ||
-                     (status.state == link::State::Connected && !trouble.empty());
+    const bool bad = status.state == core::State::Failed || watch.refusal() ||
+                     (status.state == core::State::Connected && !trouble.empty());
     const double below = watch.picture() == nullptr ? place.height * 0.42 : (top_strip + 16) * gui.scale();
     sheet(*ImGui::GetForegroundDrawList(), gui, place, static_cast<float>(place.top + below),
           bad ? palette::warning : palette::note, text);
@@ -177,7 +177,7 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
     }
 }
 
-void Overlay::build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui) {
+void Overlay::build_organism(const codec::DecodedSnapshot& picture, std::size_t organism, Point screen, const Gui& gui) {
     const std::string text =
         print("organism %u\nhealth %.1f\nradius %.1f px", picture.organisms.id[organism],
               double{picture.organisms.health[organism]}, double{picture.organisms.radius_px[organism]});

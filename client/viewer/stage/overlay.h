@@ -17,7 +17,7 @@ namespace evod::viewer {
 
 class Overlay {
   public:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
 
     static constexpr std::chrono::seconds notice_shown{6};
     /// Shows a sentence for so long.
@@ -34,7 +34,7 @@ class Overlay {
     /// Which island a tile shows.
     void build_tile(std::uint32_t island, const Gui& gui, Rectangle place, bool chosen);
     /// What is known of one organism, beside it.
-    void build_organism(const wire::Picture& picture, std::size_t organism, Point screen, const Gui& gui);
+    void build_organism(const codec::DecodedSnapshot& picture, std::size_t organism, Point screen, const Gui& gui);
 
   private:
     struct Notice {

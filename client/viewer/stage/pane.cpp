@@ -28,7 +28,7 @@ const Sight& Pane::sight_of(const Tile& tile) {
 }
 
 void Pane::lay_out(Rectangle place, bool with_timeline, double scale) {
-    const double height = with_timeline && watch.recording() ? Timeline::height_pixels * scale : 0;
+    const double height = with_timeline && watch.replay() ? Timeline::height_pixels * scale : 0;
     place_ = {place.left, place.top, place.width, std::max(place.height - height, 1.0)};
     timeline_place_ = {place.left, place.top + place_.height, place.width, height};
     const std::vector<Tile> all = tiles();
@@ -56,7 +56,7 @@ Panes::Panes(Watch::Wanted wanted, const std::optional<std::string>& beside) : w
     }
 }
 
-void Panes::update(link::WorldView::Clock::time_point now) {
+void Panes::update(core::WorldView::Clock::time_point now) {
     for (const auto& pane : panes_) {
         pane->watch.update(now);
     }

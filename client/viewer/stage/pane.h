@@ -23,7 +23,7 @@ namespace evod::viewer {
 /// An island as it is drawn: what is known of it, and where and how it is seen.
 struct Tile {
     std::uint32_t island;
-    link::WorldView& view;
+    core::WorldView& view;
     Camera& camera;
 };
 
@@ -66,7 +66,7 @@ class Panes {
     explicit Panes(Watch::Wanted wanted, const std::optional<std::string>& beside = {});
 
     /// Takes in what has come for each of them.
-    void update(link::WorldView::Clock::time_point now);
+    void update(core::WorldView::Clock::time_point now);
     /// interactive  with what hands act upon: the strip of the panels, time lines
     void lay_out(unsigned width_pixels, unsigned height_pixels, bool interactive, double scale);
 

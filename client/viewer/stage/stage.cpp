@@ -15,7 +15,7 @@ namespace evod::viewer {
 
 namespace {
 
-std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const wire::Picture& picture) {
+std::optional<std::size_t> index_of(std::optional<std::uint32_t> id, const codec::DecodedSnapshot& picture) {
     const auto& ids = picture.organisms.id;
     const auto place = id ? std::ranges::lower_bound(ids, *id) : ids.end();
     return place != ids.end() && *place == *id ? std::optional{static_cast<std::size_t>(place - ids.begin())}
@@ -42,7 +42,7 @@ void clear(Colour colour, const Stage::Frame& frame) {
 
 void Stage::select_at(Pane& pane, Point screen) {
     Watch& watch = pane.watch;
-    if (const wire::Picture* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = watch.picture()) {
         const auto index = organism_at(screen, *picture, watch.view().organisms_at(pane.blend), pane.camera());
         watch.select(index ? std::optional{picture->organisms.id[*index]} : std::nullopt);
         if (index) {
@@ -91,7 +91,7 @@ void Stage::draw(Panes& panes, const Frame& frame) {
 void Stage::draw_tile(Pane& pane, const Tile& tile, Scene& scene, const Frame& frame, int pane_number) {
     const bool chosen = tile.island == pane.watch.island();
     const double blend = frame.glide ? tile.view.blend_at(frame.now) : 1;
-    const wire::Picture* picture = tile.view.latest().get();
+    const codec::DecodedSnapshot* picture = tile.view.latest().get();
     Scene::Marked marked;
     if (picture != nullptr && chosen) {
         pane.blend = blend;

@@ -21,7 +21,7 @@ namespace evod::viewer {
 
 class Stage {
   public:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
 
     /// scale  of all text and widgets
     explicit Stage(double scale = 1) : gui_{scale} {}

@@ -35,7 +35,7 @@ evod::v1::RunMoment moment_of_tick(std::uint64_t tick) {
 } // namespace
 
 void Timeline::build(Watch& watch, const Gui& gui, Rectangle place, int number) {
-    if (watch.recording() == nullptr || place.height <= 0) {
+    if (watch.replay() == nullptr || place.height <= 0) {
         return;
     }
     if (watch.world() != world_ || watch.control().run_id() != run_id_) {
@@ -62,9 +62,9 @@ void Timeline::build(Watch& watch, const Gui& gui, Rectangle place, int number) 
     ImGui::PopStyleVar(3);
 }
 
-void Timeline::learn_beginnings(Watch& watch, const evod::v1::Recording& recording, std::size_t count_max) {
+void Timeline::learn_beginnings(Watch& watch, const evod::v1::Replay& recording, std::size_t count_max) {
     begin_tick_[recording.first_generation()] = recording.first_tick();
-    if (const wire::Picture* picture = watch.picture()) {
+    if (const codec::DecodedSnapshot* picture = watch.picture()) {
         const std::uint64_t generation = picture->about.generation();
         begin_tick_[generation] = picture->about.tick() - picture->about.generation_tick();
         shown_generation_ = generation;
@@ -72,17 +72,17 @@ void Timeline::learn_beginnings(Watch& watch, const evod::v1::Recording& recordi
     for (const std::uint64_t generation :
          marked_generations(recording.first_generation(), recording.last_generation(), count_max)) {
         // A replay knows only what ended before the moment that it shows.
-        const bool known = !recording.past_of().empty() || generation <= shown_generation_;
+        const bool known = !recording.replay_of().empty() || generation <= shown_generation_;
         if (!known || begin_tick_.contains(generation) || !asked_.insert(generation).second) {
             continue;
         }
         evod::v1::Request request; // it begins where the one before ends
         auto& history = *request.mutable_get_history();
-        history.set_world(recording.past_of().empty() ? watch.world() : recording.past_of());
+        history.set_world(recording.replay_of().empty() ? watch.world() : recording.replay_of());
         history.set_first_generation(generation - 1);
         history.set_last_generation(generation - 1);
         history.set_island(0);
-        watch.ask(std::move(request), [this, generation](const link::Result<evod::v1::Response>& response) {
+        watch.ask(std::move(request), [this, generation](const core::Result<evod::v1::Response>& response) {
             if (response && response->history().generations_size() > 0) {
                 begin_tick_[generation] = response->history().generations(0).end_tick();
             }
@@ -91,7 +91,7 @@ void Timeline::learn_beginnings(Watch& watch, const evod::v1::Recording& recordi
 }
 
 void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
-    const evod::v1::Recording recording = *watch.recording(); // a seek that is answered changes it
+    const evod::v1::Replay recording = *watch.replay(); // a seek that is answered changes it
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float pixel = gui.scale(), label_size = label_height * pixel;
     const float width = std::max(static_cast<float>(place.width) - 2 * timeline_edge * pixel, 1.f);
@@ -145,7 +145,7 @@ void Timeline::build_line(Watch& watch, const Gui& gui, Rectangle place) {
 }
 
 void Timeline::build_buttons(Watch& watch, float pixel) {
-    const evod::v1::Recording recording = *watch.recording();
+    const evod::v1::Replay recording = *watch.replay();
     if (widgets::button("|<")) {
         watch.seek(beginning_of(recording.first_generation()));
     }

@@ -33,7 +33,7 @@ class Timeline {
     void build_line(Watch& watch, const Gui& gui, Rectangle place);
     void build_buttons(Watch& watch, float pixel);
     void build_fork(Watch& watch);
-    void learn_beginnings(Watch& watch, const evod::v1::Recording& recording, std::size_t count_max);
+    void learn_beginnings(Watch& watch, const evod::v1::Replay& recording, std::size_t count_max);
 
     std::string world_, run_id_;                        // what the rest is about
     std::map<std::uint64_t, std::uint64_t> begin_tick_; // of generations

@@ -22,12 +22,12 @@ void Inquiry::ask(Watch& watch, evod::v1::Request request, Clock::time_point now
     state_->asked = now;
     state_->hurried = false;
     watch.ask(std::move(request), [weak = std::weak_ptr{state_}, number, place, pause = pause_, &watch,
-                                   handler = std::move(handler)](const link::Result<evod::v1::Response>& response) {
+                                   handler = std::move(handler)](const core::Result<evod::v1::Response>& response) {
         const auto state = weak.lock();
         if (!state || state->number != number || watch.place_number() != place) {
             return;
         }
-        const bool good = response && link::accepted(*response);
+        const bool good = response && core::accepted(*response);
         state->asked.reset();
         state->next = Clock::now() + (good ? pause : Clock::duration{after_refusal});
         state->trouble = good ? "" : response ? shown_refusal(response->status()) : response.error().what;

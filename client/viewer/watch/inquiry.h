@@ -21,7 +21,7 @@ namespace evod::viewer {
 
 class Inquiry {
   public:
-    using Clock = link::WorldView::Clock;
+    using Clock = core::WorldView::Clock;
     /// Null: the question was refused, or nothing was heard; trouble() says why. May ask again, or say when.
     using Handler = std::function<void(const evod::v1::Response*)>;
 

@@ -4,7 +4,7 @@
 
 namespace evod::viewer {
 
-void OrganismStory::see(const wire::Picture& picture) {
+void OrganismStory::see(const codec::DecodedSnapshot& picture) {
     if (picture.about.generation() != generation_) {
         ended_ = true;
         // Its children are in the next generation alone.

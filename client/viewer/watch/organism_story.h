@@ -4,7 +4,7 @@
 #pragma once
 
 #include "client/viewer/watch/population.h"
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ class OrganismStory {
     OrganismStory(std::uint32_t id, std::uint64_t generation) : id_{id}, generation_{generation} {}
 
     /// A picture of its island; those of other generations change nothing but end it.
-    void see(const wire::Picture& picture);
+    void see(const codec::DecodedSnapshot& picture);
     /// What the server says of the organism of that id; of another generation it is another organism.
     void take(const evod::v1::OrganismInfo& info);
     /// A whole population: of its generation, among which it lives, or of the one after, in which its children are.

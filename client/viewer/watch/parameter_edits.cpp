@@ -1,6 +1,6 @@
 #include "client/viewer/watch/parameter_edits.h"
 
-#include "client/link/actor.h"
+#include "client/core/actor.h"
 #include "client/viewer/watch/readout.h"
 
 #include <algorithm>
@@ -211,7 +211,7 @@ bool ParameterEdits::see(const evod::v1::ParametersChanged& changed) {
     for (const evod::v1::ParameterState& state : changed.changed()) {
         take(state);
         if (const auto found = index_.find(state.name()); found != index_.end()) {
-            states_[found->second].changed_by = link::to_text(changed.by());
+            states_[found->second].changed_by = core::to_text(changed.by());
         }
     }
     const bool next = changed.revision() == revision_ + 1;

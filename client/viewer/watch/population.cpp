@@ -160,7 +160,7 @@ std::vector<std::uint32_t> Population::children_of(std::uint32_t parent) const {
     return children;
 }
 
-std::optional<std::vector<std::uint32_t>> living(const Population& population, const wire::Picture* picture) {
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* picture) {
     std::vector<std::uint32_t> ids;
     for (std::uint32_t id = 0; id < population.size(); ++id) {
         if (population.choice(id) != evod::v1::CHOICE_UNSPECIFIED) {

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "evod/v1/commands.pb.h"
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 
 #include <array>
 #include <cstddef>
@@ -91,6 +91,6 @@ class Population {
 /// tells, if it shows all of the island.
 ///
 /// picture  the newest of its island and run; null: there is none
-std::optional<std::vector<std::uint32_t>> living(const Population& population, const wire::Picture* picture);
+std::optional<std::vector<std::uint32_t>> living(const Population& population, const codec::DecodedSnapshot* picture);
 
 } // namespace evod::viewer

@@ -1,6 +1,6 @@
 #include "client/viewer/watch/readout.h"
 
-#include "client/link/duration.h"
+#include "client/core/duration.h"
 
 #include <cctype>
 #include <cmath>
@@ -55,7 +55,7 @@ const char* state_word(evod::v1::RunState state, const evod::v1::Storage& storag
     case evod::v1::RUN_STATE_WAITING:
         return "waiting";
     case evod::v1::RUN_STATE_RUNNING:
-        return link::worlds_wait(storage) ? "waits for the disk" : "running";
+        return core::worlds_wait(storage) ? "waits for the disk" : "running";
     case evod::v1::RUN_STATE_PAUSED:
         return "paused";
     case evod::v1::RUN_STATE_TERMINATED:
@@ -83,7 +83,7 @@ std::string shown_refusal(const evod::v1::Status& status) {
     return text;
 }
 
-std::string shown_loss(const link::ConnectionStatus& status, bool came_with_token) {
+std::string shown_loss(const core::ConnectionStatus& status, bool came_with_token) {
     if (status.token_needed && !came_with_token) { // the server tells of options, for those who have no fields
         return "The server wants a token: whoever runs it makes them";
     }
@@ -94,8 +94,8 @@ std::string title(const evod::v1::SnapshotFrame& picture) {
     return "Generation " + with_separators(picture.generation());
 }
 
-std::string past_mark(const evod::v1::Recording& recording) {
-    return recording.past_of().empty() ? "REPLAY" : "PAST of " + recording.past_of();
+std::string past_mark(const evod::v1::Replay& replay) {
+    return replay.replay_of().empty() ? "REPLAY" : "PAST of " + replay.replay_of();
 }
 
 std::string shown_place(const evod::v1::SnapshotFrame& picture) {
@@ -122,7 +122,7 @@ std::vector<std::string> statistics(const evod::v1::SnapshotFrame& picture,
         print("mean health %.1f", live.health_mean()),
         "food eaten " + with_separators(live.food_eaten()),
         "poison eaten " + with_separators(live.poison_eaten()),
-        "tick " + with_separators(picture.tick()) + " (" + link::duration(picture.simulated_s()) + ")",
+        "tick " + with_separators(picture.tick()) + " (" + core::duration(picture.simulated_s()) + ")",
     };
     if (last_generation != nullptr) {
         pieces.push_back(print("fitness of generation %llu: best %.1f, mean %.1f",

@@ -3,7 +3,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 #include "client/viewer/text/numbers.h"
 #include "client/viewer/watch/run_control.h"
 
@@ -26,13 +26,13 @@ std::string shown_refusal(const evod::v1::Status& status);
 
 /// Why there is no connection, in a sentence for a person who sees fields for server and token; empty if nothing is
 /// wrong.
-std::string shown_loss(const link::ConnectionStatus& status, bool came_with_token);
+std::string shown_loss(const core::ConnectionStatus& status, bool came_with_token);
 
 /// "Generation 12"; empty before the first picture.
 std::string title(const evod::v1::SnapshotFrame& picture);
 
 /// Before the title of a world that shows what has been: "PAST of default", or "REPLAY" of a run file.
-std::string past_mark(const evod::v1::Recording& recording);
+std::string past_mark(const evod::v1::Replay& replay);
 
 /// "default · island 2 of 0–7"
 std::string shown_place(const evod::v1::SnapshotFrame& picture);

@@ -35,7 +35,7 @@ void RunControl::see(const evod::v1::SnapshotFrame& picture) {
 
 void RunControl::see(const evod::v1::WorldInfo& world) {
     begin_run(world.name(), world.run_id());
-    shows_past_ = world.has_recording();
+    shows_past_ = world.has_replay();
     if (world.tick() < told_.tick() && !shows_past_) {
         return; // overtaken on its way
     }

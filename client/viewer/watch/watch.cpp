@@ -1,6 +1,6 @@
 #include "client/viewer/watch/watch.h"
 
-#include "client/link/actor.h"
+#include "client/core/actor.h"
 #include "client/viewer/watch/readout.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::minutes journey_max{10};
 constexpr std::chrono::seconds ask_how_far{1}; // the past grows while its world lives on
 
-link::Options as_evoview(link::Options options) {
+core::Options as_evoview(core::Options options) {
     options.client_name = "evoview";
     options.client_version = EVOD_VERSION;
     return options;
@@ -34,7 +34,7 @@ Watch::Watch(Wanted wanted)
     if (wanted_.past_generation) {
         evod::v1::RunMoment at;
         at.set_generation(*wanted_.past_generation);
-        open_past(at);
+        open_replay(at);
     }
 }
 
@@ -76,12 +76,12 @@ void Watch::look_at(std::string world, std::uint32_t island) {
         gene_names_.clear();
         last_generation_.clear();
         unanswered_.clear(); // what they would tell is of the other world
-        recording_.reset();
+        replay_.reset();
         seeks_.forget();
         past_refusal_.reset();
         if (present_) {
             connection_.unsubscribe(past_events_);
-            close_past(wanted_.world);
+            close_replay(wanted_.world);
             present_.reset();
         }
     }
@@ -110,7 +110,7 @@ void Watch::set_view(std::optional<evod::v1::View> view) {
 }
 
 void Watch::turn_islands(int by) {
-    if (const wire::Picture* shown = picture()) {
+    if (const codec::DecodedSnapshot* shown = picture()) {
         const auto count = std::max<std::int64_t>(shown->about.island_count(), 1);
         const std::int64_t island = (std::int64_t{wanted_.island} + by + count) % count;
         choose_island(static_cast<std::uint32_t>(island));
@@ -141,14 +141,14 @@ void Watch::show_all_islands(bool all) {
 
 // ---- the past --------------------------------------------------------------------------------------------------
 
-void Watch::open_past(evod::v1::RunMoment at) {
-    if (recording_ || opening_.valid()) {
+void Watch::open_replay(evod::v1::RunMoment at) {
+    if (replay_ || opening_.valid()) {
         return;
     }
     past_refusal_.reset();
     evod::v1::Request request;
-    request.mutable_open_past()->set_world(wanted_.world);
-    *request.mutable_open_past()->mutable_at() = std::move(at);
+    request.mutable_open_replay()->set_world(wanted_.world);
+    *request.mutable_open_replay()->mutable_at() = std::move(at);
     opening_of_ = wanted_.world;
     opening_ = connection_.send(std::move(request), journey_max);
 }
@@ -158,17 +158,17 @@ void Watch::take_opened() {
         return;
     }
     const auto response = opening_.get();
-    if (!response || !link::accepted(*response)) {
+    if (!response || !core::accepted(*response)) {
         notices_.push_back(response ? shown_refusal(response->status()) : response.error().what);
         if (wanted_.past_generation) {
             past_refusal_ = notices_.back();
         }
     } else if (wanted_.world != opening_of_) { // somebody looks elsewhere by now
-        close_past(response->world().name());
+        close_replay(response->world().name());
     } else {
         const evod::v1::WorldInfo& past = response->world();
         look_at(past.name(), wanted_.island);
-        present_ = past.recording().past_of();
+        present_ = past.replay().replay_of();
         see(past);
         evod::v1::SubscribeEvents subscription;
         subscription.set_world(past.name());
@@ -177,9 +177,9 @@ void Watch::take_opened() {
     wanted_.past_generation.reset();
 }
 
-void Watch::close_past(const std::string& world) {
+void Watch::close_replay(const std::string& world) {
     evod::v1::Request request;
-    request.mutable_close_past()->set_world(world);
+    request.mutable_close_replay()->set_world(world);
     connection_.send(std::move(request)); // gone with the session at the latest, whatever the answer
 }
 
@@ -190,7 +190,7 @@ void Watch::return_to_present() {
 }
 
 void Watch::seek(evod::v1::RunMoment to) {
-    if (recording_ && is_allowed()) {
+    if (replay_ && is_allowed()) {
         send_seek(seeks_.ask(std::move(to)));
     }
 }
@@ -202,8 +202,8 @@ void Watch::send_seek(std::optional<evod::v1::RunMoment> to) {
     evod::v1::Request request;
     request.mutable_seek()->set_world(name());
     *request.mutable_seek()->mutable_to() = *std::move(to);
-    auto arrived = [this](const link::Result<evod::v1::Response>& response) {
-        if (!response || !link::accepted(*response)) {
+    auto arrived = [this](const core::Result<evod::v1::Response>& response) {
+        if (!response || !core::accepted(*response)) {
             notices_.push_back(response ? shown_refusal(response->status()) : response.error().what);
         } else {
             see(response->world());
@@ -219,14 +219,14 @@ void Watch::send_seek(std::optional<evod::v1::RunMoment> to) {
 
 void Watch::turn_generations(int by) {
     const evod::v1::RunMoment* target = seeks_.target();
-    if (!recording_ || !(picture() || (target && target->has_generation()))) {
+    if (!replay_ || !(picture() || (target && target->has_generation()))) {
         return;
     }
     const auto from = target && target->has_generation() ? target->generation() : picture()->about.generation();
     const auto to = static_cast<std::int64_t>(from) + by;
     evod::v1::RunMoment moment;
     moment.set_generation(std::clamp(static_cast<std::uint64_t>(std::max<std::int64_t>(to, 1)),
-                                     recording_->first_generation(), recording_->last_generation()));
+                                     replay_->first_generation(), replay_->last_generation()));
     seek(std::move(moment));
 }
 
@@ -238,8 +238,8 @@ void Watch::fork(const std::string& name) {
     evod::v1::Request request;
     request.mutable_fork_world()->set_world(this->name());
     request.mutable_fork_world()->set_name(name);
-    ask(std::move(request), [this, name](const link::Result<evod::v1::Response>& response) {
-        if (response && link::accepted(*response)) {
+    ask(std::move(request), [this, name](const core::Result<evod::v1::Response>& response) {
+        if (response && core::accepted(*response)) {
             forked_ = name;
             notices_.push_back("The world " + name + " begins here; B shows it beside");
         } else {
@@ -276,10 +276,10 @@ void Watch::find_next_world(std::function<void(const std::string& world)> found)
     }
     evod::v1::Request request;
     request.mutable_list_worlds();
-    ask(std::move(request), [this, found = std::move(found)](const link::Result<evod::v1::Response>& response) {
+    ask(std::move(request), [this, found = std::move(found)](const core::Result<evod::v1::Response>& response) {
         if (!response) {
             notices_.push_back(response.error().what);
-        } else if (!link::accepted(*response)) {
+        } else if (!core::accepted(*response)) {
             notices_.push_back(shown_refusal(response->status()));
         } else if (const auto world = world_after_this(response->worlds())) {
             found(*world);
@@ -296,7 +296,7 @@ void Watch::ask_state() {
 bool Watch::is_over() {
     const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED || at_the_end();
     if (over) {
-        notices_.push_back(recording_ ? "This is the end of the recording; [ goes back by a generation"
+        notices_.push_back(replay_ ? "This is the end of the recording; [ goes back by a generation"
                                       : "The run has ended; a reset of the world begins it again");
     }
     return over;
@@ -365,7 +365,7 @@ std::string_view Watch::why_only_watching() const {
 
 // ---- what comes ------------------------------------------------------------------------------------------------
 
-bool Watch::update(link::WorldView::Clock::time_point now) {
+bool Watch::update(core::WorldView::Clock::time_point now) {
     if (const auto status = connection_.status(); status.connected_count != connected_count_) {
         connected_count_ = status.connected_count;
         role_ = status.welcome ? status.welcome->role() : evod::v1::ROLE_UNSPECIFIED;
@@ -391,10 +391,10 @@ bool Watch::update(link::WorldView::Clock::time_point now) {
     for (const evod::v1::Event& event : new_events_) {
         take_event(event);
     }
-    if (auto overview = overview_ ? connection_.take_picture(*overview_, wanted_.island) : nullptr) {
+    if (auto overview = overview_ ? connection_.take_snapshot(*overview_, wanted_.island) : nullptr) {
         overview_picture_ = std::move(overview);
     }
-    auto pictures = connection_.take_pictures(pictures_);
+    auto pictures = connection_.take_snapshots(pictures_);
     for (auto& picture : pictures) {
         if (control_.known() && picture->about.run_id() != control_.run_id()) {
             ask_state(); // another run has another generation before
@@ -425,10 +425,10 @@ void Watch::take_answers() {
     }
 }
 
-void Watch::take_command_answer(const link::Result<evod::v1::Response>& response) {
+void Watch::take_command_answer(const core::Result<evod::v1::Response>& response) {
     if (!response) {
         notices_.push_back(response.error().what);
-    } else if (!link::accepted(*response)) {
+    } else if (!core::accepted(*response)) {
         notices_.push_back(shown_refusal(response->status()));
     }
     send(control_.answered(response ? &*response : nullptr));
@@ -437,9 +437,9 @@ void Watch::take_command_answer(const link::Result<evod::v1::Response>& response
 void Watch::see(const evod::v1::WorldInfo& world) {
     control_.see(world);
     gene_names_.assign(world.gene_names().begin(), world.gene_names().end());
-    recording_.reset();
-    if (world.has_recording()) {
-        recording_ = world.recording();
+    replay_.reset();
+    if (world.has_replay()) {
+        replay_ = world.replay();
     }
 }
 
@@ -497,11 +497,11 @@ void Watch::take_event(const evod::v1::Event& event) {
     case Kind::kWorldReset:
         see(event.world_reset().world());
         last_generation_.clear();
-        notices_.push_back("The world was reset by " + link::to_text(event.world_reset().by()));
+        notices_.push_back("The world was reset by " + core::to_text(event.world_reset().by()));
         break;
     case Kind::kWorldDeleted:
         notices_.push_back("The world " + event.world() + " was deleted by " +
-                           link::to_text(event.world_deleted().by()));
+                           core::to_text(event.world_deleted().by()));
         control_.forget();
         look_at(event.world(), 0); // there may be one of this name again
         break;
@@ -510,7 +510,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& parameter : event.parameters_changed().changed()) {
             names += (names.empty() ? "" : ", ") + parameter.name();
         }
-        notices_.push_back(link::to_text(event.parameters_changed().by()) + " changed " + names);
+        notices_.push_back(core::to_text(event.parameters_changed().by()) + " changed " + names);
         break;
     }
     case Kind::kChangePlanned:
@@ -521,7 +521,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& assignment : change.parameters()) {
             names += (names.empty() ? "" : ", ") + assignment.name();
         }
-        notices_.push_back(link::to_text(planned ? change.by() : event.change_cancelled().by()) +
+        notices_.push_back(core::to_text(planned ? change.by() : event.change_cancelled().by()) +
                            (planned ? " plans to change " : " cancelled the change of ") + names +
                            (change.has_tick() ? " after tick " + std::to_string(change.tick())
                                               : " from generation " + std::to_string(change.generation())));
@@ -532,7 +532,7 @@ void Watch::take_event(const evod::v1::Event& event) {
         for (const auto& name : event.change_dropped().name()) {
             names += (names.empty() ? "" : ", ") + name;
         }
-        notices_.push_back("What " + link::to_text(event.change_dropped().by()) + " planned for " + names +
+        notices_.push_back("What " + core::to_text(event.change_dropped().by()) + " planned for " + names +
                            " does not go with the other parameters: left out");
         break;
     }
@@ -551,7 +551,7 @@ const evod::v1::GenerationStatistics* Watch::last_generation() const {
     return island == last_generation_.end() ? nullptr : &*island;
 }
 
-const wire::Picture* Watch::picture_of(std::uint32_t island) const {
+const codec::DecodedSnapshot* Watch::picture_of(std::uint32_t island) const {
     const auto view = views_.find(island);
     return view == views_.end() ? nullptr : view->second.latest().get();
 }
@@ -564,7 +564,7 @@ std::string Watch::state_words() const {
     const bool waits = control_.state() == evod::v1::RUN_STATE_WAITING;
     return !connected()   ? "no connection"
            : at_the_end() ? "at the end of the recording"
-           : waits && recording_ && control_.tick() >= recording_->last_tick()
+           : waits && replay_ && control_.tick() >= replay_->last_tick()
                ? "waits for the present to go on"
                : shown_state(control_.state(), storage_);
 }
@@ -572,7 +572,7 @@ std::string Watch::state_words() const {
 bool Watch::at_the_end() const {
     const bool stands =
         control_.state() == evod::v1::RUN_STATE_WAITING || control_.state() == evod::v1::RUN_STATE_PAUSED;
-    return recording_ && recording_->past_of().empty() && stands && control_.tick() >= recording_->last_tick();
+    return replay_ && replay_->replay_of().empty() && stands && control_.tick() >= replay_->last_tick();
 }
 
 std::uint32_t Watch::island_count() const {
@@ -589,7 +589,7 @@ std::optional<std::string> Watch::refusal() const {
         return past_refusal_;
     }
     const auto answer = connection_.subscription_answer(pictures_);
-    if (!answer || link::accepted(*answer)) {
+    if (!answer || core::accepted(*answer)) {
         return std::nullopt;
     }
     return shown_refusal(answer->status());

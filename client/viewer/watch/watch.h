@@ -1,15 +1,15 @@
 // Watch: the world and the island, or all of its islands, that are looked at, what is known of them, and the commands
 // given to the world.
 //
-// All of it goes over one link::Connection, and nothing here waits: requests are sent, and update() takes in whatever
+// All of it goes over one core::Connection, and nothing here waits: requests are sent, and update() takes in whatever
 // has come since.
 //
 // Owner        the window, or the taking of one screenshot.
 // Threads      used by the thread that draws; the connection has its own.
 #pragma once
 
-#include "client/link/connection.h"
-#include "client/link/world_view.h"
+#include "client/core/connection.h"
+#include "client/core/world_view.h"
 #include "client/viewer/watch/past.h"
 #include "client/viewer/watch/run_control.h"
 
@@ -30,7 +30,7 @@ namespace evod::viewer {
 class Watch {
   public:
     struct Wanted {
-        link::Options connection; // to where, as whom
+        core::Options connection; // to where, as whom
         std::string world;        // empty: the server's choice
         std::uint32_t island = 0;
         double rate_hz = 30;                               // of pictures
@@ -41,7 +41,7 @@ class Watch {
     explicit Watch(Wanted wanted);
 
     /// Takes in pictures, events and answers. True if there is a new picture.
-    bool update(link::WorldView::Clock::time_point now);
+    bool update(core::WorldView::Clock::time_point now);
 
     // Commands. Who may not give them sends nothing, and is told why by a notice.
     void pause_or_resume();
@@ -62,7 +62,7 @@ class Watch {
     bool may_create() const { return role_ == evod::v1::ROLE_ADMIN || role_ == evod::v1::ROLE_UNSPECIFIED; }
 
     // For panels.
-    using Answer = std::function<void(const link::Result<evod::v1::Response>&)>;
+    using Answer = std::function<void(const core::Result<evod::v1::Response>&)>;
     /// Sends a request; the handler is called by an update(), or never if another world is looked at before. What
     /// it says of a refusal is its own affair.
     void ask(evod::v1::Request request, Answer handler);
@@ -90,14 +90,14 @@ class Watch {
     std::optional<std::uint32_t> selected() const { return selected_; }
 
     // The past of the world that is looked at, beside it: a world of its own, which this session opens and closes.
-    void open_past(evod::v1::RunMoment at);
+    void open_replay(evod::v1::RunMoment at);
     void return_to_present();
     /// To another moment of a world that shows the past. Of several asked for in quick succession the newest counts.
     void seek(evod::v1::RunMoment to);
     /// To the first moment of a generation so many after the one that is shown, or was last asked for.
     void turn_generations(int by);
     /// What there is to be seen, if the world shows the past: this watch's own look at it, or a run file's.
-    const evod::v1::Recording* recording() const { return recording_ ? &*recording_ : nullptr; }
+    const evod::v1::Replay* replay() const { return replay_ ? &*replay_ : nullptr; }
     /// Whether the past is one that return_to_present() leaves.
     bool opened_past() const { return present_.has_value(); }
     /// Whether a replay shows the last of its recording, and can only go back. A past goes on as its world does.
@@ -113,15 +113,15 @@ class Watch {
     const std::string& forked() const { return forked_; }
 
     // What is known.
-    link::WorldView& view() { return views_[wanted_.island]; }
-    link::WorldView& view_of(std::uint32_t island) { return views_[island]; }
-    const wire::Picture* picture() const { return picture_of(wanted_.island); }
-    const wire::Picture* picture_of(std::uint32_t island) const;
+    core::WorldView& view() { return views_[wanted_.island]; }
+    core::WorldView& view_of(std::uint32_t island) { return views_[island]; }
+    const codec::DecodedSnapshot* picture() const { return picture_of(wanted_.island); }
+    const codec::DecodedSnapshot* picture_of(std::uint32_t island) const;
     bool all_islands() const { return wanted_.all_islands; }
     /// 1 before the first picture.
     std::uint32_t island_count() const;
     /// How many there are where on all of the island, now and then, while a view is set; else null.
-    const std::shared_ptr<const wire::Picture>& overview() const { return overview_picture_; }
+    const std::shared_ptr<const codec::DecodedSnapshot>& overview() const { return overview_picture_; }
     const RunControl& control() const { return control_; }
     /// Of the run that is shown, in the order of genes everywhere; empty while nobody has told.
     const std::vector<std::string>& gene_names() const { return gene_names_; }
@@ -131,11 +131,11 @@ class Watch {
     /// The same, by its name as soon as that is known.
     const std::string& name() const { return control_.known() ? control_.world() : wanted_.world; }
     std::uint32_t island() const { return wanted_.island; }
-    const link::Endpoint& server() const { return wanted_.connection.server; }
+    const core::Endpoint& server() const { return wanted_.connection.server; }
     /// Whether the server has answered everything, the questions of the beginning among it.
     bool all_answered() const { return connected_count_ > 0 && unanswered_.empty() && !opening_.valid(); }
-    link::ConnectionStatus connection_status() const { return connection_.status(); }
-    bool connected() const { return connection_status().state == link::State::Connected; }
+    core::ConnectionStatus connection_status() const { return connection_.status(); }
+    bool connected() const { return connection_status().state == core::State::Connected; }
     /// Why it is not, in a sentence; empty if nobody knows yet.
     std::string no_connection() const;
     /// How the world that is shown stands: "running", "waiting – Space runs", "at the end of the recording", "no
@@ -152,7 +152,7 @@ class Watch {
     struct Unanswered {
         bool is_command;
         Answer handler; // empty: of the commands and questions of the watch itself
-        std::future<link::Result<evod::v1::Response>> response;
+        std::future<core::Result<evod::v1::Response>> response;
     };
 
     void subscribe();
@@ -165,21 +165,21 @@ class Watch {
     void see(const evod::v1::WorldInfo& world);
     void send_seek(std::optional<evod::v1::RunMoment> to);
     void take_opened();
-    void close_past(const std::string& world);
+    void close_replay(const std::string& world);
     bool is_over();
     void take_answers();
-    void take_command_answer(const link::Result<evod::v1::Response>& response);
+    void take_command_answer(const core::Result<evod::v1::Response>& response);
     void take_statistics(const evod::v1::Statistics& statistics);
     std::optional<std::string> world_after_this(const evod::v1::WorldList& worlds);
     void take_event(const evod::v1::Event& event);
 
     Wanted wanted_;
-    link::Connection connection_;
-    link::SubscriptionHandle pictures_, events_;
-    std::optional<link::SubscriptionHandle> overview_;
-    std::shared_ptr<const wire::Picture> overview_picture_;
+    core::Connection connection_;
+    core::SubscriptionHandle pictures_, events_;
+    std::optional<core::SubscriptionHandle> overview_;
+    std::shared_ptr<const codec::DecodedSnapshot> overview_picture_;
     std::optional<evod::v1::View> pictures_view_;
-    std::map<std::uint32_t, link::WorldView> views_; // by island
+    std::map<std::uint32_t, core::WorldView> views_; // by island
     RunControl control_;
     std::vector<std::string> gene_names_;
     std::uint64_t place_number_;
@@ -194,14 +194,14 @@ class Watch {
     evod::v1::Role role_ = evod::v1::ROLE_UNSPECIFIED; // that the server has given us
 
     // The past.
-    std::optional<evod::v1::Recording> recording_;
+    std::optional<evod::v1::Replay> replay_;
     Seeks seeks_;
     std::optional<std::string> present_;                    // the origin, while a past that was opened here is shown
-    link::SubscriptionHandle past_events_;                  // of that past, which the events of all worlds leave out
-    std::future<link::Result<evod::v1::Response>> opening_; // answers an OpenPast
+    core::SubscriptionHandle past_events_;                  // of that past, which the events of all worlds leave out
+    std::future<core::Result<evod::v1::Response>> opening_; // answers an OpenReplay
     std::string opening_of_;                                // what was looked at then
     std::optional<std::string> past_refusal_;               // of the past that was wanted from the beginning
-    link::WorldView::Clock::time_point asked_{};            // how far the past reaches
+    core::WorldView::Clock::time_point asked_{};            // how far the past reaches
     std::string forked_;
 };
 

@@ -33,7 +33,7 @@ BreedingRecord breed(RealServer& server, const std::string& name,
             evod::v1::Request request;
             *request.mutable_get_breeding() = *wanted;
             const auto response = server.connection->request(request, hang).value();
-            EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
+            EXPECT_TRUE(core::accepted(response)) << core::to_text(response.status());
             record.add(response.breeding());
             if (!record.known()) {
                 return record;
@@ -129,7 +129,7 @@ TEST(GlassBox, GenesAreFollowedThroughEveryOperator) {
 class GlassBox {
   public:
     explicit GlassBox(const std::string& server)
-        : watch_{{.connection = {.server = link::parse_endpoint(server).value()}, .world = ""}} {}
+        : watch_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = ""}} {}
 
     void press(sf::Keyboard::Key key) { host_.press(key); }
     /// Draws until so many pixels of the colour are seen.

@@ -391,8 +391,8 @@ screenshot )" + folder.file("viewer.png") +
     ASSERT_EQ(ran.status, 0) << ran.output;
     sf::Image image;
     EXPECT_TRUE(image.loadFromFile(folder.file("viewer.png")));
-    server.connection.emplace(link::Options{
-        .server = link::parse_endpoint(server.address()).value(), .token = admin, .client_name = "a test"});
+    server.connection.emplace(core::Options{
+        .server = core::parse_endpoint(server.address()).value(), .token = admin, .client_name = "a test"});
     EXPECT_EQ(server.parameters().revision(), 1u);
     EXPECT_EQ(chance_of(server.parameters()), 0.15);
     EXPECT_EQ(server.state().state(), evod::v1::RUN_STATE_WAITING);

@@ -24,7 +24,7 @@ Camera camera_in(Rectangle viewport, const evod::v1::SnapshotFrame& picture) {
     return camera;
 }
 
-void expect_shown(const wire::Picture& picture, Rectangle viewport, const sf::Image& image) {
+void expect_shown(const codec::DecodedSnapshot& picture, Rectangle viewport, const sf::Image& image) {
     const ExpectedPicture expected{picture, camera_in(viewport, picture.about)};
     EXPECT_GT(expected.count(palette::organism), 100u);
     const auto mismatch = expected.compare(image);
@@ -115,7 +115,7 @@ struct TimelineTest : PanesTest {
         return viewport_of({below.left, below.top, below.width, below.height - Timeline::height_pixels});
     }
 
-    bool shows(const wire::Picture& picture, Rectangle place) {
+    bool shows(const codec::DecodedSnapshot& picture, Rectangle place) {
         const ExpectedPicture expected{picture, camera_in(place, picture.about)};
         return Person::looks_until([&] {
             const sf::Image seen = person.looks();

@@ -23,7 +23,7 @@ constexpr unsigned width = 700, height = 620;
 class Plots {
   public:
     explicit Plots(const std::string& server)
-        : watch_{{.connection = {.server = link::parse_endpoint(server).value()}, .world = "lab"}} {}
+        : watch_{{.connection = {.server = core::parse_endpoint(server).value()}, .world = "lab"}} {}
 
     /// Clicks at this x all the way up from the bottom until there is the file.
     bool clicks_until_saved(int x, const std::string& path) {
@@ -79,7 +79,7 @@ struct PlotsTest : testing::Test {
     void expect_the_servers_numbers(const std::string& path, int generations) {
         std::stringstream text;
         text << std::ifstream{path}.rdbuf();
-        const auto read = link::read_history_csv(text.str());
+        const auto read = core::read_history_csv(text.str());
         ASSERT_TRUE(read) << read.error().what;
         const auto names = world().gene_names();
         EXPECT_EQ(read->gene_names, std::vector<std::string>(names.begin(), names.end()));
@@ -91,7 +91,7 @@ struct PlotsTest : testing::Test {
         for (int i = 0; i < history.generations_size(); ++i) {
             const auto& told = history.generations(i);
             const auto& row = read->rows[static_cast<std::size_t>(i)];
-            const auto numbers = link::history_numbers(told);
+            const auto numbers = core::history_numbers(told);
             ASSERT_EQ(row.size(), numbers.size());
             for (std::size_t column = 0; column < row.size(); ++column) {
                 // What there is no account of is no number.

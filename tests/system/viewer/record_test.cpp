@@ -177,7 +177,7 @@ TEST(RecordAsAViewer, TakesPicturesAsTheyComeAndSendsNoCommand) {
     evod::v1::SnapshotFrame picture;
     picture.set_width_px(100);
     picture.set_height_px(100);
-    wire::encode({}, picture);
+    codec::encode({}, picture);
     picture.set_world("default");
     picture.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
     picture.set_island_count(1);

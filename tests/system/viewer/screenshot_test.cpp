@@ -31,7 +31,7 @@ TEST_F(ScreenshotTest, EveryPixelIsWhatThePictureSays) {
         sf::Image image;
         ASSERT_TRUE(image.loadFromFile(path));
         ASSERT_EQ(image.getSize(), (sf::Vector2u{width, height}));
-        const ExpectedPicture expected{wire::decode(picture).value(), camera_of(picture, width, height)};
+        const ExpectedPicture expected{codec::decode(picture).value(), camera_of(picture, width, height)};
         for (const Colour colour : {palette::background, palette::wall, palette::organism, palette::food,
                                     palette::poison, palette::crate, palette::crate_edge, palette::obstacle}) {
             EXPECT_GT(expected.count(colour), 20u);
@@ -49,7 +49,7 @@ TEST_F(ScreenshotTest, HealthStandsAboveEachOrganism) {
     sf::Image image;
     ASSERT_TRUE(image.loadFromFile(path));
     const Camera camera = camera_of(picture, 1280, 720);
-    const auto decoded = wire::decode(picture).value();
+    const auto decoded = codec::decode(picture).value();
     for (std::size_t i = 0; i < decoded.organisms.id.size(); ++i) {
         const Point top =
             camera.to_screen({decoded.organisms.x_px[i], decoded.organisms.y_px[i] - decoded.organisms.radius_px[i]});
@@ -65,8 +65,8 @@ TEST_F(ScreenshotTest, HealthStandsAboveEachOrganism) {
 }
 
 TEST_F(ScreenshotTest, TellsThatThereIsNoServer) {
-    link::FakeServer server;
-    const std::string address = link::to_text(server.endpoint());
+    core::FakeServer server;
+    const std::string address = core::to_text(server.endpoint());
     server.stop_listening();
     const Ran ran = run_evoview("--server " + address + " --screenshot " + path + " --timeout 0.3");
     EXPECT_EQ(ran.status, 1);

@@ -22,7 +22,7 @@ constexpr unsigned window_width = 1280, window_height = 720;
 struct SightTest : testing::Test {
     SightTest() {
         Options options;
-        options.connection.server = link::parse_endpoint(server.address()).value();
+        options.connection.server = core::parse_endpoint(server.address()).value();
         options.world = "default";
         panes.emplace(wanted_of(options));
     }
@@ -63,7 +63,7 @@ struct SightTest : testing::Test {
     }
 
     using Clock = Stage::Clock;
-    const wire::Picture picture = wire::decode(known_picture()).value();
+    const codec::DecodedSnapshot picture = codec::decode(known_picture()).value();
     PlayingServer server{known_picture()};
     std::optional<Panes> panes; // gone before the server, which waits for that
     sf::Context context{context_settings(), 1, 1};

@@ -1,6 +1,6 @@
 #include "server/network/chains.h"
 
-#include "proto/wire/picture_decoder.h"
+#include "proto/codec/snapshot_decoder.h"
 
 #include <gtest/gtest.h>
 
@@ -17,16 +17,16 @@ class ChainTest : public testing::Test {
     /// Adds a picture of what `frame_` tells, `between` after the last.
     ChainPicturePtr add(Clock::duration between = 100ms) {
         const auto x = static_cast<std::uint32_t>(frame_.generation_tick()) * 16;
-        wire::Scene scene{
+        codec::QuantisedSnapshot scene{
             .organisms = {.id = {1, 2}, .x = {x, x}, .y = {16, 16}, .width = {16, 16}, .height = {1600, 1600}}};
         frame_.set_width_px(100);
         frame_.set_height_px(100);
-        wire::describe(scene, frame_);
+        codec::describe(scene, frame_);
         frame_.set_island_count(1);
         frame_.set_sequence(frame_.sequence() + 1);
         now_ += between;
         return chain_.add(std::make_shared<const v1::SnapshotFrame>(frame_),
-                          std::make_shared<const wire::Scene>(std::move(scene)), compressor_, now_, between);
+                          std::make_shared<const codec::QuantisedSnapshot>(std::move(scene)), compressor_, now_, between);
     }
     ChainPicturePtr add_next() {
         frame_.set_generation_tick(frame_.generation_tick() + 6);
@@ -40,7 +40,7 @@ class ChainTest : public testing::Test {
     }
 
     v1::SnapshotFrame frame_;
-    wire::Compressor compressor_;
+    codec::Compressor compressor_;
     Clock::time_point now_{1h};
     Chain chain_;
 };
@@ -65,7 +65,7 @@ TEST_F(ChainTest, EachFormIsMadeOnce) {
 }
 
 TEST_F(ChainTest, AViewerOfDeltasAndOneOfKeyframesSeeTheSame) {
-    wire::PictureDecoder of_deltas, of_keyframes;
+    codec::SnapshotDecoder of_deltas, of_keyframes;
     ASSERT_TRUE(of_deltas.decode(frame_of(add()->keyframe(v1::COMPRESSION_ZSTD))));
     for (int i = 0; i < 5; ++i) {
         const auto picture = add_next();

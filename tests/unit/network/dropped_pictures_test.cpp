@@ -4,9 +4,9 @@
 // FRAMES, in the environment, says how many pictures are compared; docs/LONG_TESTS.md.
 #include "server/network/chains.h"
 
-#include "proto/wire/picture_decoder.h"
+#include "proto/codec/snapshot_decoder.h"
 #include "tests/support/everyday.h"
-#include "tests/unit/wire/living_island.h"
+#include "tests/unit/codec/living_island.h"
 
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using runtime::Clock;
-using wire::below;
-using wire::Random;
+using codec::below;
+using codec::Random;
 
 /// The server's end: an island that lives, dies out, is born again, stands still; and its chain.
 class Server {
@@ -52,19 +52,19 @@ class Server {
         about.set_sequence(++sequence_);
         about.set_generation(generation_);
         about.set_generation_tick(tick_);
-        scene_ = std::make_shared<const wire::Scene>(island_.scene());
+        scene_ = std::make_shared<const codec::QuantisedSnapshot>(island_.scene());
         now_ += between;
         return chain_.add(std::make_shared<const v1::SnapshotFrame>(std::move(about)), scene_, compressor_, now_,
                           between);
     }
-    const wire::Scene& scene() const { return *scene_; }
+    const codec::QuantisedSnapshot& scene() const { return *scene_; }
 
   private:
     static constexpr auto between = 50ms;
     Random random_;
-    wire::LivingIsland island_;
-    std::shared_ptr<const wire::Scene> scene_;
-    wire::Compressor compressor_;
+    codec::LivingIsland island_;
+    std::shared_ptr<const codec::QuantisedSnapshot> scene_;
+    codec::Compressor compressor_;
     std::uint64_t sequence_ = 0, tick_ = 0, generation_ = 1;
     Clock::time_point now_{1h};
     Chain chain_;
@@ -84,7 +84,7 @@ class DroppingViewer {
     DroppingViewer(const Habits& habits, std::uint64_t seed) : habits_{habits}, random_{seed} {}
 
     /// Returns whether a picture came to be compared.
-    bool take(ChainPicture& picture, const wire::Scene& scene) {
+    bool take(ChainPicture& picture, const codec::QuantisedSnapshot& scene) {
         if (hiccup_ > 0 || happens(habits_.slow)) { // often several one after another
             hiccup_ = hiccup_ > 0 ? hiccup_ - 1 : below(random_, 6);
             return false;
@@ -136,7 +136,7 @@ class DroppingViewer {
 
     Habits habits_;
     Random random_;
-    wire::PictureDecoder decoder_;
+    codec::SnapshotDecoder decoder_;
     std::uint64_t sent_ = 0;    // as the server has it
     std::uint64_t decoded_ = 0; // what the decoder stands on
     std::uint64_t hiccup_ = 0, keyframes_ = 0, deltas_ = 0, refusals_ = 0;

@@ -43,7 +43,7 @@ TEST(Scene, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
                                   {2, 20 * step, 21 * step, 2.5F, 22.F},
                                   {0, 1 * step, 2 * step, 0.5F, 3.F},
                                   {9, away, away, 0, -1}});
-    const wire::Entities organisms = scene_of(island).organisms;
+    const codec::Entities organisms = scene_of(island).organisms;
     EXPECT_THAT(organisms.id, ElementsAre(0, 2, 7));
     EXPECT_THAT(organisms.x, ElementsAre(1, 20, 70));
     EXPECT_THAT(organisms.y, ElementsAre(2, 21, 71));
@@ -58,7 +58,7 @@ TEST(Scene, ItemsThatAreAwayAreLeftOut) {
     island.food.all = {{1 * step, 2 * step, 0}, {3, 4, 9}, {5 * step, 6 * step, 0}, {7, 8, 1}};
     island.food.present_count = 2;
     island.poison.all = {{1, 1, 5}};
-    const wire::Scene scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = scene_of(island);
     EXPECT_THAT(scene.food.id, ElementsAre(0, 2));
     EXPECT_THAT(scene.food.x, ElementsAre(1, 5));
     EXPECT_THAT(scene.food.y, ElementsAre(2, 6));
@@ -73,7 +73,7 @@ TEST(Scene, CratesAndObstaclesAreToldApart) {
                     .half_width_px = {1, 2, 3},
                     .half_height_px = {4, 5, 6}};
     island.crate_count = 2;
-    const wire::Scene scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = scene_of(island);
     EXPECT_THAT(scene.crates.x, ElementsAre(1, 2));
     EXPECT_THAT(scene.crates.id, IsEmpty());
     EXPECT_THAT(scene.obstacles.y, ElementsAre(6));
@@ -86,7 +86,7 @@ TEST(Scene, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
     EXPECT_EQ(scene_of(island).position_bytes, 2U);
     island.width_px = 286'000;
     island.organisms = lying(2, {{1, 285'999 * physics::units_per_px, 0, 1, 1}});
-    const wire::Scene scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = scene_of(island);
     EXPECT_EQ(scene.position_bytes, 4U);
     EXPECT_THAT(scene.organisms.x, ElementsAre(16 * 285'999));
 }

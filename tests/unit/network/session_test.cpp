@@ -58,7 +58,7 @@ class SessionTest : public testing::Test {
             reader.feed({bytes.data(), count});
             for (auto frame = reader.next(); frame && *frame; frame = reader.next()) {
                 channels.push_back((*frame)->channel);
-                if (channels.back() == wire::Channel::Stream) {
+                if (channels.back() == codec::Channel::Stream) {
                     EXPECT_TRUE(frames.emplace_back().ParseFromArray((*frame)->body.data(),
                                                                      static_cast<int>((*frame)->body.size())));
                 }
@@ -81,8 +81,8 @@ class SessionTest : public testing::Test {
     tcp::socket client;
     bool over = false;
     SessionPtr session;
-    wire::FrameReader reader{wire::client_limits};
-    std::vector<wire::Channel> channels;
+    codec::FrameReader reader{codec::client_limits};
+    std::vector<codec::Channel> channels;
     std::vector<v1::SnapshotFrame> frames;
 };
 
@@ -125,7 +125,7 @@ TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
     EXPECT_EQ(host.traffic.pictures_sent.value(), 3U);
     EXPECT_EQ(buffers.bytes(), 0U);
     EXPECT_EQ(host.traffic.sent_stream_bytes.value(),
-              3 * wire::header_bytes + frames[0].ByteSizeLong() + frames[1].ByteSizeLong() + frames[2].ByteSizeLong());
+              3 * codec::header_bytes + frames[0].ByteSizeLong() + frames[1].ByteSizeLong() + frames[2].ByteSizeLong());
 }
 
 TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
@@ -167,7 +167,7 @@ TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {
     session->send_unasked(response);
     session->send_waiting();
     read_until(1);
-    EXPECT_EQ(channels, (std::vector{wire::Channel::Control, wire::Channel::Stream}));
+    EXPECT_EQ(channels, (std::vector{codec::Channel::Control, codec::Channel::Stream}));
 }
 
 TEST_F(SessionTest, AClientThatHasGoneEndsTheSession) {

@@ -1,7 +1,7 @@
 #include "server/network/tiled_pictures.h"
 
-#include "proto/wire/picture_decoder.h"
-#include "tests/unit/wire/living_island.h"
+#include "proto/codec/snapshot_decoder.h"
+#include "tests/unit/codec/living_island.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using runtime::Clock;
-using wire::below;
-using wire::LivingIsland;
-using wire::Random;
+using codec::below;
+using codec::LivingIsland;
+using codec::Random;
 
 /// A viewer at the other end of a line.
 class TileViewer {
@@ -24,7 +24,7 @@ class TileViewer {
     explicit TileViewer(v1::Compression compression = v1::COMPRESSION_NONE) : compression_{compression} {}
 
     /// The frame that it is sent.
-    v1::SnapshotFrame send(TiledPicture& picture, const wire::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
+    v1::SnapshotFrame send(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
         std::vector<const SharedBytes*> parts;
         sent_.add_parts(picture, seen, detail, compression_, parts);
         sent_.sent(picture, seen, detail);
@@ -35,17 +35,17 @@ class TileViewer {
         EXPECT_TRUE(frame.ParseFromString(bytes));
         return frame;
     }
-    wire::Result<wire::Picture> watch(TiledPicture& picture, const wire::TileRange& seen,
+    codec::Result<codec::DecodedSnapshot> watch(TiledPicture& picture, const codec::TileRange& seen,
                                       v1::Detail detail = v1::DETAIL_FULL) {
         return decoder_.decode(send(picture, seen, detail));
     }
     void ask_for_keyframes() { sent_.forget(); }
-    const wire::Scene* scene() const { return decoder_.scene(); }
+    const codec::QuantisedSnapshot* scene() const { return decoder_.scene(); }
 
   private:
     v1::Compression compression_;
     TilesSent sent_;
-    wire::PictureDecoder decoder_;
+    codec::SnapshotDecoder decoder_;
 };
 
 /// The pictures of one island at one rate.
@@ -63,7 +63,7 @@ class Pictures {
         v1::SnapshotFrame about = island_.about();
         about.set_sequence(++sequence_);
         about.set_generation_tick(tick_);
-        scene_ = std::make_shared<const wire::Scene>(island_.scene());
+        scene_ = std::make_shared<const codec::QuantisedSnapshot>(island_.scene());
         now_ += between;
         latest_ = std::make_shared<TiledPicture>(std::make_shared<IslandTiles>(std::move(about), scene_, compressor_),
                                                  latest_, now_, between);
@@ -71,13 +71,13 @@ class Pictures {
     }
 
     /// Of the newest picture, what is in some tiles.
-    wire::Scene in(const wire::TileRange& range) const {
-        const wire::TileLayout& layout = latest_->layout();
+    codec::QuantisedSnapshot in(const codec::TileRange& range) const {
+        const codec::TileLayout& layout = latest_->layout();
         const std::uint32_t side = layout.tile_px * 16;
-        wire::Scene found{.position_bytes = scene_->position_bytes, .of_tile = true};
-        for (const auto part : wire::scene_parts) {
-            const wire::Entities& from = (*scene_).*part;
-            wire::Entities& to = found.*part;
+        codec::QuantisedSnapshot found{.position_bytes = scene_->position_bytes, .of_tile = true};
+        for (const auto part : codec::snapshot_parts) {
+            const codec::Entities& from = (*scene_).*part;
+            codec::Entities& to = found.*part;
             for (std::uint32_t i = 0; i < from.x.size(); ++i) {
                 const std::uint32_t column = std::min(from.x[i] / side, layout.columns - 1);
                 const std::uint32_t row = std::min(from.y[i] / side, layout.rows - 1);
@@ -94,7 +94,7 @@ class Pictures {
         }
         return found;
     }
-    wire::TileRange everything() const { return wire::tiles_of(wire::tile_layout(island_.side_px, island_.side_px)); }
+    codec::TileRange everything() const { return codec::tiles_of(codec::tile_layout(island_.side_px, island_.side_px)); }
     LivingIsland& island() { return island_; }
 
     static constexpr auto between = 50ms;
@@ -103,8 +103,8 @@ class Pictures {
     Random random_;
     LivingIsland island_;
     std::uint64_t sequence_ = 0, tick_ = 0;
-    std::shared_ptr<const wire::Scene> scene_;
-    wire::Compressor compressor_;
+    std::shared_ptr<const codec::QuantisedSnapshot> scene_;
+    codec::Compressor compressor_;
     Clock::time_point now_{1h};
     TiledPicturePtr latest_;
 };
@@ -121,7 +121,7 @@ RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIs
     viewers.emplace_back(); // sees everything always
     for (int i = 0; i < 4; ++i)
         viewers.emplace_back(i % 2 == 0 ? v1::COMPRESSION_NONE : v1::COMPRESSION_ZSTD);
-    std::vector<wire::TileRange> seen(viewers.size());
+    std::vector<codec::TileRange> seen(viewers.size());
     for (int n = 0; n < 60; ++n) {
         const auto picture = pictures.next(below(random, 4));
         const std::uint32_t columns = picture->layout().columns, rows = picture->layout().rows;
@@ -193,8 +193,8 @@ TEST(TiledPictures, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
     Pictures pictures{4};
     TileViewer viewer;
     const auto picture = pictures.next();
-    const wire::TileRange left{.column_begin = 0, .column_end = 2, .row_begin = 0, .row_end = 1};
-    const wire::TileRange right{.column_begin = 1, .column_end = 3, .row_begin = 0, .row_end = 1};
+    const codec::TileRange left{.column_begin = 0, .column_end = 2, .row_begin = 0, .row_end = 1};
+    const codec::TileRange right{.column_begin = 1, .column_end = 3, .row_begin = 0, .row_end = 1};
     viewer.send(*picture, left);
     const auto moved = viewer.send(*picture, right);
     ASSERT_EQ(moved.tiles_size(), 2);

@@ -92,10 +92,10 @@ TEST_F(Lived, AWorldIsToldCompletely) {
     entry().ticks_per_s = 60;
     entry().slowed = true;
     // It has not ended, it lives, and is paced.
-    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "recording", "speed.max", "storage"));
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "replay", "speed.max", "storage"));
     entry().storage = {.state = simulation::StorageState::Failing, .reason = "it is full"};
-    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "recording", "speed.max"));
-    entry().recording = {.past_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
+    EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "replay", "speed.max"));
+    entry().replay = {.replay_of = "v", .first_generation = 1, .last_generation = 2, .first_tick = 3, .last_tick = 4};
     EXPECT_THAT(unset_in(to_proto(entry())), testing::ElementsAre("outcome", "speed.max"));
     EXPECT_EQ(to_proto(entry()).run_until_generation(), 101);
 }
@@ -177,7 +177,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     EXPECT_EQ(told.descendants(0).kind(), v1::DESCENDANT_KIND_ELITE);
     EXPECT_EQ(told.descendants(1).kind(), v1::DESCENDANT_KIND_SURVIVOR);
     EXPECT_EQ(told.descendants(2).kind(), v1::DESCENDANT_KIND_CHILD);
-    EXPECT_EQ(told.descendants(0).rearrangement().method(), "scramble");
+    EXPECT_EQ(told.descendants(0).order_mutation().method(), "scramble");
     std::set<int> kinds;
     for (const auto& mutation : told.descendants(0).mutations())
         kinds.insert(mutation.kind());

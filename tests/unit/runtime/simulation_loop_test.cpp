@@ -764,7 +764,7 @@ class LoopWithADisk : public Loop {
         pause.mutable_pause()->set_world("long");
         ask(std::move(pause));
         std::string look;
-        mailbox.push(PastMail{OpenPast{.world = "long", .at = {}, .owner = 1},
+        mailbox.push(PastMail{OpenReplay{.world = "long", .at = {}, .owner = 1},
                               [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
         pass_until([&] { return !look.empty(); });
         return look;
@@ -818,7 +818,7 @@ TEST_F(LoopWithADisk, WhileWorldsWaitNewcomersSeeThemAndThePastGoesOn) {
     ask_run("w");
     pass_until([&] { return tick("w") > 300; });
     std::string look;
-    mailbox.push(PastMail{OpenPast{.world = "w", .at = {}, .owner = 1},
+    mailbox.push(PastMail{OpenReplay{.world = "w", .at = {}, .owner = 1},
                           [&](const Laboratory&, const base::Result<std::string>& name) {
                               ASSERT_TRUE(name) << to_text(name.error());
                               look = *name;
@@ -865,7 +865,7 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
     pass_until([&] { return tick("w") > 300; });
     std::size_t answered = 0, opened = 0;
     const auto open = [&](std::uint64_t owner) {
-        mailbox.push(PastMail{OpenPast{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
+        mailbox.push(PastMail{OpenReplay{.world = "w", .at = {.generation = {}, .tick = 290}, .owner = owner},
                               [&](const Laboratory&, const base::Result<std::string>& name) {
                                   ++answered;
                                   opened += name ? 1 : 0;
@@ -877,10 +877,10 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
     pass_until([&] { return answered == 2; });
     EXPECT_EQ(opened, 0u);
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
-    for (std::size_t i = 0; i <= TimeTravel::pasts_max; ++i)
+    for (std::size_t i = 0; i <= TimeTravel::replays_max; ++i)
         open(2);
-    pass_until([&] { return answered == 2 + TimeTravel::pasts_max + 1; });
-    EXPECT_EQ(opened, TimeTravel::pasts_max) << "those on their way are counted";
+    pass_until([&] { return answered == 2 + TimeTravel::replays_max + 1; });
+    EXPECT_EQ(opened, TimeTravel::replays_max) << "those on their way are counted";
     mailbox.push(PastMail{OwnerGone{2}, {}});
     kept.pass();
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
@@ -907,7 +907,7 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
     ask_run("quick");
     pass_until([&] { return tick("quick") > 30; });
     std::string look;
-    mailbox.push(PastMail{OpenPast{.world = "quick", .at = {}, .owner = 1},
+    mailbox.push(PastMail{OpenReplay{.world = "quick", .at = {}, .owner = 1},
                           [&](const Laboratory&, const base::Result<std::string>& name) { look = *name; }});
     pass_until([&] { return !look.empty(); });
 
@@ -957,7 +957,7 @@ TEST_F(LoopWithADisk, SeeksEndWithTheirOwnerOrTheirPast) {
     EXPECT_FALSE(answers[0]);
     EXPECT_EQ(tick(look), 0u) << "the journey ended with its owner";
     seek(299);
-    mailbox.push(PastMail{ClosePast{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
+    mailbox.push(PastMail{CloseReplay{look}, [](const Laboratory&, const base::Result<std::string>&) {}});
     pass_until([&] { return answers.size() == 2; });
     EXPECT_FALSE(answers[1]);
 }
@@ -1060,7 +1060,7 @@ TEST_F(LoopWithADisk, WhoAsksForThePastWhenTroubleBeginsIsShownWhatIsWritten) {
     ask_create("other");
     ask_create("another");
     bool answered = false;
-    mailbox.push(PastMail{OpenPast{.world = "other", .at = {}, .owner = 1},
+    mailbox.push(PastMail{OpenReplay{.world = "other", .at = {}, .owner = 1},
                           [&](const Laboratory&, const base::Result<std::string>& name) {
                               EXPECT_FALSE(name) << "its file could not be made";
                               answered = true;

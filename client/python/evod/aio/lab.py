@@ -120,8 +120,8 @@ class Lab(_Closing):
         return self._link.core.client_key
 
     @property
-    def damaged_picture_count(self) -> int:
-        return self._link.core.damaged_picture_count
+    def damaged_snapshot_count(self) -> int:
+        return self._link.core.damaged_snapshot_count
 
     @property
     def role(self) -> str:
@@ -327,10 +327,10 @@ class World:
     async def motion(self, island: int = 0) -> c.Motion:
         return (await self._link.perform(plans.ask("get_motion", world=self.name, island=island))).motion
 
-    def open_past(self, generation: int | None = None, tick: int | None = None) -> Opening[Past]:
+    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Opening[Past]:
         async def open_it() -> Past:
-            at = plans.moment_of("open_past.at.", generation, tick) if (generation, tick) != (None, None) else None
-            return Past(self._lab, (await self._command("open_past", at=at)).name)
+            at = plans.moment_of("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
+            return Past(self._lab, (await self._command("open_replay", at=at)).name)
 
         return Opening(open_it())
 
@@ -390,7 +390,7 @@ class Past(World, _Closing):
         return await self._command("seek", to=plans.moment_of("seek.to.", generation, tick))
 
     async def close(self) -> None:
-        await self._link.perform(plans.close_past(self.name))
+        await self._link.perform(plans.close_replay(self.name))
 
 
 class _Stream(_Closing):

@@ -34,7 +34,7 @@ std::string shown(const std::optional<double>& number, std::string_view unit) {
 
 /// The past stays as it was, and who only watches holds nothing.
 bool may_hold(const Watch& watch) {
-    return watch.may_command() && watch.recording() == nullptr;
+    return watch.may_command() && watch.replay() == nullptr;
 }
 
 GenerationHold::Run run_of(const Watch& watch) {

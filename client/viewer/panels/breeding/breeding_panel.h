@@ -26,7 +26,7 @@ class BreedingPanel : public Panel {
     void build(Context& context) override;
 
   private:
-    using Time = link::WorldView::Clock::time_point;
+    using Time = core::WorldView::Clock::time_point;
 
     void choose(const Context& context);
     void ask(const Context& context);

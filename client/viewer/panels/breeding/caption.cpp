@@ -96,7 +96,7 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
         break;
     case evod::v1::DESCENDANT_KIND_SURVIVOR:
         text += "a survivor, " + who(record, descendant->first_parent()) +
-                (descendant->mutations().empty() && !descendant->has_rearrangement() ? "." : ", mutated.");
+                (descendant->mutations().empty() && !descendant->has_order_mutation() ? "." : ", mutated.");
         break;
     default: {
         text += "a child of organisms " + std::to_string(descendant->first_parent()) + " and " +
@@ -106,8 +106,8 @@ std::string breeding_caption(const BreedingRecord& record, std::uint32_t id) {
         const auto mutated = std::ranges::count_if(descendant->mutations(), [](const evod::v1::Mutation& mutation) {
             return mutation.kind() != evod::v1::MUTATION_KIND_CLAMP;
         });
-        if (descendant->has_rearrangement()) {
-            text += ", " + shown_choice(descendant->rearrangement().method()) + " moved genes";
+        if (descendant->has_order_mutation()) {
+            text += ", " + shown_choice(descendant->order_mutation().method()) + " moved genes";
         }
         text += mutated == 0 ? ", no mutation."
                              : ", " + counted(static_cast<std::uint64_t>(mutated), "mutation.", "mutations.");

@@ -100,9 +100,9 @@ float draw_family(const Sheet& sheet, const evod::v1::Descendant& descendant,
     }
 
     // ---- permutation
-    if (descendant.has_rearrangement()) {
+    if (descendant.has_order_mutation()) {
         const float from_y = y, to_y = y + 34;
-        label(descendant.rearrangement().method());
+        label(descendant.order_mutation().method());
         for (const GeneMove& move : family.moves) {
             const ImVec2 from{middle_of(move.from), from_y}, to{middle_of(move.to), to_y};
             sheet.list.AddBezierCubic(from, {from.x, from.y + 18}, {to.x, to.y - 18}, {to.x, to.y - 5},

@@ -11,9 +11,9 @@ Family family_of(const evod::v1::Descendant& descendant) {
     const int count = descendant.first_genes_size();
     // A survivor has one parent, itself.
     const bool alone = descendant.second_genes_size() == 0;
-    const bool ordered = descendant.has_rearrangement();
+    const bool ordered = descendant.has_order_mutation();
     if (count == 0 || count > 32 || (!alone && descendant.second_genes_size() != count) ||
-        (alone && descendant.from_second() != 0) || (ordered && descendant.rearrangement().order_size() != count)) {
+        (alone && descendant.from_second() != 0) || (ordered && descendant.order_mutation().order_size() != count)) {
         return family;
     }
     const auto from_second = [&](int gene) { return (descendant.from_second() >> gene & 1) != 0; };
@@ -27,7 +27,7 @@ Family family_of(const evod::v1::Descendant& descendant) {
     }
     family.arranged = family.crossed;
     for (int gene = 0; ordered && gene < count; ++gene) {
-        const std::uint32_t from = descendant.rearrangement().order(gene);
+        const std::uint32_t from = descendant.order_mutation().order(gene);
         if (from >= static_cast<std::uint32_t>(count)) {
             return {};
         }

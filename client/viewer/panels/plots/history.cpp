@@ -101,7 +101,7 @@ template <class Generations>
 void History::add(const Generations& generations) {
     std::vector<std::vector<double>> rows;
     for (const evod::v1::GenerationStatistics& statistics : generations) {
-        rows.push_back(link::history_numbers(statistics));
+        rows.push_back(core::history_numbers(statistics));
     }
     if (!rows.empty()) {
         table_.add(rows);

@@ -12,7 +12,7 @@ namespace evod::viewer {
 
 namespace {
 
-// Where link::history_columns() has them.
+// Where core::history_columns() has them.
 constexpr std::size_t generation_column = 0, island_column = 1, count_column = 4, gene_begin = 20;
 // Of each gene; those of the accounts, of which there are as many, come after those of all genes.
 constexpr std::size_t columns_of_gene = 4;
@@ -188,7 +188,7 @@ void HistoryTable::clear() {
 
 void HistoryTable::set_gene_names(std::vector<std::string> names) {
     gene_names_ = std::move(names);
-    names_ = link::history_columns(gene_names_);
+    names_ = core::history_columns(gene_names_);
 }
 
 std::span<const double> HistoryTable::column(Island island, std::string_view name) const {
@@ -223,7 +223,7 @@ std::uint64_t HistoryTable::last_without_gap(std::uint64_t generation) const {
 }
 
 std::string HistoryTable::to_csv() const {
-    std::string text = link::history_heading(gene_names_);
+    std::string text = core::history_heading(gene_names_);
     std::vector<std::size_t> next(islands_.size());
     std::vector<double> numbers;
     for (const double generation : all_.generations()) {
@@ -237,22 +237,22 @@ std::string HistoryTable::to_csv() const {
             for (const std::vector<double>& column : columns) {
                 numbers.push_back(column[next[island]]);
             }
-            text += link::history_line(numbers);
+            text += core::history_line(numbers);
             ++next[island];
         }
     }
     return text;
 }
 
-link::Result<HistoryTable> load_history(const std::string& path) {
+core::Result<HistoryTable> load_history(const std::string& path) {
     std::ifstream file{path, std::ios::binary};
     const std::string text{std::istreambuf_iterator<char>{file}, {}};
     if (!file) {
-        return link::Error{link::Error::Kind::Usage, "cannot read " + path + ": " + std::strerror(errno)};
+        return core::Error{core::Error::Kind::Usage, "cannot read " + path + ": " + std::strerror(errno)};
     }
-    auto read = link::read_history_csv(text);
+    auto read = core::read_history_csv(text);
     if (!read) {
-        return link::Error{read.error().kind, path + ": " + read.error().what};
+        return core::Error{read.error().kind, path + ": " + read.error().what};
     }
     std::ranges::stable_sort(read->rows, {}, [](const auto& row) { return row[generation_column]; });
     HistoryTable table;

@@ -3,7 +3,7 @@
 // Threads      none.
 #pragma once
 
-#include "client/link/history_csv.h"
+#include "client/core/history_csv.h"
 
 #include <cstdint>
 #include <optional>
@@ -21,7 +21,7 @@ class HistoryTable {
 
     /// Takes in generations, in any order; one that is known already is replaced.
     ///
-    /// rows  numbers as of link::history_numbers(), the islands of a generation one after another.
+    /// rows  numbers as of core::history_numbers(), the islands of a generation one after another.
     void add(std::span<const std::vector<double>> rows);
 
     /// Forgets everything but the names of the genes.
@@ -31,7 +31,7 @@ class HistoryTable {
     void set_gene_names(std::vector<std::string> names);
     const std::vector<std::string>& gene_names() const { return gene_names_; }
 
-    /// A column of link::history_columns(), a number for each generation that is known, rising. Of all islands
+    /// A column of core::history_columns(), a number for each generation that is known, rising. Of all islands
     /// together: the greatest "…best" and "…max", the least "…worst" and "…min", sums of what is counted; means are
     /// weighted by organism_count, deviations are those of everyone together. Nobody can tell the median: it is not a
     /// number. Empty if there is no such column or island.
@@ -44,7 +44,7 @@ class HistoryTable {
     /// The last of those that follow `generation` without a gap; `generation` itself if the next one is not known.
     std::uint64_t last_without_gap(std::uint64_t generation) const;
 
-    /// As link::read_history_csv() reads it, by generation, then island.
+    /// As core::read_history_csv() reads it, by generation, then island.
     std::string to_csv() const;
 
   private:
@@ -65,6 +65,6 @@ class HistoryTable {
 
 /// What a file says that was written by to_csv(), `evoctl history --csv` or `evoctl export --what generations`. The
 /// error says what is wrong with it, or why it cannot be read.
-link::Result<HistoryTable> load_history(const std::string& path);
+core::Result<HistoryTable> load_history(const std::string& path);
 
 } // namespace evod::viewer

@@ -118,7 +118,7 @@ void PlotsPanel::listen(Context& context) {
     if (watch.control().known()) {
         own_.history.see_run(watch.control().world(), watch.control().run_id());
     }
-    const wire::Picture* picture = watch.picture();
+    const codec::DecodedSnapshot* picture = watch.picture();
     if (picture != nullptr && picture->about.run_id() == own_.history.run_id() && picture->about.generation() > 0) {
         own_.history.see_ended(picture->about.generation() - 1);
     }
@@ -338,7 +338,7 @@ void PlotsPanel::update_histogram(Context& context) {
         return;
     }
     if (only_the_living_) {
-        const wire::Picture* picture = context.watch.picture_of(whose.island);
+        const codec::DecodedSnapshot* picture = context.watch.picture_of(whose.island);
         const bool of_this_run = picture != nullptr && picture->about.run_id() == whose.run_id;
         const auto ids = living(*population, of_this_run ? picture : nullptr);
         if (ids && !ids->empty()) {

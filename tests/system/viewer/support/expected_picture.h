@@ -7,7 +7,7 @@
 #include "client/viewer/drawing/camera.h"
 #include "client/viewer/drawing/palette.h"
 #include "client/viewer/drawing/window_layout.h"
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 
 #include <SFML/Graphics/Image.hpp>
 
@@ -36,7 +36,7 @@ class ExpectedPicture {
     };
 
     /// organisms  by index in the picture: discs of these colours with a thin line around them; empty: rings
-    ExpectedPicture(const wire::Picture& picture, const Camera& camera, const std::vector<Colour>& organisms = {})
+    ExpectedPicture(const codec::DecodedSnapshot& picture, const Camera& camera, const std::vector<Colour>& organisms = {})
         : camera_{camera}
         , left_{static_cast<unsigned>(camera.viewport().left)}
         , top_{static_cast<unsigned>(camera.viewport().top)}
@@ -54,7 +54,7 @@ class ExpectedPicture {
             box(picture.crates.x_px[i], picture.crates.y_px[i], picture.crates.half_width_px[i],
                 picture.crates.half_height_px[i], 2, palette::crate_edge, palette::crate);
         }
-        const auto items = [&](const wire::ItemPicture& all, Colour colour) {
+        const auto items = [&](const codec::DecodedItems& all, Colour colour) {
             for (std::size_t i = 0; i < all.x_px.size(); ++i) {
                 circle(all.x_px[i], all.y_px[i], picture.about.item_radius_px(), 0, {}, colour);
             }

@@ -1,7 +1,7 @@
 // A picture of which a test knows everything.
 #pragma once
 
-#include "proto/wire/snapshot_codec.h"
+#include "proto/codec/snapshot_codec.h"
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace evod::viewer {
 /// One of everything that can be told apart, on an island of another shape than the window's.
 inline evod::v1::SnapshotFrame known_picture() {
     constexpr std::uint32_t px = 16; // steps
-    const wire::Scene scene{
+    const codec::QuantisedSnapshot scene{
         .organisms = {.id = {0, 3, 4, 9},
                       .x = {100 * px, 300 * px + 5, 500 * px, 790 * px},
                       .y = {100 * px, 450 * px, 300 * px + 8, 590 * px},
@@ -31,7 +31,7 @@ inline evod::v1::SnapshotFrame known_picture() {
     evod::v1::SnapshotFrame frame;
     frame.set_width_px(800);
     frame.set_height_px(600);
-    wire::encode(scene, frame);
+    codec::encode(scene, frame);
     frame.set_world("default");
     frame.set_run_id(std::string("\x00\x11\x22\x33\x44\x55\x66\x77\x88\x99\xaa\xbb\xcc\xdd\xee\xff", 16));
     frame.set_island_count(1);

@@ -17,16 +17,16 @@ inline void make_world(RealServer& server, const std::string& name, std::uint64_
 }
 
 /// A picture of a world as it stands.
-inline std::shared_ptr<const wire::Picture> picture_of(RealServer& server, const std::string& world,
+inline std::shared_ptr<const codec::DecodedSnapshot> picture_of(RealServer& server, const std::string& world,
                                                        std::uint32_t island = 0) {
     evod::v1::SubscribeSnapshots subscription;
     subscription.set_world(world);
     subscription.set_island(island);
     subscription.set_rate_hz(60);
     const auto pictures = server.connection->subscribe(subscription);
-    std::shared_ptr<const wire::Picture> picture;
+    std::shared_ptr<const codec::DecodedSnapshot> picture;
     EXPECT_TRUE(wait_until([&] {
-        picture = server.connection->take_picture(pictures, island);
+        picture = server.connection->take_snapshot(pictures, island);
         return picture != nullptr;
     }));
     server.connection->unsubscribe(pictures);
@@ -34,14 +34,14 @@ inline std::shared_ptr<const wire::Picture> picture_of(RealServer& server, const
 }
 
 /// A picture of what a world was at a moment.
-inline std::shared_ptr<const wire::Picture> past_picture_of(RealServer& server, const std::string& world,
+inline std::shared_ptr<const codec::DecodedSnapshot> past_picture_of(RealServer& server, const std::string& world,
                                                             const evod::v1::RunMoment& moment) {
     evod::v1::Request open, close;
-    open.mutable_open_past()->set_world(world);
-    *open.mutable_open_past()->mutable_at() = moment;
+    open.mutable_open_replay()->set_world(world);
+    *open.mutable_open_replay()->mutable_at() = moment;
     const std::string name = server.ask(open).name();
     auto picture = picture_of(server, name);
-    close.mutable_close_past()->set_world(name);
+    close.mutable_close_replay()->set_world(name);
     server.ask(close);
     return picture;
 }

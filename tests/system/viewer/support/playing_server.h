@@ -1,7 +1,7 @@
 // PlayingServer: answers evoview as a server would, and shows it the one picture that a test has made.
 #pragma once
 
-#include "tests/unit/link/fake_server.h"
+#include "tests/unit/core/fake_server.h"
 #include "tests/unit/viewer/watch/population_pages.h"
 
 #include <atomic>
@@ -25,11 +25,11 @@ class PlayingServer {
     /// Waits for the client to leave; it must have come.
     ~PlayingServer() { thread_.join(); }
 
-    std::string address() const { return link::to_text(server_.endpoint()); }
+    std::string address() const { return core::to_text(server_.endpoint()); }
     unsigned command_count() const { return command_count_; }
 
   private:
-    void serve(link::FakeSession session) {
+    void serve(core::FakeSession session) {
         for (auto message = session.read(); message.has_request(); message = session.read()) {
             const evod::v1::Request& request = message.request();
             evod::v1::ServerMessage answer;
@@ -75,7 +75,7 @@ class PlayingServer {
         }
     }
 
-    link::FakeServer server_;
+    core::FakeServer server_;
     evod::v1::SnapshotFrame picture_;
     std::atomic<unsigned> command_count_ = 0;
     std::thread thread_;

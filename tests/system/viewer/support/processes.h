@@ -1,7 +1,7 @@
 // The real programs, as children of a test. EVOD and EVOVIEW are their paths.
 #pragma once
 
-#include "client/link/connection.h"
+#include "client/core/connection.h"
 #include "tests/support/waiting.h"
 
 #include <gtest/gtest.h>
@@ -136,7 +136,7 @@ class RealServer {
             if (const auto begin = line.find("listening on "); begin != std::string::npos) {
                 const std::string address = line.substr(begin + 13, line.find(',', begin) - begin - 13);
                 connection.emplace(
-                    link::Options{.server = link::parse_endpoint(address).value(), .client_name = "a test"});
+                    core::Options{.server = core::parse_endpoint(address).value(), .client_name = "a test"});
                 address_ = address;
                 return;
             }
@@ -147,7 +147,7 @@ class RealServer {
     const std::string& address() const { return address_; }
     evod::v1::WorldInfo ask(const evod::v1::Request& request) {
         const auto response = connection->request(request, hang).value();
-        EXPECT_TRUE(link::accepted(response)) << link::to_text(response.status());
+        EXPECT_TRUE(core::accepted(response)) << core::to_text(response.status());
         return response.has_statistics() ? response.statistics().world() : response.world();
     }
     /// world  empty: the server's choice
@@ -209,7 +209,7 @@ class RealServer {
         return said;
     }
 
-    std::optional<link::Connection> connection;
+    std::optional<core::Connection> connection;
 
   private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {

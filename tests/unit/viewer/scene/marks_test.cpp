@@ -30,7 +30,7 @@ struct MarksTest : testing::Test {
         at = {{100, 200, 300}, {10, 20, 30}};
         EXPECT_EQ(population.add(page_of(0, 3, 3)), std::nullopt);
     }
-    wire::OrganismPicture organisms;
+    codec::DecodedOrganisms organisms;
     Positions at;
     Population population{2};
     const Rectangle everything{0, 0, 1000, 1000};
@@ -123,8 +123,8 @@ TEST_F(MarksTest, ArrowsShowForcesAndLinesWhatTheyActOn) {
 
 // ---- trails ----------------------------------------------------------------------------------------------------
 
-std::shared_ptr<wire::Picture> picture(double s, std::uint64_t generation = 1) {
-    auto made = std::make_shared<wire::Picture>();
+std::shared_ptr<codec::DecodedSnapshot> picture(double s, std::uint64_t generation = 1) {
+    auto made = std::make_shared<codec::DecodedSnapshot>();
     made->about.set_simulated_s(s);
     made->about.set_tick(static_cast<std::uint64_t>(s * 60));
     made->about.set_generation(generation);
@@ -158,7 +158,7 @@ TEST(Trails, BeginAnewWithEachLife) {
 }
 
 TEST(Trails, LeadFromEachToItself) {
-    wire::OrganismPicture from, to;
+    codec::DecodedOrganisms from, to;
     from.id = {1, 2, 5, 6};
     from.x_px = {10, 20, 50, 60};
     from.y_px = {1, 2, 5, 6};
@@ -210,13 +210,13 @@ TEST(Density, SquaresAreColouredByHowManyAreInThem) {
 }
 
 TEST(Density, AnOverviewTakesWhateverThereIsToTell) {
-    wire::Picture picture;
+    codec::DecodedSnapshot picture;
     picture.about.set_width_px(1024);
     picture.about.set_height_px(512);
     picture.about.set_tile_px(512);
     picture.organisms.x_px = {10};
     picture.organisms.y_px = {20};
-    wire::TilePicture dots, density;
+    codec::DecodedTile dots, density;
     dots.detail = evod::v1::DETAIL_DOTS;
     dots.dots.organisms = {{300, 310}, {20, 20}};
     density.tile = 1;

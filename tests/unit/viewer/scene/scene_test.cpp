@@ -17,8 +17,8 @@ struct SceneTest : testing::Test {
         return organism_at(camera.to_screen({x, y}), picture, organisms, camera);
     }
     Camera camera;
-    wire::Picture picture;
-    link::WorldView::Positions organisms;
+    codec::DecodedSnapshot picture;
+    core::WorldView::Positions organisms;
 };
 
 TEST_F(SceneTest, FindsTheOrganismUnderTheMouse) {

@@ -1,7 +1,7 @@
 #include "client/viewer/scene/sight.h"
 
 #include "tests/support/waiting.h"
-#include "tests/unit/link/fake_server.h"
+#include "tests/unit/core/fake_server.h"
 #include "tests/unit/viewer/watch/population_pages.h"
 
 #include <gmock/gmock.h>
@@ -105,7 +105,7 @@ struct SightTest : testing::Test {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(1000);
         frame.set_height_px(1000);
-        wire::encode({.organisms = {.id = {0, 1, 2},
+        codec::encode({.organisms = {.id = {0, 1, 2},
                                     .x = {1600, 3200, 4800},
                                     .y = {1600, 3200, 4800},
                                     .width = {160, 160, 160},
@@ -169,9 +169,9 @@ struct SightTest : testing::Test {
         return request;
     }
 
-    link::FakeServer server;
+    core::FakeServer server;
     std::optional<Watch> watch; // before the session, which is closed first
-    std::optional<link::FakeSession> session;
+    std::optional<core::FakeSession> session;
     Sight sight;
     Camera camera;
 };

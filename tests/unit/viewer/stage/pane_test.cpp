@@ -1,7 +1,7 @@
 #include "client/viewer/stage/pane.h"
 
 #include "tests/support/waiting.h"
-#include "tests/unit/link/fake_server.h"
+#include "tests/unit/core/fake_server.h"
 
 #include <gmock/gmock.h>
 
@@ -49,10 +49,10 @@ struct PanesTest : testing::Test {
         session.send(message);
     }
 
-    link::FakeServer server;
+    core::FakeServer server;
     std::vector<std::string> notices;
     Panes panes{{.connection = server.options(), .world = ""}};
-    link::FakeSession session = server.accept_and_welcome();
+    core::FakeSession session = server.accept_and_welcome();
 };
 
 TEST_F(PanesTest, TheOtherWorldIsShownBeside) {

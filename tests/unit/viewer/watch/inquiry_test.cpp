@@ -1,7 +1,7 @@
 #include "client/viewer/watch/inquiry.h"
 
 #include "tests/support/waiting.h"
-#include "tests/unit/link/fake_server.h"
+#include "tests/unit/core/fake_server.h"
 
 #include <gmock/gmock.h>
 
@@ -45,9 +45,9 @@ struct InquiryTest : testing::Test {
         until([&] { return watch->all_answered(); });
     }
 
-    link::FakeServer server;
+    core::FakeServer server;
     std::optional<Watch> watch; // before the session, which is closed first
-    std::optional<link::FakeSession> session;
+    std::optional<core::FakeSession> session;
     std::optional<Inquiry> inquiry{std::in_place, 1h};
     const Inquiry::Clock::time_point now = Inquiry::Clock::now();
     std::vector<int> heard; // ticks; -1: a refusal

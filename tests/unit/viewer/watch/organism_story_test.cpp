@@ -8,8 +8,8 @@
 namespace evod::viewer {
 namespace {
 
-wire::Picture picture(std::uint64_t generation, double s, float health) {
-    wire::Picture picture;
+codec::DecodedSnapshot picture(std::uint64_t generation, double s, float health) {
+    codec::DecodedSnapshot picture;
     picture.about.set_generation(generation);
     picture.about.set_simulated_s(s);
     picture.organisms.id = {1, 3, 7};

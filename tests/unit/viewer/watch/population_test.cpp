@@ -48,8 +48,8 @@ TEST(Population, TheFirstGenerationHasNoParents) {
 }
 
 /// Of generation 4, with organisms of these ids alive.
-wire::Picture picture_of(std::vector<std::uint32_t> ids) {
-    wire::Picture picture;
+codec::DecodedSnapshot picture_of(std::vector<std::uint32_t> ids) {
+    codec::DecodedSnapshot picture;
     picture.about.set_generation(4);
     picture.about.mutable_live()->set_alive_count(static_cast<std::uint32_t>(ids.size()));
     picture.organisms.id = std::move(ids);
@@ -69,9 +69,9 @@ TEST(Living, AreThoseInThePictureOnceTheGenerationIsOver) {
     auto page = page_of(0, 4, 4);
     page.mutable_choices()->assign(4, static_cast<char>(evod::v1::CHOICE_UNSPECIFIED));
     ASSERT_EQ(population.add(page), std::nullopt);
-    wire::Picture picture = picture_of({1, 3});
+    codec::DecodedSnapshot picture = picture_of({1, 3});
     EXPECT_THAT(living(population, &picture), Optional(ElementsAre(1, 3)));
-    const wire::Picture nobody = picture_of({});
+    const codec::DecodedSnapshot nobody = picture_of({});
     EXPECT_THAT(living(population, &nobody), Optional(IsEmpty()));
     picture.about.mutable_live()->set_alive_count(3);
     EXPECT_EQ(living(population, &picture), std::nullopt) << "it shows a part of the island";

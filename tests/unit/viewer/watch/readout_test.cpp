@@ -61,7 +61,7 @@ TEST(Readout, ARefusalIsASentence) {
 }
 
 TEST(Readout, SaysWhyThereIsNoConnectionWithoutNamesOfCodesAndOptions) {
-    link::ConnectionStatus status;
+    core::ConnectionStatus status;
     EXPECT_EQ(shown_loss(status, true), "");
     status.reason = "no server at localhost:1";
     EXPECT_EQ(shown_loss(status, true), "No server at localhost:1");

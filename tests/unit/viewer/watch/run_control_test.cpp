@@ -278,7 +278,7 @@ TEST(RunControl, AnotherRunOfTheWorldBeginsAfresh) {
 TEST(RunControl, AWorldThatShowsThePastMayGoBack) {
     RunControl control;
     auto past = world(paused, 500);
-    past.mutable_recording()->set_last_tick(900);
+    past.mutable_replay()->set_last_tick(900);
     past.set_run_until_tick(500); // of a step that is over
     control.see(past);
     control.see(picture(paused, 500));

@@ -1,7 +1,7 @@
 #include "client/viewer/watch/watch.h"
 
 #include "tests/support/waiting.h"
-#include "tests/unit/link/fake_server.h"
+#include "tests/unit/core/fake_server.h"
 
 #include <gmock/gmock.h>
 
@@ -30,8 +30,8 @@ struct WatchTest : testing::Test {
     }
 
     /// Welcomes the viewer and answers its subscriptions, the pictures as number 7; its question comes next.
-    link::FakeSession begin(Watch&, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
-        link::FakeSession session = server.accept_and_welcome(0, role);
+    core::FakeSession begin(Watch&, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
+        core::FakeSession session = server.accept_and_welcome(0, role);
         const auto events = session.read_request();
         EXPECT_TRUE(events.has_subscribe_events());
         session.answer_subscription(events, 6);
@@ -42,12 +42,12 @@ struct WatchTest : testing::Test {
         return session;
     }
 
-    static void send_picture(link::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
+    static void send_picture(core::FakeSession& session, std::uint32_t subscription_id, std::uint32_t island,
                              std::uint64_t tick, const std::string& world = "default", std::uint64_t sequence = 0) {
         evod::v1::SnapshotFrame frame;
         frame.set_width_px(100);
         frame.set_height_px(100);
-        wire::encode({}, frame);
+        codec::encode({}, frame);
         frame.set_world(world);
         frame.set_run_id("\xaa");
         frame.set_subscription_id(subscription_id);
@@ -67,7 +67,7 @@ struct WatchTest : testing::Test {
         return world;
     }
 
-    static void answer_statistics(link::FakeSession& session, const evod::v1::Request& question) {
+    static void answer_statistics(core::FakeSession& session, const evod::v1::Request& question) {
         EXPECT_TRUE(question.has_get_statistics());
         evod::v1::ServerMessage message;
         message.mutable_response()->set_request_id(question.request_id());
@@ -81,14 +81,14 @@ struct WatchTest : testing::Test {
     }
 
     /// A picture of island 1, and the answer to what the viewer asks on account of it.
-    void show_first_picture(Watch& watch, link::FakeSession& session, std::uint64_t tick) {
+    void show_first_picture(Watch& watch, core::FakeSession& session, std::uint64_t tick) {
         send_picture(session, 7, 1, tick);
         until(watch, [&] { return watch.picture() != nullptr; });
         answer_statistics(session, session.read_request());
         until(watch, [&] { return watch.all_answered(); });
     }
 
-    link::FakeServer server;
+    core::FakeServer server;
     std::vector<std::string> notices;
 };
 
@@ -226,7 +226,7 @@ TEST_F(WatchTest, TheEndOfAStepIsHeardAfterItsAnswer) {
     session.send(event);
     // The acknowledgement of a snapshot after them shows that both are there, to be taken in together.
     send_picture(session, 7, 1, 51, "default", 1);
-    EXPECT_TRUE(session.read().has_acknowledge_picture());
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
     until(watch, [&] { return watch.all_answered() && watch.control().tick() == 53; });
     EXPECT_EQ(watch.control().state(), evod::v1::RUN_STATE_PAUSED);
 }
@@ -332,13 +332,13 @@ TEST_F(WatchTest, KnowsHowItStandsWithTheDisk) {
     auto& told = *message.mutable_event()->mutable_storage_changed()->mutable_storage();
     told.set_state(evod::v1::STORAGE_STATE_STALLED);
     session.send(message);
-    until(watch, [&] { return link::worlds_wait(watch.storage()); });
+    until(watch, [&] { return core::worlds_wait(watch.storage()); });
     EXPECT_TRUE(notices.empty());
     told.set_state(evod::v1::STORAGE_STATE_KEEPS_UP);
     session.send(message);
     until(watch, [&] { return !notices.empty(); });
     EXPECT_THAT(notices, ElementsAre("Run files can be written again"));
-    EXPECT_FALSE(link::worlds_wait(watch.storage()));
+    EXPECT_FALSE(core::worlds_wait(watch.storage()));
 }
 
 TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
@@ -347,7 +347,7 @@ TEST_F(WatchTest, AfterALostConnectionEverythingIsAskedForAgain) {
         auto session = begin(watch);
         show_first_picture(watch, session, 50);
     }
-    until(watch, [&] { return watch.connection_status().state != link::State::Connected; });
+    until(watch, [&] { return watch.connection_status().state != core::State::Connected; });
     EXPECT_NE(watch.picture(), nullptr) << "the last picture stays in sight";
     auto session = begin(watch);
     until(watch, [&] { return !watch.all_answered(); });
@@ -383,9 +383,9 @@ TEST_F(WatchTest, AReplayThatIsOverSaysSoAndIsNotRun) {
     auto& world = *message.mutable_response()->mutable_statistics()->mutable_world();
     world = info("default", evod::v1::RUN_STATE_WAITING);
     world.set_tick(899);
-    world.mutable_recording()->set_last_tick(900);
+    world.mutable_replay()->set_last_tick(900);
     session.send(message);
-    until(watch, [&] { return watch.recording() != nullptr; });
+    until(watch, [&] { return watch.replay() != nullptr; });
     EXPECT_FALSE(watch.at_the_end());
     EXPECT_EQ(watch.state_words(), "waiting – Space runs");
     message.Clear();
@@ -393,7 +393,7 @@ TEST_F(WatchTest, AReplayThatIsOverSaysSoAndIsNotRun) {
     auto& told = *message.mutable_event()->mutable_run_control_changed()->mutable_world();
     told = info("default", evod::v1::RUN_STATE_PAUSED);
     told.set_tick(900);
-    told.mutable_recording()->set_last_tick(900);
+    told.mutable_replay()->set_last_tick(900);
     session.send(message);
     until(watch, [&] { return watch.at_the_end(); });
     EXPECT_EQ(watch.state_words(), "at the end of the recording");
@@ -409,7 +409,7 @@ TEST_F(WatchTest, AllIslandsComeOverOneSubscription) {
     Watch::Wanted all = wanted();
     all.all_islands = true;
     Watch watch{all};
-    link::FakeSession session = server.accept_and_welcome();
+    core::FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 6);
     const auto pictures = session.read_request();
     EXPECT_FALSE(pictures.subscribe_snapshots().has_island());
@@ -433,14 +433,14 @@ struct PastTest : WatchTest {
     static evod::v1::WorldInfo past(std::uint64_t tick) {
         evod::v1::WorldInfo world = info("default@3", evod::v1::RUN_STATE_PAUSED);
         world.set_tick(tick);
-        auto& recording = *world.mutable_recording();
-        recording.set_past_of("default");
+        auto& recording = *world.mutable_replay();
+        recording.set_replay_of("default");
         recording.set_first_generation(1);
         recording.set_last_generation(9);
         recording.set_last_tick(900);
         return world;
     }
-    static void answer_with(link::FakeSession& session, const evod::v1::Request& request,
+    static void answer_with(core::FakeSession& session, const evod::v1::Request& request,
                             const evod::v1::WorldInfo& world) {
         evod::v1::ServerMessage message;
         message.mutable_response()->set_request_id(request.request_id());
@@ -448,7 +448,7 @@ struct PastTest : WatchTest {
         session.send(message);
     }
     /// The next request but for questions how far the past reaches, which are answered.
-    static evod::v1::Request next(link::FakeSession& session) {
+    static evod::v1::Request next(core::FakeSession& session) {
         for (;;) {
             const evod::v1::Request request = session.read_request();
             if (!request.has_get_statistics()) {
@@ -463,12 +463,12 @@ struct PastTest : WatchTest {
         }
     }
     /// Watches the past, with pictures as subscription 9.
-    link::FakeSession look_back(Watch& watch, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
+    core::FakeSession look_back(Watch& watch, evod::v1::Role role = evod::v1::ROLE_UNSPECIFIED) {
         auto session = begin(watch, role);
         show_first_picture(watch, session, 850);
-        watch.open_past({});
+        watch.open_replay({});
         const auto open = session.read_request();
-        EXPECT_EQ(open.open_past().world(), "default");
+        EXPECT_EQ(open.open_replay().world(), "default");
         answer_with(session, open, past(100));
         until(watch, [&] { return watch.opened_past(); });
         EXPECT_EQ(next(session).unsubscribe().subscription_id(), 7u);
@@ -487,15 +487,15 @@ struct PastTest : WatchTest {
 TEST_F(PastTest, IsAWorldOfItsOwnUntilOneReturnsToThePresent) {
     Watch watch{wanted()};
     auto session = look_back(watch);
-    ASSERT_NE(watch.recording(), nullptr);
-    EXPECT_EQ(watch.recording()->last_tick(), 900u);
+    ASSERT_NE(watch.replay(), nullptr);
+    EXPECT_EQ(watch.replay()->last_tick(), 900u);
     EXPECT_EQ(watch.world(), "default@3");
     EXPECT_EQ(watch.island(), 1u);
     watch.return_to_present();
     EXPECT_EQ(watch.world(), "default");
-    EXPECT_EQ(watch.recording(), nullptr);
+    EXPECT_EQ(watch.replay(), nullptr);
     EXPECT_EQ(next(session).unsubscribe().subscription_id(), 10u);
-    EXPECT_EQ(next(session).close_past().world(), "default@3");
+    EXPECT_EQ(next(session).close_replay().world(), "default@3");
     EXPECT_EQ(next(session).unsubscribe().subscription_id(), 9u);
     EXPECT_EQ(next(session).subscribe_snapshots().world(), "default");
 }
@@ -540,7 +540,7 @@ TEST_F(PastTest, APastThatCannotBeOpenedIsTold) {
     Watch watch{wanted()};
     auto session = begin(watch);
     show_first_picture(watch, session, 850);
-    watch.open_past({});
+    watch.open_replay({});
     EXPECT_FALSE(watch.all_answered());
     session.refuse(session.read_request().request_id(), evod::v1::CODE_FAILED_PRECONDITION, "the server keeps no runs");
     until(watch, [&] { return !notices.empty(); });

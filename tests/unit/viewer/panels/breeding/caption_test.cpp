@@ -55,7 +55,7 @@ TEST(Caption, SaysWhatBecameOfADescendant) {
     EXPECT_EQ(of_three(), "Organism 3 of the next generation: a child of organisms 4 and 9, no mutation.");
     made_up::mutate(*breeding.mutable_descendants(3), evod::v1::MUTATION_KIND_CREEP, 0, 1, 2);
     made_up::mutate(*breeding.mutable_descendants(3), evod::v1::MUTATION_KIND_CLAMP, 0, 2, 1.5f);
-    breeding.mutable_descendants(3)->mutable_rearrangement()->set_method("swap");
+    breeding.mutable_descendants(3)->mutable_order_mutation()->set_method("swap");
     breeding.mutable_descendants(3)->set_crossed(false);
     EXPECT_EQ(of_three(),
               "Organism 3 of the next generation: a child of organisms 4 and 9, not crossed, swap moved genes, "

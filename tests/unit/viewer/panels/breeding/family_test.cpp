@@ -27,9 +27,9 @@ TEST(Family, WhoIsACopyHasNoCuts) {
 
 TEST(Family, RearrangedGenesKeepTheParentTheyCameOf) {
     evod::v1::Descendant child = made_up::child(0b000001);
-    child.mutable_rearrangement()->set_method("inversion");
+    child.mutable_order_mutation()->set_method("inversion");
     for (const std::uint32_t from : {2u, 1u, 0u, 3u, 4u, 5u}) {
-        child.mutable_rearrangement()->add_order(from);
+        child.mutable_order_mutation()->add_order(from);
     }
     const Family family = family_of(child);
     EXPECT_THAT(family.genes, ElementsAre(3, 2, 11, 4, 5, 6));
@@ -67,7 +67,7 @@ TEST(Family, MalformedListsHaveNone) {
     EXPECT_THAT(family_of(far).genes, IsEmpty());
     evod::v1::Descendant order = made_up::child(0);
     for (const std::uint32_t from : {0u, 1u, 2u, 3u, 4u, 6u}) {
-        order.mutable_rearrangement()->add_order(from);
+        order.mutable_order_mutation()->add_order(from);
     }
     EXPECT_THAT(family_of(order).genes, IsEmpty());
     EXPECT_THAT(family_of(evod::v1::Descendant{}).genes, IsEmpty());

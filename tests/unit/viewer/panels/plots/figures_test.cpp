@@ -33,7 +33,7 @@ HistoryTable table_of(std::uint32_t islands, std::uint64_t generations) {
                 account.set_migration(0.5);
                 account.set_change(2.5 + 2 * island);
             }
-            rows.push_back(link::history_numbers(statistics));
+            rows.push_back(core::history_numbers(statistics));
         }
         table.add(rows);
     }

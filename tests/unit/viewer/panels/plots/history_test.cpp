@@ -199,7 +199,7 @@ TEST(HistoryTable, JoinsIslands) {
     second.mutable_genes(0)->set_mean(3.5);
     HistoryTable table;
     table.set_gene_names({"impulse"});
-    table.add(std::vector<std::vector<double>>{link::history_numbers(first), link::history_numbers(second)});
+    table.add(std::vector<std::vector<double>>{core::history_numbers(first), core::history_numbers(second)});
     const auto all = [&](const char* name) { return table.column(std::nullopt, name)[0]; };
     EXPECT_EQ(table.island_count(), 2u);
     EXPECT_EQ(all("organism_count"), 40);
@@ -218,7 +218,7 @@ TEST(HistoryTable, JoinsIslands) {
 
 TEST(HistoryTable, OneIslandIsAllOfThem) {
     HistoryTable table;
-    const auto numbers = link::history_numbers(statistics_of(7));
+    const auto numbers = core::history_numbers(statistics_of(7));
     table.add(std::vector<std::vector<double>>{numbers});
     EXPECT_THAT(table.column(std::nullopt, "fitness_median"), ElementsAre(0));
     EXPECT_THAT(table.column(std::nullopt, "gene_0_mean"), ElementsAre(1.5)) << "until its name is known";
@@ -230,8 +230,8 @@ TEST(HistoryTable, ComesBackFromAFile) {
     HistoryTable table;
     table.set_gene_names({"impulse"});
     for (const std::uint64_t generation : {2, 1, 5}) {
-        table.add(std::vector<std::vector<double>>{link::history_numbers(statistics_of(generation, 0)),
-                                                   link::history_numbers(statistics_of(generation, 1))});
+        table.add(std::vector<std::vector<double>>{core::history_numbers(statistics_of(generation, 0)),
+                                                   core::history_numbers(statistics_of(generation, 1))});
     }
     const std::string path =
         (std::filesystem::temp_directory_path() / ("history_test-" + std::to_string(getpid()) + ".csv")).string();

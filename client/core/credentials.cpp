@@ -1,0 +1,59 @@
+#include "client/core/credentials.h"
+
+#include "proto/command_line/command.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+namespace evod::core {
+
+void add_options(command_line::Command& app, Credentials& credentials) {
+    app.add_option("--token-file", &credentials.token_file,
+                   "File with the token to come in with; without it the environment's EVOD_TOKEN");
+    app.add_option("--ca", &credentials.files.ca,
+                   "TLS; PEM file of who vouches for the server: its own evod.crt, perhaps")
+        .environment("EVOD_CA");
+    app.add_flag("--tls", &credentials.tls, "TLS with a server whose certificate this system trusts");
+    app.add_option("--cert", &credentials.files.certificate,
+                   "PEM file of a certificate of ours, if the server wants one");
+    app.add_option("--key", &credentials.files.key, "PEM file with its key, if that is not in the same file");
+}
+
+Result<void> apply(const Credentials& credentials, Options& options) {
+    if (!credentials.files.key.empty() && credentials.files.certificate.empty()) {
+        return Error{.kind = Error::Kind::Usage,
+                     .what =
+                         "--key: " + credentials.files.key + " is of no use without its certificate: give --cert, too"};
+    }
+    if (credentials.tls || !credentials.files.ca.empty() || !credentials.files.certificate.empty()) {
+        options.tls = credentials.files;
+    }
+    const std::string& path = credentials.token_file;
+    if (path.empty()) {
+        const char* token = std::getenv("EVOD_TOKEN");
+        options.token = token == nullptr ? "" : token;
+        return {};
+    }
+    const auto refused = [&](const std::string& why) {
+        return Error{.kind = Error::Kind::Usage, .what = "--token-file: " + path + ": " + why};
+    };
+    struct stat about {};
+    std::ifstream file{path};
+    if (!file || ::stat(path.c_str(), &about) != 0) {
+        return refused(std::strerror(errno));
+    }
+    if ((about.st_mode & 077) != 0) {
+        return refused("others can read it: chmod 600 it");
+    }
+    file >> options.token;
+    if (options.token.empty()) {
+        return refused("there is no token in it");
+    }
+    return {};
+}
+
+} // namespace evod::core

@@ -1,0 +1,56 @@
+#include "client/core/connection.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace evod::core {
+
+namespace {
+
+Error malformed(std::string_view text, const std::string& why) {
+    return {.kind = Error::Kind::Usage,
+            .what =
+                "'" + std::string{text} + "' is not a server's address: " + why + " (HOST, HOST:PORT or [IPV6]:PORT)"};
+}
+
+} // namespace
+
+Result<Endpoint> parse_endpoint(std::string_view text) {
+    std::string_view host = text, port;
+    bool has_port = false;
+    if (text.starts_with('[')) {
+        const auto close = text.find(']');
+        if (close == std::string_view::npos) {
+            return malformed(text, "']' is missing");
+        }
+        host = text.substr(1, close - 1);
+        const auto rest = text.substr(close + 1);
+        if (!rest.empty() && rest.front() != ':') {
+            return malformed(text, "after ']' comes ':' and a port");
+        }
+        has_port = !rest.empty();
+        port = rest.substr(has_port ? 1 : 0);
+    } else if (std::ranges::count(text, ':') == 1) {
+        has_port = true;
+        host = text.substr(0, text.find(':'));
+        port = text.substr(text.find(':') + 1);
+    }
+    if (host.empty()) {
+        return malformed(text, "there is no host");
+    }
+    Endpoint endpoint{.host = std::string{host}};
+    if (has_port) {
+        const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+        if (error != std::errc{} || end != port.data() + port.size() || endpoint.port == 0) {
+            return malformed(text, "a port is a number from 1 to 65535");
+        }
+    }
+    return endpoint;
+}
+
+std::string to_text(const Endpoint& endpoint) {
+    const bool bracketed = endpoint.host.find(':') != std::string::npos;
+    return (bracketed ? "[" + endpoint.host + "]" : endpoint.host) + ":" + std::to_string(endpoint.port);
+}
+
+} // namespace evod::core

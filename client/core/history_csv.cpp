@@ -1,0 +1,187 @@
+#include "client/core/history_csv.h"
+
+#include "client/core/exact.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace evod::core {
+
+namespace {
+
+/// Calls visit(name, number) for every column that is not a gene's.
+template <class Visit>
+void for_each_number(const evod::v1::GenerationStatistics& s, Visit visit) {
+    visit("generation", s.generation());
+    visit("island", s.island());
+    visit("end_tick", s.end_tick());
+    visit("simulated_s", s.simulated_s());
+    visit("organism_count", s.organism_count());
+    visit("fitness_best", s.fitness_best());
+    visit("fitness_mean", s.fitness_mean());
+    visit("fitness_median", s.fitness_median());
+    visit("fitness_worst", s.fitness_worst());
+    visit("fitness_deviation", s.fitness_deviation());
+    visit("diversity", s.diversity());
+    visit("alive_count", s.alive_count());
+    visit("starved_count", s.starved_count());
+    visit("poisoned_count", s.poisoned_count());
+    visit("food_eaten", s.food_eaten());
+    visit("poison_eaten", s.poison_eaten());
+    visit("clamp_count", s.clamp_count());
+    visit("too_fast_count", s.too_fast_count());
+    visit("speed_limit_count", s.speed_limit_count());
+    visit("best_organism", s.best_organism());
+}
+
+constexpr std::string_view gene_parts[] = {"_mean", "_deviation", "_min", "_max"};
+constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_migration", "_change"};
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Cells of a line, without the quotation marks that some programs put round them.
+std::vector<std::string_view> cells_of(std::string_view line) {
+    std::vector<std::string_view> cells;
+    while (true) {
+        const std::size_t comma = line.find(',');
+        std::string_view cell = line.substr(0, comma);
+        if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') {
+            cell = cell.substr(1, cell.size() - 2);
+        }
+        cells.push_back(cell);
+        if (comma == std::string_view::npos) {
+            return cells;
+        }
+        line.remove_prefix(comma + 1);
+    }
+}
+
+/// The text up to the end of the line, which is taken off with it.
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.ends_with('\r')) {
+        line.remove_suffix(1);
+    }
+    return line;
+}
+
+Error misread(std::string what) {
+    return {Error::Kind::Usage, std::move(what)};
+}
+
+} // namespace
+
+std::vector<std::string> history_columns(std::span<const std::string> gene_names) {
+    std::vector<std::string> columns;
+    for_each_number({}, [&](const char* name, auto) { columns.emplace_back(name); });
+    for (const std::string& gene : gene_names) {
+        for (const std::string_view part : gene_parts) {
+            columns.push_back(gene + std::string{part});
+        }
+    }
+    for (const std::string& gene : gene_names) {
+        for (const std::string_view part : account_parts) {
+            columns.push_back(gene + std::string{part});
+        }
+    }
+    return columns;
+}
+
+std::vector<double> history_numbers(const evod::v1::GenerationStatistics& statistics) {
+    std::vector<double> numbers;
+    for_each_number(statistics, [&](const char*, auto number) { numbers.push_back(static_cast<double>(number)); });
+    for (const evod::v1::GeneStatistics& gene : statistics.genes()) {
+        numbers.insert(numbers.end(), {gene.mean(), gene.deviation(), gene.min(), gene.max()});
+    }
+    for (const evod::v1::GeneStatistics& gene : statistics.genes()) {
+        if (!gene.has_account()) {
+            numbers.insert(numbers.end(), std::size(account_parts), unknown);
+            continue;
+        }
+        const evod::v1::GeneAccount& account = gene.account();
+        numbers.insert(numbers.end(),
+                       {account.selection(), account.transmission(), account.migration(), account.change()});
+    }
+    return numbers;
+}
+
+std::string history_heading(const std::vector<std::string>& gene_names) {
+    std::string heading;
+    for (const std::string& column : history_columns(gene_names)) {
+        heading += (heading.empty() ? "" : ",") + column;
+    }
+    return heading + "\n";
+}
+
+std::string history_line(std::span<const double> numbers) {
+    std::string line;
+    for (const double number : numbers) {
+        line += (line.empty() ? "" : ",") + (std::isnan(number) ? std::string{} : exact(number));
+    }
+    return line + "\n";
+}
+
+Result<HistoryCsv> read_history_csv(std::string_view text) {
+    if (text.starts_with("\xef\xbb\xbf")) { // a byte order mark, which spreadsheets write
+        text.remove_prefix(3);
+    }
+    const std::vector<std::string_view> heading = cells_of(take_line(text));
+    HistoryCsv read;
+    for (const std::string_view name : heading) {
+        const std::string gene{name.substr(0, name.size() - std::min(name.size(), gene_parts[0].size()))};
+        if (name.ends_with(gene_parts[0]) && gene != "fitness") {
+            read.gene_names.push_back(gene);
+        }
+    }
+    const std::vector<std::string> columns = history_columns(read.gene_names);
+    const std::size_t account_begin = columns.size() - read.gene_names.size() * std::size(account_parts);
+    std::vector<std::size_t> places; // past the end: an older file, without
+    for (const std::string& column : columns) {
+        const auto found = std::find(heading.begin(), heading.end(), column);
+        if (found == heading.end() && places.size() < account_begin) {
+            return misread("line 1: there is no column " + column +
+                           "; the columns must be those of evoctl export --what generations");
+        }
+        places.push_back(static_cast<std::size_t>(found - heading.begin()));
+    }
+    for (std::size_t number = 2; !text.empty(); ++number) {
+        const std::string_view line = take_line(text);
+        if (line.empty()) {
+            continue;
+        }
+        const std::vector<std::string_view> cells = cells_of(line);
+        if (cells.size() != heading.size()) {
+            return misread("line " + std::to_string(number) + " has " + std::to_string(cells.size()) +
+                           " cells, allowed: " + std::to_string(heading.size()) + ", as many as the heading");
+        }
+        std::vector<double>& row = read.rows.emplace_back();
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            const std::string_view cell = places[i] < cells.size() ? cells[places[i]] : std::string_view{};
+            if (i >= account_begin && cell.empty()) {
+                row.push_back(unknown);
+                continue;
+            }
+            double value = 0;
+            const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+            if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) {
+                return misread("line " + std::to_string(number) + ", " + columns[i] + ": must be a number, not \"" +
+                               std::string{cell.substr(0, 40)} + "\"");
+            }
+            row.push_back(value);
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (row[i] != std::floor(row[i]) || row[i] < (i == 0 ? 1 : 0) || row[i] >= (i == 0 ? 1e15 : 65'536)) {
+                return misread("line " + std::to_string(number) + ", " + columns[i] + ": must be a whole number from " +
+                               (i == 0 ? "1" : "0 to 65535") + ", not " + exact(row[i]));
+            }
+        }
+    }
+    return read;
+}
+
+} // namespace evod::core

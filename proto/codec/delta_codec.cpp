@@ -1,0 +1,635 @@
+#include "proto/codec/delta_codec.h"
+
+#include "proto/codec/body.h"
+#include "proto/codec/compression.h"
+#include "proto/codec/framing.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+namespace evod::codec {
+
+namespace {
+
+constexpr std::uint8_t some_are_gone = 1, some_have_come = 2; // in a section's parts
+constexpr std::uint32_t size_bytes = 2;                       // of a radius, health, half width or half height
+
+/// What entities of a kind have, and what of it can change.
+struct Kind {
+    const char* name;
+    Entities QuantisedSnapshot::*entities;
+    EntitiesView QuantisedView::*seen;
+    Baseline::Displacements Baseline::*displacements; // of those that move
+    BaselineView::Displacements BaselineView::*seen_displacements;
+    bool ids; // on a whole island; in a tile every kind has ids
+    bool sizes, health;
+};
+
+const std::array<Kind, 5> kinds{{
+    {"organisms", &QuantisedSnapshot::organisms, &QuantisedView::organisms, &Baseline::organisms, &BaselineView::organisms, true, true,
+     true},
+    {"food", &QuantisedSnapshot::food, &QuantisedView::food, nullptr, nullptr, true, false, false},
+    {"poison", &QuantisedSnapshot::poison, &QuantisedView::poison, nullptr, nullptr, true, false, false},
+    {"crates", &QuantisedSnapshot::crates, &QuantisedView::crates, &Baseline::crates, &BaselineView::crates, false, true, false},
+    {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
+}};
+
+/// How far something moves in `ticks` that moved by `displacement` in base_ticks, if it goes on as it did.
+class Foretold {
+  public:
+    Foretold(std::uint16_t ticks, std::uint16_t base_ticks)
+        : ticks_{ticks}, base_ticks_{std::max<std::uint16_t>(base_ticks, 1)} {}
+
+    std::uint32_t operator()(std::uint32_t displacement) const {
+        if (ticks_ == base_ticks_) {
+            return displacement;
+        }
+        const std::int64_t way = std::int64_t{static_cast<std::int32_t>(displacement)} * ticks_;
+        const std::int64_t rounded_down = way / base_ticks_ - (way % base_ticks_ < 0 ? 1 : 0);
+        return static_cast<std::uint32_t>(rounded_down);
+    }
+
+    /// By how much that is wrong where things are `here` that were `there`; all of one length.
+    void corrections(Numbers here, Numbers there, Numbers displacements, std::uint32_t* to) const {
+        if (ticks_ == base_ticks_) { // the usual case, which vectors do
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                to[i] = here[i] - there[i] - displacements[i];
+            }
+            return;
+        }
+        unsigned all_small = 1;
+        for (const std::uint32_t displacement : displacements) {
+            all_small &= unsigned{displacement + small_ <= 2 * small_};
+        }
+        if (all_small) { // as at full speed, where no two pictures are equally far apart: vectors do this, too
+            const Foretold foretold = *this; // whose numbers `to` cannot be
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                to[i] = here[i] - there[i] - foretold.of_small(displacements[i]);
+            }
+            return;
+        }
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            to[i] = here[i] - there[i] - (*this)(displacements[i]);
+        }
+    }
+
+  private:
+    /// The same of one that is not beyond small_ either way: as a multiplication, for of numbers below 2^31 the
+    /// quotient is exact so (Granlund and Montgomery, Division by Invariant Integers using Multiplication, 1994,
+    /// theorem 4.2).
+    std::uint32_t of_small(std::uint32_t displacement) const {
+        const std::uint32_t way = displacement * ticks_ + ahead_ * base_ticks_; // not below 0
+        return static_cast<std::uint32_t>(std::uint64_t{way} * reciprocal_ >> shift_) - ahead_;
+    }
+
+    static constexpr std::uint32_t longest_way = 1U << 29; // of what is small
+    std::uint32_t ticks_, base_ticks_;
+    std::uint32_t small_ = longest_way / std::max(ticks_, 1U);
+    std::uint32_t ahead_ = longest_way / base_ticks_ + 1;
+    unsigned shift_ = 31 + static_cast<unsigned>(std::bit_width(base_ticks_ - 1)); // 31 and log2, rounded up
+    std::uint32_t reciprocal_ = static_cast<std::uint32_t>((std::uint64_t{1} << shift_) / base_ticks_ + 1);
+};
+
+// ---- which entities of two pictures are the same ---------------------------------------------------------------
+
+struct Pairing {
+    Column gone; // indices in the base, rising
+    Column come; // indices in the next picture, rising
+};
+
+bool have_ids(const Kind& kind, bool of_tile) {
+    return kind.ids || of_tile;
+}
+
+/// same  1 if those at two indices are the same, having equal ids; else 0. Many are looked at at once, for mostly they
+/// are; and where they are not, one by one without a branch, for which are is unpredictable.
+template <class Same>
+Pairing pair_by_id(const EntitiesView& base, const EntitiesView& next, const Same& same) {
+    const auto base_count = static_cast<std::uint32_t>(base.id.size());
+    const auto next_count = static_cast<std::uint32_t>(next.id.size());
+    // With room for one more: the index of one that stays is written there, and written over.
+    Pairing pairing{.gone = Column(base_count + std::size_t{1}), .come = Column(next_count + std::size_t{1})};
+    std::uint32_t i = 0, j = 0, gone = 0, come = 0;
+    constexpr std::uint32_t block = 32;
+    while (i < base_count && j < next_count) {
+        while (base_count - i >= block && next_count - j >= block) {
+            unsigned all_same = 1;
+            for (std::uint32_t k = 0; k < block; ++k) { // so that it is done with vectors
+                all_same &= unsigned{base.id[i + k] == next.id[j + k]} & same(i + k, j + k);
+            }
+            if (!all_same) {
+                break;
+            }
+            i += block;
+            j += block;
+        }
+        for (std::uint32_t steps = 0; steps < block && i < base_count && j < next_count; ++steps) {
+            const std::uint32_t a = base.id[i], b = next.id[j];
+            const unsigned stays = unsigned{a == b} & same(i, j);
+            pairing.gone[gone] = i;
+            pairing.come[come] = j;
+            gone += unsigned{a <= b} & ~stays;
+            come += unsigned{b <= a} & ~stays;
+            i += a <= b;
+            j += b <= a;
+        }
+    }
+    while (i < base_count) {
+        pairing.gone[gone++] = i++;
+    }
+    while (j < next_count) {
+        pairing.come[come++] = j++;
+    }
+    pairing.gone.resize(gone);
+    pairing.come.resize(come);
+    return pairing;
+}
+
+/// An organism stays the same while it has its id and its radius, an item while it lies where it lay, a crate while it
+/// has its size. Of a whole island boxes are the same where follows() holds.
+Pairing pair(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
+    if (!have_ids(kind, of_tile)) {
+        return {};
+    }
+    const auto same_at = [](Numbers a, Numbers b) {
+        return [a, b](std::uint32_t i, std::uint32_t j) { return unsigned{a[i] == b[j]}; };
+    };
+    const auto width = same_at(base.width, next.width), height = same_at(base.height, next.height);
+    const auto x = same_at(base.x, next.x), y = same_at(base.y, next.y);
+    if (kind.health) {
+        return pair_by_id(base, next, width);
+    }
+    const auto same_size = [=](std::uint32_t i, std::uint32_t j) { return width(i, j) & height(i, j); };
+    if (kind.displacements) {
+        return pair_by_id(base, next, same_size);
+    }
+    const auto same_place = [=](std::uint32_t i, std::uint32_t j) { return x(i, j) & y(i, j); };
+    if (kind.sizes) {
+        return pair_by_id(base, next,
+                          [=](std::uint32_t i, std::uint32_t j) { return same_place(i, j) & same_size(i, j); });
+    }
+    return pair_by_id(base, next, same_place);
+}
+
+/// 0 to count - 1.
+Column indices(std::size_t count) {
+    Column all(count);
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+}
+
+/// Whether of many of a kind that does not move so few have stayed that to tell all anew takes about as many bytes, and
+/// far less time than to find out which. The first of them are looked at, for where things are does not follow from
+/// ids.
+bool mostly_others(const Kind& kind, const EntitiesView& base, const EntitiesView& next, bool of_tile) {
+    constexpr std::size_t many = 2048, looked_at = 256, stayed_max = looked_at / 4;
+    if (kind.displacements || base.id.size() < many) {
+        return false;
+    }
+    const auto first = [](const EntitiesView& of, std::size_t count) {
+        const auto part = [&](Numbers column) { return column.first(std::min(count, column.size())); };
+        return EntitiesView{part(of.id), part(of.x), part(of.y), part(of.width), part(of.height)};
+    };
+    const auto up_to_there = std::ranges::lower_bound(next.id, base.id[looked_at]) - next.id.begin();
+    const Pairing pairing = pair(kind, first(base, looked_at), first(next, up_to_there), of_tile);
+    return looked_at - pairing.gone.size() <= stayed_max;
+}
+
+/// Calls stayed(base index, next index, count) for those that are in both, in their order: so many beside each other.
+template <class Stayed>
+void each_that_stayed(const Pairing& pairing, std::size_t base_count, const Stayed& stayed) {
+    auto gone = pairing.gone.begin();
+    auto come = pairing.come.begin();
+    for (std::size_t i = 0, j = 0; i < base_count;) {
+        if (gone != pairing.gone.end() && *gone == i) {
+            ++gone;
+            ++i;
+        } else if (come != pairing.come.end() && *come == j) {
+            ++come;
+            ++j;
+        } else {
+            const std::size_t until_gone = (gone == pairing.gone.end() ? base_count : *gone) - i;
+            const std::size_t count = come == pairing.come.end() ? until_gone : std::min(until_gone, *come - j);
+            stayed(i, j, count);
+            i += count;
+            j += count;
+        }
+    }
+}
+
+Column at(Numbers column, Numbers indices) {
+    Column chosen(indices.size());
+    std::transform(indices.begin(), indices.end(), chosen.begin(), [&](std::uint32_t i) { return column[i]; });
+    return chosen;
+}
+
+// ---- encoding --------------------------------------------------------------------------------------------------
+
+/// gone  indices in the base; come: indices in `entities`; displacements: of `entities`, null: those that come stand.
+void write_parts(BodyWriter& writer, const Kind& kind, const EntitiesView& entities, std::uint32_t position_bytes,
+                 const Pairing& pairing, const BaselineView::Displacements* displacements) {
+    const Column& come = pairing.come;
+    writer.number(
+        static_cast<std::uint8_t>((pairing.gone.empty() ? 0 : some_are_gone) | (come.empty() ? 0 : some_have_come)));
+    if (!pairing.gone.empty()) {
+        writer.number(static_cast<std::uint32_t>(pairing.gone.size()));
+        writer.rising_column(pairing.gone);
+    }
+    if (come.empty()) {
+        return;
+    }
+    writer.number(static_cast<std::uint32_t>(come.size()));
+    if (!entities.id.empty()) {
+        writer.rising_column(at(entities.id, come));
+    }
+    writer.planes(entities.x, come, position_bytes);
+    writer.planes(entities.y, come, position_bytes);
+    if (kind.sizes) {
+        writer.planes(entities.width, come, size_bytes);
+        writer.planes(entities.height, come, size_bytes);
+    }
+    if (kind.displacements) {
+        const Column still(displacements ? 0 : come.size(), 0);
+        writer.column(displacements ? at(displacements->x, come) : still);
+        writer.column(displacements ? at(displacements->y, come) : still);
+    }
+}
+
+// ---- decoding --------------------------------------------------------------------------------------------------
+
+/// `column` without what stands at the rising `indices`.
+Column without(Column column, Numbers indices) {
+    if (indices.empty() || column.empty()) {
+        return column;
+    }
+    std::size_t kept = indices.front(), next = 0;
+    for (std::size_t i = kept; i < column.size(); ++i) {
+        if (next < indices.size() && indices[next] == i) {
+            ++next;
+        } else {
+            column[kept++] = column[i];
+        }
+    }
+    column.resize(kept);
+    return column;
+}
+
+void add(Column& to, Numbers what) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+        to[i] += what[i];
+    }
+}
+
+struct Section {
+    Entities entities;
+    Baseline::Displacements displacements;
+};
+
+/// Every column of a section that may hold something.
+std::array<Column*, 7> columns_of(Section& section) {
+    return {&section.entities.id,     &section.entities.x,      &section.entities.y,     &section.entities.width,
+            &section.entities.height, &section.displacements.x, &section.displacements.y};
+}
+
+/// Puts `come` among `stayed`, by id or at the end.
+void merge(BodyReader& reader, Section& stayed, Section& come) {
+    const std::size_t stayed_count = stayed.entities.x.size(), come_count = come.entities.x.size();
+    Column order;
+    if (!come.entities.id.empty() && stayed_count > 0) {
+        order.reserve(stayed_count + come_count);
+        const Column &a = stayed.entities.id, &b = come.entities.id;
+        for (std::size_t i = 0, j = 0; i < a.size() || j < b.size();) {
+            if (i < a.size() && j < b.size() && a[i] == b[j]) {
+                reader.refuse("lets id " + std::to_string(a[i]) + " come, which is there");
+                return;
+            }
+            const bool first = j == b.size() || (i < a.size() && a[i] < b[j]);
+            order.push_back(static_cast<std::uint32_t>(first ? i++ : stayed_count + j++));
+        }
+    }
+    const auto of_stayed = columns_of(stayed), of_come = columns_of(come);
+    for (std::size_t c = 0; c < of_stayed.size(); ++c) {
+        Column& column = *of_stayed[c];
+        column.insert(column.end(), of_come[c]->begin(), of_come[c]->end());
+        if (!order.empty() && !column.empty()) {
+            column = at(column, order);
+        }
+    }
+}
+
+struct Step {
+    std::uint16_t ticks, base_ticks;
+    std::uint32_t position_bytes;
+    bool of_tile;
+};
+
+/// base  what the section is told from; count: of the picture.
+Section read_section(const Kind& kind, BodyReader& reader, Section base, std::uint32_t count, const Step& step) {
+    const auto parts = reader.number<std::uint8_t>();
+    if (parts & ~(some_are_gone | some_have_come)) {
+        reader.refuse("has parts " + std::to_string(parts) + ", not 0 to 3");
+        return {};
+    }
+    const std::size_t base_count = base.entities.x.size();
+    Section section = std::move(base);
+    if (parts & some_are_gone) {
+        const auto gone_count = reader.number<std::uint32_t>();
+        if (gone_count > base_count) {
+            reader.refuse("lets more go than there were");
+            return {};
+        }
+        const Column gone = reader.rising_column(gone_count, base_count);
+        for (Column* column : columns_of(section)) {
+            *column = without(std::move(*column), gone);
+        }
+    }
+    Section come;
+    if (parts & some_have_come) {
+        const auto come_count = reader.number<std::uint32_t>();
+        // Places are never told in fewer bytes, so that what is read bounds the memory for all columns.
+        if (come_count > count || reader.rest_bytes() / (2 * std::size_t{step.position_bytes}) < come_count) {
+            reader.refuse("lets more come than there are");
+            return {};
+        }
+        if (have_ids(kind, step.of_tile)) {
+            come.entities.id = reader.rising_column(come_count, std::uint64_t{1} << 32);
+        }
+        come.entities.x = reader.planes(come_count, step.position_bytes);
+        come.entities.y = reader.planes(come_count, step.position_bytes);
+        if (kind.sizes) {
+            come.entities.width = reader.planes(come_count, size_bytes);
+            come.entities.height = reader.planes(come_count, size_bytes);
+        }
+        if (kind.displacements) {
+            come.displacements.x = reader.column(come_count);
+            come.displacements.y = reader.column(come_count);
+        }
+    }
+    const std::size_t stayed_count = section.entities.x.size();
+    if (!reader.damage() && stayed_count + come.entities.x.size() != count) {
+        reader.refuse("comes to " + std::to_string(stayed_count + come.entities.x.size()) + " " + kind.name + ", not " +
+                      std::to_string(count));
+    }
+    if (stayed_count > 0 && kind.displacements) {
+        const Foretold foretold{step.ticks, step.base_ticks};
+        const auto move = [&](Column& places, Column& displacements) {
+            Column way = reader.column(stayed_count);
+            if (reader.damage()) {
+                return;
+            }
+            for (std::size_t i = 0; i < stayed_count; ++i) {
+                way[i] += foretold(displacements[i]);
+            }
+            add(places, way);
+            if (step.ticks > 0) {
+                displacements = std::move(way);
+            }
+        };
+        move(section.entities.x, section.displacements.x);
+        move(section.entities.y, section.displacements.y);
+    }
+    if (stayed_count > 0 && kind.health) {
+        const Column differences = reader.column(stayed_count);
+        if (!reader.damage()) {
+            add(section.entities.height, differences);
+        }
+    }
+    const auto fits_not = [](std::uint32_t value) { return value > 0xffff; };
+    if ((step.position_bytes == 2 &&
+         (std::ranges::any_of(section.entities.x, fits_not) || std::ranges::any_of(section.entities.y, fits_not))) ||
+        std::ranges::any_of(section.entities.height, fits_not)) {
+        reader.refuse("takes a number out of its column's range");
+    }
+    if (!reader.damage() && !come.entities.x.empty()) {
+        merge(reader, section, come);
+    }
+    return section;
+}
+
+} // namespace
+
+Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> scene) {
+    Baseline baseline;
+    for (const Kind& kind : kinds) {
+        if (kind.displacements) {
+            Baseline::Displacements& displacements = baseline.*kind.displacements;
+            displacements.x.assign(((*scene).*kind.entities).x.size(), 0);
+            displacements.y = displacements.x;
+        }
+    }
+    baseline.scene = std::move(scene);
+    return baseline;
+}
+
+QuantisedView::QuantisedView(const QuantisedSnapshot& scene) : position_bytes{scene.position_bytes}, of_tile{scene.of_tile} {
+    for (const Kind& kind : kinds) {
+        const Entities& entities = scene.*kind.entities;
+        this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height};
+    }
+}
+
+BaselineView::BaselineView(const Baseline& baseline)
+    : scene{*baseline.scene}
+    , organisms{baseline.organisms.x, baseline.organisms.y}
+    , crates{baseline.crates.x, baseline.crates.y}
+    , ticks{baseline.ticks} {}
+
+bool follows(const QuantisedView& next, const QuantisedView& base) {
+    const auto same = [](Numbers a, Numbers b) { return std::ranges::equal(a, b); };
+    const auto same_sizes = [&](const EntitiesView& a, const EntitiesView& b) {
+        return same(a.width, b.width) && same(a.height, b.height);
+    };
+    return next.position_bytes == base.position_bytes && next.of_tile == base.of_tile &&
+           (next.of_tile || (same_sizes(next.crates, base.crates) && same_sizes(next.obstacles, base.obstacles) &&
+                             same(next.obstacles.x, base.obstacles.x) && same(next.obstacles.y, base.obstacles.y)));
+}
+
+namespace {
+
+/// Where those of a kind that move write how they came to be where they are.
+const AdvancedColumns::Displacements& of_kind(const AdvancedColumns& to, const Kind& kind) {
+    return kind.health ? to.organisms : to.crates;
+}
+
+} // namespace
+
+void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks, const AdvancedColumns& moved) {
+    for (const Kind& kind : kinds) {
+        if (!kind.seen_displacements) {
+            continue;
+        }
+        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const BaselineView::Displacements& before = base.*kind.seen_displacements;
+        const AdvancedColumns::Displacements& now = of_kind(moved, kind);
+        each_that_stayed(
+            pair(kind, from, to, next.of_tile), from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                const auto move = [=](Numbers here, Numbers there, Numbers was, std::span<std::uint32_t> is) {
+                    for (std::size_t k = 0; k < count; ++k) {
+                        is[j + k] = ticks > 0 ? here[j + k] - there[i + k] : was[i + k];
+                    }
+                };
+                move(to.x, from.x, before.x, now.x);
+                move(to.y, from.y, before.y, now.y);
+            });
+    }
+}
+
+Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks) {
+    Baseline baseline = initial_baseline(std::move(next));
+    baseline.ticks = ticks > 0 ? ticks : base.ticks;
+    advance_baseline(base, *baseline.scene, ticks,
+            {.organisms = {baseline.organisms.x, baseline.organisms.y}, .crates = {baseline.crates.x, baseline.crates.y}});
+    return baseline;
+}
+
+std::string encode_keyframe(const BaselineView& baseline, Seams* seams) {
+    BodyWriter writer;
+    writer.number(baseline.ticks);
+    for (const Kind& kind : kinds) {
+        const EntitiesView& entities = baseline.scene.*kind.seen;
+        const Pairing everyone{.gone = {}, .come = indices(entities.x.size())};
+        write_parts(writer, kind, entities, baseline.scene.position_bytes, everyone,
+                    kind.seen_displacements ? &(baseline.*kind.seen_displacements) : nullptr);
+    }
+    if (seams) {
+        *seams = writer.take_seams();
+    }
+    return writer.take();
+}
+
+std::string encode_delta(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks, const AdvancedColumns* moved,
+                         Seams* seams) {
+    BodyWriter writer;
+    writer.number(ticks);
+    const Foretold foretold{ticks, base.ticks};
+    for (const Kind& kind : kinds) {
+        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const Pairing pairing = mostly_others(kind, from, to, next.of_tile)
+                                    ? Pairing{.gone = indices(from.x.size()), .come = indices(to.x.size())}
+                                    : pair(kind, from, to, next.of_tile);
+        write_parts(writer, kind, to, next.position_bytes, pairing, nullptr);
+        const std::size_t stayed_count = from.x.size() - pairing.gone.size();
+        if (stayed_count == 0 || !kind.seen_displacements) {
+            continue;
+        }
+        const auto memory = std::make_unique_for_overwrite<std::uint32_t[]>(stayed_count);
+        const std::span corrections{memory.get(), stayed_count};
+        const BaselineView::Displacements& displacements = base.*kind.seen_displacements;
+        const AdvancedColumns::Displacements* const now = moved ? &of_kind(*moved, kind) : nullptr;
+        const auto write = [&](Numbers here, Numbers there, Numbers was, std::span<std::uint32_t> is) {
+            std::size_t k = 0;
+            each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                foretold.corrections({here.data() + j, count}, {there.data() + i, count}, {was.data() + i, count},
+                                     corrections.data() + k);
+                for (std::size_t n = 0; now && n < count; ++n) {
+                    is[j + n] = ticks > 0 ? here[j + n] - there[i + n] : was[i + n];
+                }
+                k += count;
+            });
+            writer.column(corrections);
+        };
+        write(to.x, from.x, displacements.x, now ? now->x : std::span<std::uint32_t>{});
+        write(to.y, from.y, displacements.y, now ? now->y : std::span<std::uint32_t>{});
+        if (kind.health) {
+            std::size_t k = 0;
+            each_that_stayed(pairing, from.x.size(), [&](std::size_t i, std::size_t j, std::size_t count) {
+                for (std::size_t n = 0; n < count; ++n) {
+                    corrections[k + n] = to.height[j + n] - from.height[i + n];
+                }
+                k += count;
+            });
+            writer.column(corrections);
+        }
+    }
+    if (seams) {
+        *seams = writer.take_seams();
+    }
+    return writer.take();
+}
+
+Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, const Baseline* base) {
+    if (base && base->scene->position_bytes != shape.position_bytes) {
+        return Damage{"a snapshot's position_bytes differ from those of its base"};
+    }
+    BodyReader reader{body};
+    const auto ticks = reader.number<std::uint16_t>();
+    const Step step{.ticks = ticks,
+                    .base_ticks = base ? base->ticks : std::uint16_t{0},
+                    .position_bytes = shape.position_bytes,
+                    .of_tile = shape.of_tile};
+    auto scene = std::make_shared<QuantisedSnapshot>();
+    scene->position_bytes = shape.position_bytes;
+    scene->of_tile = shape.of_tile;
+    Baseline baseline;
+    baseline.ticks = !base || ticks > 0 ? ticks : base->ticks;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const Kind& kind = kinds[k];
+        Section from;
+        if (base) {
+            from.entities = (*base->scene).*kind.entities;
+            if (kind.displacements) {
+                from.displacements = base->*kind.displacements;
+            }
+        }
+        Section section = read_section(kind, reader, std::move(from), shape.counts[k], step);
+        (*scene).*kind.entities = std::move(section.entities);
+        if (kind.displacements) {
+            baseline.*kind.displacements = std::move(section.displacements);
+        }
+    }
+    if (reader.rest_bytes() > 0) {
+        reader.refuse("has bytes at its end that mean nothing");
+    }
+    if (reader.damage()) {
+        return *reader.damage();
+    }
+    baseline.scene = std::move(scene);
+    return baseline;
+}
+
+std::uint64_t body_bytes_max(const Counts& counts, const QuantisedSnapshot* base) {
+    constexpr std::uint64_t row_bytes_max = 48, section_bytes_max = 64; // somewhat more than any can take
+    const Counts base_counts = base ? counts_of(*base) : Counts{};
+    std::uint64_t bytes = sizeof(std::uint16_t);
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        bytes += section_bytes_max + row_bytes_max * (std::uint64_t{base_counts[k]} + counts[k]);
+    }
+    return std::min<std::uint64_t>(bytes, *client_limits.stream_bytes_max);
+}
+
+std::uint32_t checksum_of(const ChecksummedFields& told, std::string_view body, std::uint32_t before) {
+    std::array<char, 2 * 8 + 6 * 4> about;
+    store(told.sequence, &about[0]);
+    store(told.base_sequence, &about[8]);
+    for (std::size_t k = 0; k < told.counts.size(); ++k) {
+        store(told.counts[k], &about[16 + 4 * k]);
+    }
+    store(told.position_bytes, &about[36]);
+    return crc32(body, crc32({about.data(), about.size()}, before));
+}
+
+std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body) {
+    return checksum_of({.sequence = frame.sequence(),
+                        .base_sequence = frame.base_sequence(),
+                        .counts = counts_of(frame),
+                        .position_bytes = frame.position_bytes()},
+                       body);
+}
+
+void leave_out_unchanging(evod::v1::SnapshotFrame& frame) {
+    frame.clear_world();
+    frame.clear_run_id();
+    frame.clear_island_count();
+    frame.clear_width_px();
+    frame.clear_height_px();
+    frame.clear_item_radius_px();
+}
+
+bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b) {
+    return a.world() == b.world() && a.run_id() == b.run_id() && a.island_count() == b.island_count() &&
+           a.width_px() == b.width_px() && a.height_px() == b.height_px() && a.item_radius_px() == b.item_radius_px();
+}
+
+} // namespace evod::codec

@@ -1,0 +1,72 @@
+#include "proto/codec/population_csv.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace evod::codec {
+namespace {
+
+Damage wrong_line(std::uint64_t line, const std::string& allowed, std::string_view got) {
+    constexpr std::size_t shown_bytes_max = 80;
+    return {"line " + std::to_string(line) + ": got \"" + std::string{got.substr(0, shown_bytes_max)} + "\", allowed " +
+            allowed};
+}
+
+/// The next field of a line, which is shortened by it; false if it is no T.
+template <class T>
+bool take(std::string_view& line, T& value) {
+    const std::string_view field = line.substr(0, line.find(','));
+    line.remove_prefix(std::min(line.size(), field.size() + 1));
+    const auto read = std::from_chars(field.data(), field.data() + field.size(), value);
+    return read.ec == std::errc{} && read.ptr == field.data() + field.size();
+}
+
+bool next_line(std::istream& in, std::string& line) {
+    if (!std::getline(in, line))
+        return false;
+    if (line.ends_with('\r'))
+        line.pop_back();
+    return true;
+}
+
+} // namespace
+
+Result<std::vector<std::vector<float>>> read_population(std::istream& in) {
+    std::string line;
+    if (!next_line(in, line) || line != population_heading)
+        return wrong_line(1, "the heading " + std::string{population_heading}, line);
+
+    std::vector<std::vector<float>> islands;
+    for (std::uint64_t number = 2; next_line(in, line); ++number) {
+        std::string_view rest = line;
+        std::uint64_t island = 0, organism = 0;
+        std::array<float, population_genes> genes;
+        bool good = take(rest, island) && take(rest, organism);
+        for (float& gene : genes)
+            good = good && take(rest, gene);
+        if (!good || !rest.empty() || std::count(line.begin(), line.end(), ',') != population_genes + 1)
+            return wrong_line(number, "an island, an organism and six genes", line);
+        if (island == islands.size() && organism == 0)
+            islands.emplace_back();
+        const std::uint64_t last = islands.empty() ? 0 : islands.size() - 1;
+        const std::uint64_t next = islands.empty() ? 0 : islands.back().size() / population_genes;
+        if (islands.empty() || island != last || organism != next)
+            return wrong_line(number,
+                              "organism " + std::to_string(next) + " of island " + std::to_string(last) +
+                                  ", or the next island",
+                              line);
+        islands.back().insert(islands.back().end(), genes.begin(), genes.end());
+    }
+    if (in.bad())
+        return Damage{std::string{"cannot be read: "} + std::strerror(errno)};
+    if (islands.empty())
+        return Damage{"holds no organism"};
+    return islands;
+}
+
+} // namespace evod::codec

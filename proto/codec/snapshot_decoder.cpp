@@ -1,0 +1,240 @@
+#include "proto/codec/snapshot_decoder.h"
+
+#include "proto/codec/compression.h"
+#include "proto/codec/framing.h"
+#include "proto/codec/steps.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace evod::codec {
+
+namespace {
+
+/// The content of a body. bytes_max: it is refused beyond.
+Result<std::string> content_of(std::string body, evod::v1::Compression compression, std::uint64_t bytes_max) {
+    switch (compression) {
+    case evod::v1::COMPRESSION_ZSTD:
+        return decompress(body, bytes_max);
+    case evod::v1::COMPRESSION_UNSPECIFIED:
+    case evod::v1::COMPRESSION_NONE:
+        return {boost::system::in_place_value, std::move(body)};
+    default:
+        return Damage{"a snapshot's compression is " + std::to_string(compression) + ", not one that is known here"};
+    }
+}
+
+std::vector<float> in_px(Numbers steps) {
+    std::vector<float> values(steps.size());
+    std::transform(steps.begin(), steps.end(), values.begin(),
+                   [](std::uint32_t step) { return static_cast<float>(step) * (1 / steps_per_px); });
+    return values;
+}
+
+std::vector<std::uint32_t> kept(const Column& column) {
+    return {column.begin(), column.end()};
+}
+
+DecodedBoxes boxes_of(const Entities& entities) {
+    DecodedBoxes boxes{.x_px = in_px(entities.x),
+                     .y_px = in_px(entities.y),
+                     .half_width_px = in_px(entities.width),
+                     .half_height_px = in_px(entities.height),
+                     .id = kept(entities.id)};
+    if (boxes.id.empty()) {
+        boxes.id.resize(entities.x.size());
+        std::iota(boxes.id.begin(), boxes.id.end(), 0U);
+    }
+    return boxes;
+}
+
+DecodedSnapshot picture_of(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame about) {
+    return {.about = std::move(about),
+            .organisms = {kept(scene.organisms.id), in_px(scene.organisms.x), in_px(scene.organisms.y),
+                          in_px(scene.organisms.width), in_px(scene.organisms.height)},
+            .food = {kept(scene.food.id), in_px(scene.food.x), in_px(scene.food.y)},
+            .poison = {kept(scene.poison.id), in_px(scene.poison.x), in_px(scene.poison.y)},
+            .crates = boxes_of(scene.crates),
+            .obstacles = boxes_of(scene.obstacles),
+            .tiles = {}};
+}
+
+Damage keyframe_needed() {
+    return Damage{"a snapshot is told from one that is not known here: a keyframe is needed"};
+}
+
+Damage other_checksum() {
+    return Damage{"a snapshot's checksum is not that of its body"};
+}
+
+Damage other_base(std::uint64_t got, std::uint64_t last) {
+    return Damage{"a snapshot's base_sequence is " + std::to_string(got) + ", not the last one, " +
+                  std::to_string(last)};
+}
+
+} // namespace
+
+bool is_keyframe(const evod::v1::SnapshotFrame& frame) {
+    return frame.base_sequence() == 0 &&
+           std::ranges::all_of(frame.tiles(), [](const auto& tile) { return tile.base_sequence() == 0; });
+}
+
+Result<DecodedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
+    if (frame.codec() == evod::v1::CODEC_COLUMNS && checksum_of(frame, frame.body()) != frame.checksum()) {
+        return other_checksum();
+    }
+    if (frame.codec() != evod::v1::CODEC_DELTA) {
+        return codec::decode(std::move(frame));
+    }
+    auto picture = frame.tile_px() > 0 ? decode_tiles(std::move(frame)) : decode_whole(std::move(frame));
+    if (!picture) {
+        forget();
+    }
+    return picture;
+}
+
+void SnapshotDecoder::forget() {
+    scene_ = nullptr;
+    whole_.reset();
+    tiles_.reset();
+}
+
+Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame frame) {
+    const bool keyframe = frame.base_sequence() == 0;
+    if (!keyframe && !whole_) {
+        return keyframe_needed();
+    }
+    if (!keyframe && frame.base_sequence() != whole_->about.sequence()) {
+        return other_base(frame.base_sequence(), whole_->about.sequence());
+    }
+    if (!keyframe) {
+        frame.set_world(whole_->about.world());
+        frame.set_run_id(whole_->about.run_id());
+        frame.set_island_count(whole_->about.island_count());
+        frame.set_width_px(whole_->about.width_px());
+        frame.set_height_px(whole_->about.height_px());
+        frame.set_item_radius_px(whole_->about.item_radius_px());
+    }
+    if (auto damage = damage_of_fields(frame)) {
+        return *std::move(damage);
+    }
+    const Baseline* const base = keyframe ? nullptr : &whole_->baseline;
+    const Counts counts = counts_of(frame);
+    const auto content = content_of(std::move(*frame.mutable_body()), frame.compression(),
+                                    body_bytes_max(counts, base ? base->scene.get() : nullptr));
+    frame.clear_body();
+    frame.clear_tiles(); // without tile_px they mean nothing
+    if (!content) {
+        return content.error();
+    }
+    if (checksum_of(frame, *content) != frame.checksum()) {
+        return other_checksum();
+    }
+    auto baseline =
+        decode_body(*content, {.counts = counts, .position_bytes = frame.position_bytes(), .of_tile = false}, base);
+    if (!baseline) {
+        return baseline.error();
+    }
+    forget();
+    scene_ = baseline->scene;
+    whole_ = Whole{.baseline = *std::move(baseline), .about = frame};
+    return picture_of(*scene_, std::move(frame));
+}
+
+Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame frame) {
+    if (auto damage = damage_of_fields(frame)) {
+        return *std::move(damage);
+    }
+    const auto layout = tile_layout_of(frame);
+    if (!layout) {
+        return layout.error();
+    }
+    Tiles next{.layout = *layout, .bases = {}};
+    std::vector<DecodedTile> seen;
+    std::vector<const QuantisedSnapshot*> scenes;
+    std::uint64_t content_bytes_left = *client_limits.stream_bytes_max; // of all tiles together
+    for (evod::v1::SnapshotTile& tile : *frame.mutable_tiles()) {
+        if (tile.tile() >= layout->count()) {
+            return Damage{"a tile is " + std::to_string(tile.tile()) + ", not one of " +
+                          std::to_string(layout->count())};
+        }
+        if (!seen.empty() && seen.back().tile >= tile.tile()) {
+            return Damage{"a snapshot's tiles do not rise"};
+        }
+        if (tile.sequence() != frame.sequence()) {
+            return Damage{"a tile's sequence is " + std::to_string(tile.sequence()) + ", not its snapshot's, " +
+                          std::to_string(frame.sequence())};
+        }
+        const Tiles::Base* base = nullptr;
+        if (tile.detail() == evod::v1::DETAIL_FULL && tile.base_sequence() != 0) {
+            if (tiles_ && tiles_->layout == *layout && tiles_->bases.contains(tile.tile())) {
+                base = &tiles_->bases.at(tile.tile());
+            }
+            if (!base) {
+                return keyframe_needed();
+            }
+            if (tile.base_sequence() != base->sequence) {
+                return other_base(tile.base_sequence(), base->sequence);
+            }
+        }
+        const Counts counts = counts_of(tile);
+        const std::uint64_t bytes_max = tile.detail() == evod::v1::DETAIL_DENSITY
+                                            ? density_bytes_max
+                                            : body_bytes_max(counts, base ? base->baseline.scene.get() : nullptr);
+        const auto content =
+            content_of(std::move(*tile.mutable_body()), tile.compression(), std::min(bytes_max, content_bytes_left));
+        if (!content) {
+            return content.error();
+        }
+        content_bytes_left -= std::min<std::uint64_t>(content_bytes_left, content->size());
+        if (checksum_of(frame, tile, *content) != tile.checksum()) {
+            return Damage{"a tile's checksum is not that of its body"};
+        }
+        DecodedTile& picture = seen.emplace_back();
+        picture.tile = tile.tile();
+        picture.detail = tile.detail();
+        picture.left_px = double{1} * (tile.tile() % layout->columns) * layout->tile_px;
+        picture.top_px = double{1} * (tile.tile() / layout->columns) * layout->tile_px;
+        if (tile.detail() == evod::v1::DETAIL_FULL) {
+            auto baseline =
+                decode_body(*content, {.counts = counts, .position_bytes = frame.position_bytes(), .of_tile = true},
+                            base ? &base->baseline : nullptr);
+            if (!baseline) {
+                return baseline.error();
+            }
+            scenes.push_back(baseline->scene.get());
+            next.bases[tile.tile()] = {.sequence = tile.sequence(), .baseline = *std::move(baseline)};
+        } else if (tile.detail() == evod::v1::DETAIL_DOTS) {
+            auto dots = decode_dots(*content, counts, *layout, tile.tile());
+            if (!dots) {
+                return dots.error();
+            }
+            picture.dots = *std::move(dots);
+        } else if (tile.detail() == evod::v1::DETAIL_DENSITY) {
+            auto density = decode_density(*content, counts);
+            if (!density) {
+                return density.error();
+            }
+            picture.density = *std::move(density);
+        } else {
+            return Damage{"a tile's detail is " + std::to_string(tile.detail()) + ", not one that is known here"};
+        }
+    }
+    auto scene = merged(frame.position_bytes(), scenes);
+    if (!scene) {
+        return scene.error();
+    }
+    forget();
+    scene_ = std::make_shared<const QuantisedSnapshot>(*std::move(scene));
+    tiles_ = std::move(next);
+    frame.clear_body();
+    frame.clear_tiles();
+    DecodedSnapshot picture = picture_of(*scene_, std::move(frame));
+    picture.tiles = std::move(seen);
+    return picture;
+}
+
+} // namespace evod::codec

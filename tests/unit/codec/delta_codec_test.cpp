@@ -1,0 +1,348 @@
+#include "proto/codec/snapshot_decoder.h"
+
+#include "proto/codec/compression.h"
+#include "tests/unit/codec/living_island.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+namespace evod::codec {
+namespace {
+
+/// The server's end: each picture as a keyframe and, but for the first, as a delta.
+class Sender {
+  public:
+    struct Sent {
+        evod::v1::SnapshotFrame columns, keyframe, delta;
+    };
+
+    Sent send(const LivingIsland& island, std::uint16_t ticks) {
+        Sent sent{.columns = island.about(), .keyframe = island.about(), .delta = {}};
+        const auto scene = std::make_shared<const QuantisedSnapshot>(island.scene());
+        encode(*scene, sent.columns);
+        const bool has_base = baseline_.scene && follows(*scene, *baseline_.scene);
+        sent.columns.set_sequence(++sequence_);
+        sent.keyframe.set_sequence(sequence_);
+        sent.keyframe.set_codec(evod::v1::CODEC_DELTA);
+        sent.delta = sent.keyframe;
+        if (has_base) {
+            sent.delta.set_base_sequence(sequence_ - 1);
+            sent.delta.set_body(encode_delta(baseline_, *scene, ticks));
+            sent.delta.set_checksum(checksum_of(sent.delta, sent.delta.body()));
+            leave_out_unchanging(sent.delta);
+        }
+        baseline_ = has_base ? advanced_baseline(baseline_, scene, ticks) : initial_baseline(scene);
+        sent.keyframe.set_body(encode_keyframe(baseline_));
+        sent.keyframe.set_checksum(checksum_of(sent.keyframe, sent.keyframe.body()));
+        if (!has_base) {
+            sent.delta = sent.keyframe;
+        }
+        return sent;
+    }
+
+  private:
+    Baseline baseline_;
+    std::uint64_t sequence_ = 100;
+};
+
+void compress(evod::v1::SnapshotFrame& frame) {
+    Compressor compressor;
+    frame.set_body(compressor.compress(frame.body()));
+    frame.set_compression(evod::v1::COMPRESSION_ZSTD);
+}
+
+/// A keyframe and the delta after it.
+Sender::Sent two_pictures(std::uint64_t seed, SnapshotDecoder& decoder) {
+    Random random{seed};
+    LivingIsland island;
+    island.populate(random);
+    Sender sender;
+    EXPECT_TRUE(decoder.decode(sender.send(island, 0).keyframe));
+    island.live(random, 2);
+    return sender.send(island, 2);
+}
+
+RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, bool wide)) {
+    Random random{seed};
+    LivingIsland island;
+    island.side_px = wide ? 500'000 : 4000;
+    island.populate(random);
+    Sender sender;
+    SnapshotDecoder always, sometimes, compressed;
+    for (int n = 0; n < 40; ++n) {
+        const auto ticks = static_cast<std::uint16_t>(n == 0 ? 0 : below(random, 5));
+        if (ticks > 0) {
+            island.live(random, ticks);
+        }
+        auto sent = sender.send(island, ticks);
+        const QuantisedSnapshot scene = island.scene();
+        const auto expected = decode(sent.columns).value();
+        const auto same = [&](const Result<DecodedSnapshot>& picture, const SnapshotDecoder& decoder) {
+            RC_ASSERT(picture.has_value());
+            RC_ASSERT(*decoder.scene() == scene);
+            RC_ASSERT(picture->organisms.id == expected.organisms.id);
+            RC_ASSERT(picture->organisms.x_px == expected.organisms.x_px);
+            RC_ASSERT(picture->organisms.health == expected.organisms.health);
+            RC_ASSERT(picture->food.x_px == expected.food.x_px);
+            RC_ASSERT(picture->crates.x_px == expected.crates.x_px);
+            RC_ASSERT(picture->crates.id == expected.crates.id);
+            RC_ASSERT(picture->obstacles.half_width_px == expected.obstacles.half_width_px);
+            RC_ASSERT(picture->about.world() == "w");
+            RC_ASSERT(picture->about.width_px() == island.side_px);
+        };
+        same(always.decode(sent.delta), always);
+        // Whichever way a viewer came to a picture, the next delta is the same for it.
+        same(sometimes.decode(n % 7 == 0 ? sent.keyframe : sent.delta), sometimes);
+        compress(sent.delta);
+        same(compressed.decode(sent.delta), compressed);
+    }
+}
+
+RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (std::uint64_t seed)) {
+    Random random{seed};
+    const auto any = [&](std::uint64_t bits) {
+        const auto number = static_cast<std::uint32_t>(random());
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(number) >> (32 - bits));
+    };
+    constexpr std::size_t count = 300;
+    for (const std::uint32_t bits : {12U, 16U, 17U, 21U, 22U, 32U}) { // of displacements, with their sign
+        const auto ticks = static_cast<std::uint16_t>(any(1 + below(random, 17)));
+        Baseline base;
+        base.ticks = static_cast<std::uint16_t>(any(1 + below(random, 17)));
+        auto there = std::make_shared<QuantisedSnapshot>(), here = std::make_shared<QuantisedSnapshot>();
+        for (QuantisedSnapshot* scene : {there.get(), here.get()}) {
+            scene->position_bytes = 4;
+            scene->organisms.id.resize(count);
+            std::iota(scene->organisms.id.begin(), scene->organisms.id.end(), 0U);
+            for (Column* column : {&scene->organisms.x, &scene->organisms.y}) {
+                for (std::size_t i = 0; i < count; ++i) {
+                    column->push_back(any(32));
+                }
+            }
+            scene->organisms.width.assign(count, 5);
+            scene->organisms.height.assign(count, 6);
+        }
+        base.scene = there;
+        for (Column* column : {&base.organisms.x, &base.organisms.y}) {
+            for (std::size_t i = 0; i < count; ++i) {
+                column->push_back(any(bits));
+            }
+        }
+        const std::string body = encode_delta(base, *here, ticks);
+        const auto told = decode_body(body, {.counts = counts_of(*here), .position_bytes = 4}, &base);
+        RC_ASSERT(told.has_value());
+        RC_ASSERT(*told->scene == *here);
+    }
+}
+
+TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
+    constexpr std::uint32_t id_end = 6000;
+    constexpr std::uint64_t all = 100;
+    Random random{7};
+    for (const std::uint64_t stays_percent : {0, 5, 20, 40, 90, 100}) {
+        auto there = std::make_shared<QuantisedSnapshot>(), here = std::make_shared<QuantisedSnapshot>();
+        const auto lie = [&](QuantisedSnapshot& scene, std::uint32_t id, std::uint64_t place) {
+            scene.food.id.push_back(id);
+            scene.food.x.push_back(place & 0xffff);
+            scene.food.y.push_back(place >> 16 & 0xffff);
+        };
+        for (std::uint32_t id = 0; id < id_end; ++id) {
+            const bool stays = below(random, all) < stays_percent;
+            const std::uint64_t place = random();
+            if (stays || below(random, all) < 80) {
+                lie(*there, id, place);
+            }
+            if (stays || below(random, all) < 80) {
+                lie(*here, id, stays ? place : random());
+            }
+        }
+        const Baseline base = initial_baseline(there);
+        const std::string delta = encode_delta(base, *here, 300), keyframe = encode_keyframe(initial_baseline(here));
+        const auto told = decode_body(delta, {.counts = counts_of(*here)}, &base);
+        ASSERT_TRUE(told.has_value()) << stays_percent;
+        EXPECT_TRUE(*told->scene == *here) << stays_percent;
+        EXPECT_LT(delta.size(), keyframe.size() + 100) << stays_percent;
+        if (stays_percent >= 40) {
+            EXPECT_LT(delta.size(), keyframe.size() * 9 / 10) << stays_percent;
+        }
+    }
+}
+
+TEST(DeltaCodec, ADeltaIsTheseBytes) {
+    LivingIsland island;
+    island.organisms = {{.id = 3, .x = 100 * px, .y = 50 * px, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F}};
+    island.food = {{.id = 0, .x = px, .y = px}, {.id = 7, .x = 2 * px, .y = 3 * px}};
+    Sender sender;
+    sender.send(island, 0);
+    island.organisms[0].x += px; // 16 steps
+    sender.send(island, 2);
+    island.organisms[0].x += 2 * px; // 16 more than foretold
+    island.organisms[0].health -= 0.5F;
+    island.food.erase(island.food.begin());
+    const auto delta = sender.send(island, 2).delta;
+    EXPECT_EQ(delta.body(), std::string("\x02\x00"
+                                        "\x00\x01\x10\x00\x01\xf8" // organisms: x +16, y as foretold, health -8
+                                        "\x01\x01\x00\x00\x00\x00" // food: one is gone, the first
+                                        "\x00\x00\x00",            // nothing of the others
+                                        17));
+}
+
+TEST(DeltaCodec, AColumnOfAFewLargeNumbersTellsThemAlone) {
+    LivingIsland island;
+    for (std::uint32_t id = 0; id < 1000; ++id) {
+        island.organisms.push_back({.id = id, .x = 0, .y = 0, .dx = 0, .dy = 0, .radius = 10.F, .health = 100.F});
+    }
+    Sender sender;
+    sender.send(island, 0);
+    island.organisms[500].x = 4000 * px;
+    const auto sent = sender.send(island, 2);
+    EXPECT_EQ(sent.delta.body().size(), 2U + 1 + (1 + 4 + 8) + 1 + 1 + 4);
+}
+
+TEST(DeltaDamage, EveryOtherByteIsRefused) {
+    SnapshotDecoder first;
+    const auto sent = two_pictures(5, first);
+    ASSERT_TRUE(SnapshotDecoder{first}.decode(sent.delta));
+    for (const auto* whole : {&sent.delta, &sent.keyframe}) {
+        ASSERT_GT(whole->body().size(), 100U);
+        for (std::size_t i = 0; i < whole->body().size(); ++i) {
+            for (const int change : {1, 0x80, 0xff}) {
+                auto damaged = *whole;
+                (*damaged.mutable_body())[i] = static_cast<char>(damaged.body()[i] ^ change);
+                SnapshotDecoder decoder{first};
+                const auto picture = decoder.decode(damaged);
+                ASSERT_FALSE(picture) << i;
+                EXPECT_THAT(picture.error().what, testing::HasSubstr("checksum"));
+                EXPECT_TRUE(decoder.needs_keyframe());
+            }
+        }
+    }
+}
+
+TEST(DeltaDamage, ABodyCutOrChangedIsRefusedWhateverItsChecksum) {
+    SnapshotDecoder first;
+    const auto sent = two_pictures(6, first);
+    for (const auto* whole : {&sent.delta, &sent.keyframe}) {
+        for (std::size_t length = 0; length <= whole->body().size() + 1; ++length) {
+            auto cut = *whole;
+            cut.mutable_body()->resize(length);
+            cut.set_checksum(checksum_of(cut, cut.body()));
+            EXPECT_EQ(SnapshotDecoder{first}.decode(cut).has_value(), length == whole->body().size()) << length;
+        }
+        Random random{7};
+        for (int round = 0; round < 20'000; ++round) { // none does more than be refused or give some picture
+            auto changed = *whole;
+            (*changed.mutable_body())[below(random, changed.body().size())] = static_cast<char>(random());
+            changed.set_checksum(checksum_of(changed, changed.body()));
+            SnapshotDecoder decoder{first};
+            if (const auto picture = decoder.decode(changed)) {
+                ASSERT_EQ(picture->organisms.x_px.size(), changed.organism_count());
+                ASSERT_TRUE(std::ranges::is_sorted(picture->food.id));
+            }
+        }
+    }
+}
+
+TEST(DeltaDamage, AnotherBaseIsRefused) {
+    SnapshotDecoder first;
+    const auto sent = two_pictures(8, first);
+    auto other = sent.delta;
+    other.set_base_sequence(99);
+    EXPECT_THAT(SnapshotDecoder{first}.decode(other).error().what, testing::HasSubstr("base_sequence is 99"));
+    EXPECT_THAT(SnapshotDecoder{}.decode(sent.delta).error().what, testing::HasSubstr("keyframe"));
+    SnapshotDecoder elsewhere = first;
+    EXPECT_FALSE(elsewhere.decode(other));
+    EXPECT_FALSE(elsewhere.decode(sent.delta)) << "after damage only a keyframe helps";
+    EXPECT_TRUE(elsewhere.decode(sent.keyframe));
+    // A number put right by hand does not help: the checksum is over it.
+    other = sent.delta;
+    other.set_sequence(other.sequence() + 1);
+    EXPECT_THAT(SnapshotDecoder{first}.decode(other).error().what, testing::HasSubstr("checksum"));
+}
+
+TEST(DeltaDamage, CountsThatNoBodyBacksTakeNoMemory) {
+    SnapshotDecoder first;
+    const auto sent = two_pictures(9, first);
+    for (const auto set : {&evod::v1::SnapshotFrame::set_organism_count, &evod::v1::SnapshotFrame::set_food_count,
+                           &evod::v1::SnapshotFrame::set_crate_count}) {
+        for (const auto* whole : {&sent.delta, &sent.keyframe}) {
+            auto frame = *whole;
+            (frame.*set)(std::numeric_limits<std::uint32_t>::max());
+            frame.set_checksum(checksum_of(frame, frame.body()));
+            EXPECT_FALSE(SnapshotDecoder{first}.decode(frame));
+        }
+    }
+    // A keyframe without entities but for a count of those that come.
+    evod::v1::SnapshotFrame frame = LivingIsland{}.about();
+    frame.set_codec(evod::v1::CODEC_DELTA);
+    frame.set_organism_count(0xffffffff);
+    frame.set_body(std::string("\0\0\2\xff\xff\xff\xff\0\0\0\0", 11));
+    frame.set_checksum(checksum_of(frame, frame.body()));
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("lets more come"));
+}
+
+TEST(DeltaDamage, ACompressedBodyHoldsNoMoreThanItsCountsAllow) {
+    evod::v1::SnapshotFrame frame = LivingIsland{}.about();
+    frame.set_codec(evod::v1::CODEC_DELTA);
+    frame.set_body(std::string(100'000, '\0'));
+    compress(frame);
+    ASSERT_LT(frame.body().size(), 100U);
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("holds 100000 bytes"));
+    frame.set_body("no zstd");
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("not a zstd frame"));
+    SnapshotDecoder first;
+    auto sent = two_pictures(10, first);
+    compress(sent.keyframe);
+    for (std::size_t length = 0; length < sent.keyframe.body().size(); ++length) {
+        auto cut = sent.keyframe;
+        cut.mutable_body()->resize(length);
+        EXPECT_FALSE(SnapshotDecoder{}.decode(cut)) << length;
+    }
+    sent.keyframe.set_compression(static_cast<evod::v1::Compression>(9));
+    EXPECT_THAT(SnapshotDecoder{}.decode(sent.keyframe).error().what, testing::HasSubstr("compression is 9"));
+}
+
+TEST(DeltaDamage, FieldsAroundTheBodyAreJudgedAsOfAnyPicture) {
+    SnapshotDecoder first;
+    auto keyframe = two_pictures(11, first).keyframe;
+    keyframe.set_width_px(std::nan(""));
+    EXPECT_THAT(SnapshotDecoder{}.decode(keyframe).error().what, testing::HasSubstr("width_px"));
+}
+
+TEST(ColumnsDamage, IsNoticedByTheChecksum) {
+    evod::v1::SnapshotFrame frame;
+    frame.set_island_count(1);
+    frame.set_width_px(1280);
+    frame.set_height_px(720);
+    frame.set_sequence(5);
+    encode({.food = {.id = {1, 2}, .x = {16, 32}, .y = {48, 64}, .width = {}, .height = {}}}, frame);
+    EXPECT_TRUE(SnapshotDecoder{}.decode(frame));
+    frame.mutable_body()->back() ^= 1;
+    EXPECT_THAT(SnapshotDecoder{}.decode(frame).error().what, testing::HasSubstr("checksum"));
+}
+
+TEST(Crc32, IsThatOfZlib) {
+    EXPECT_EQ(crc32("123456789"), 0xcbf43926U);
+    EXPECT_EQ(crc32("56789", crc32("1234")), 0xcbf43926U);
+    EXPECT_EQ(crc32(std::string(1'000'000, 'a')), 0xdc25bfbcU); // Python's zlib.crc32(b"a" * 1000000)
+}
+TEST(Crc32, IsTheSameHoweverBytesAreCut) {
+    std::string bytes(3000, '\0');
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        bytes[i] = static_cast<char>(i * i >> 3);
+    }
+    const std::string_view all = bytes;
+    for (std::size_t cut = 0; cut <= all.size(); ++cut) {
+        EXPECT_EQ(crc32(all.substr(cut), crc32(all.substr(0, cut))), crc32(all)) << cut;
+    }
+}
+
+} // namespace
+} // namespace evod::codec

@@ -1,0 +1,54 @@
+#include "proto/codec/population_csv.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+#include <string>
+
+namespace evod::codec {
+namespace {
+
+using testing::ElementsAre;
+using testing::StartsWith;
+
+const std::string heading = std::string{population_heading} + "\n";
+
+Result<std::vector<std::vector<float>>> read(const std::string& text) {
+    std::istringstream in{text};
+    return read_population(in);
+}
+
+std::string wrong(const std::string& text) {
+    const auto islands = read(text);
+    return islands ? "nothing is wrong" : islands.error().what;
+}
+
+TEST(PopulationCsv, IslandsAreReadInOrder) {
+    const auto islands = read(heading + "0,0,1,2,3,4,5,6.5\n0,1,7,8,9,10,11,12\r\n1,0,1e1,-2,3,4,5,0.1");
+    ASSERT_TRUE(islands);
+    EXPECT_THAT(*islands,
+                ElementsAre(ElementsAre(1, 2, 3, 4, 5, 6.5f, 7, 8, 9, 10, 11, 12), ElementsAre(10, -2, 3, 4, 5, 0.1f)));
+}
+
+TEST(PopulationCsv, WhatIsWrongIsNamedWithItsLine) {
+    const std::string good = heading + "0,0,1,2,3,4,5,6\n";
+    EXPECT_THAT(wrong(""), StartsWith("line 1: got \"\", allowed the heading island,"));
+    EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
+    EXPECT_EQ(wrong(heading), "holds no organism");
+    for (const char* line : {"0,1,1,2,3,4,5", "0,1,1,2,3,4,5,", "0,1,1,2,3,4,5,6,7", "0,1,1,2,3,4,5,6,",
+                             "0,1,1,2,x,4,5,6", "", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"})
+        EXPECT_EQ(wrong(good + line + "\n"),
+                  std::string{"line 3: got \""} + line + "\", allowed an island, an organism and six genes");
+    for (const char* line : {"0,0,1,2,3,4,5,6", "0,2,1,2,3,4,5,6", "1,1,1,2,3,4,5,6", "2,0,1,2,3,4,5,6"})
+        EXPECT_EQ(wrong(good + line + "\n"),
+                  std::string{"line 3: got \""} + line + "\", allowed organism 1 of island 0, or the next island");
+    EXPECT_EQ(wrong(heading + "1,0,1,2,3,4,5,6\n"),
+              "line 2: got \"1,0,1,2,3,4,5,6\", allowed organism 0 of island 0, or the next island");
+}
+
+TEST(PopulationCsv, OfALongLineOnlyTheBeginningIsSaid) {
+    EXPECT_THAT(wrong(heading + std::string(100'000, '9')), testing::SizeIs(testing::Lt(200u)));
+}
+
+} // namespace
+} // namespace evod::codec

@@ -1,0 +1,668 @@
+#include "proto/codec/delta_codec.h"
+#include "proto/codec/tiles.h"
+#include "tests/support/waiting.h"
+#include "tests/unit/core/fake_server.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <thread>
+
+namespace evod::core {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+v1::Request run_request(std::uint64_t generations) {
+    v1::Request request;
+    request.mutable_run()->set_generations(generations);
+    return request;
+}
+
+bool is_connected(const Connection& connection) {
+    return connection.status().state == State::Connected;
+}
+
+TEST(Connection, SaysHelloAndShowsTheWelcome) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    const auto hello = session.read().hello();
+    EXPECT_EQ(hello.protocol_version(), 1U);
+    EXPECT_EQ(hello.client_name(), "a test");
+    v1::ServerMessage message;
+    message.mutable_welcome()->set_protocol_version(1);
+    message.mutable_welcome()->set_instance_id("an instance");
+    session.send(message);
+    const auto welcome = connection.wait_connected(hang);
+    ASSERT_TRUE(welcome) << welcome.error().what;
+    EXPECT_EQ(welcome->instance_id(), "an instance");
+    EXPECT_EQ(connection.status().state, State::Connected);
+}
+
+TEST(Connection, SaysWhatToDoWhereThereIsNoServer) {
+    FakeServer server;
+    const Options options = server.options();
+    server.stop_listening();
+    Connection connection{options};
+    const auto welcome = connection.wait_connected(hang);
+    ASSERT_FALSE(welcome);
+    EXPECT_EQ(welcome.error().kind, Error::Kind::NoConnection);
+    EXPECT_EQ(welcome.error().what, "no server at " + to_text(options.server) + ": start one with `evod`");
+    EXPECT_NE(connection.status().state, State::Failed) << "one may be started yet";
+}
+
+TEST(Connection, AnotherProtocolVersionIsFinal) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    session.read();
+    v1::ServerMessage message;
+    message.mutable_welcome()->set_protocol_version(2);
+    session.send(message);
+    const auto welcome = connection.wait_connected(hang);
+    ASSERT_FALSE(welcome);
+    EXPECT_THAT(welcome.error().what, HasSubstr("speaks protocol version 2, this program version 1"));
+    EXPECT_EQ(connection.status().state, State::Failed);
+    EXPECT_FALSE(connection.request(run_request(1))) << "and what is asked afterwards fails at once";
+}
+
+TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsOnlyFull) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession session = server.accept();
+        session.read();
+        session.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "16 sessions are open");
+    }
+    FakeSession session = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("RESOURCE_EXHAUSTED: 16 sessions are open"));
+    session.read();
+    session.say_goodbye(v1::CODE_INVALID_ARGUMENT, "the client name is too long");
+    EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
+    EXPECT_THAT(connection.status().reason, HasSubstr("INVALID_ARGUMENT: the client name is too long"));
+}
+
+TEST(Connection, SomethingElseThanAServerIsNamed) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept();
+    session.write("SSH-2.0-OpenSSH_9.2\r\n");
+    const auto welcome = connection.wait_connected(hang);
+    ASSERT_FALSE(welcome);
+    EXPECT_THAT(welcome.error().what, HasSubstr("is not an evod server"));
+}
+
+TEST(Connection, GivesUpWaitingForAWelcome) {
+    FakeServer server;
+    Options options = server.options();
+    options.connect_timeout = 20ms;
+    Connection connection{options};
+    FakeSession session = server.accept();
+    EXPECT_FALSE(connection.wait_connected(hang));
+    EXPECT_TRUE(wait_until([&] { return connection.status().reason.find("no welcome from") != std::string::npos; }))
+        << connection.status().reason;
+}
+
+TEST(Requests, AreNumberedInOrderUnderOneKey) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome();
+    std::string key;
+    for (std::uint64_t i = 1; i <= 3; ++i) {
+        auto response = connection.send(run_request(i));
+        const v1::Request request = session.read_request();
+        EXPECT_EQ(request.request_id(), i);
+        EXPECT_EQ(request.run().generations(), i);
+        EXPECT_EQ(request.client_key().size(), 32U);
+        EXPECT_TRUE(key.empty() || request.client_key() == key);
+        key = request.client_key();
+        session.answer(request, 100 + i);
+        EXPECT_EQ(response.get()->applied_tick(), 100 + i);
+    }
+}
+
+TEST(Requests, FindTheirAnswersInAnyOrder) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome();
+    auto first = connection.send(run_request(1)), second = connection.send(run_request(2));
+    const v1::Request request_1 = session.read_request(), request_2 = session.read_request();
+    session.answer(request_2, 2);
+    session.answer(request_1, 1);
+    EXPECT_EQ(second.get()->applied_tick(), 2U);
+    EXPECT_EQ(first.get()->applied_tick(), 1U);
+}
+
+TEST(Requests, AreSentAgainWithTheSameNumberAfterALoss) {
+    FakeServer server;
+    Connection connection{server.options()};
+    std::future<Result<v1::Response>> first, second;
+    v1::Request lost_1, lost_2;
+    {
+        FakeSession session = server.accept_and_welcome();
+        first = connection.send(run_request(1));
+        second = connection.send(run_request(2));
+        lost_1 = session.read_request();
+        lost_2 = session.read_request();
+    }
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request again_1 = session.read_request(), again_2 = session.read_request();
+    EXPECT_EQ(again_1.SerializeAsString(), lost_1.SerializeAsString());
+    EXPECT_EQ(again_2.SerializeAsString(), lost_2.SerializeAsString());
+    session.answer(again_1, 1);
+    session.answer(again_2, 2);
+    EXPECT_EQ(first.get()->applied_tick(), 1U);
+    EXPECT_EQ(second.get()->applied_tick(), 2U);
+    EXPECT_EQ(connection.status().connected_count, 2U);
+}
+
+TEST(Requests, MadeWithoutAConnectionWaitForOne) {
+    FakeServer server;
+    Connection connection{server.options()};
+    auto response = connection.send(run_request(7));
+    FakeSession session = server.accept_and_welcome();
+    session.answer(session.read_request(), 7);
+    EXPECT_EQ(response.get()->applied_tick(), 7U);
+}
+
+TEST(Requests, TimeOutAndALateAnswerIsIgnored) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome(1); // one request at a time
+    ASSERT_TRUE(connection.wait_connected(hang));
+    const auto response = connection.request(run_request(1), 20ms);
+    ASSERT_FALSE(response);
+    EXPECT_EQ(response.error().kind, Error::Kind::Timeout);
+    EXPECT_EQ(response.error().what, "no answer within 20 ms");
+    session.answer(session.read_request());
+    auto next = connection.send(run_request(2));
+    session.answer(session.read_request(), 2);
+    EXPECT_EQ(next.get()->applied_tick(), 2U) << "the late answer has made room";
+}
+
+TEST(Requests, KeepToTheServersLimitOfUnansweredOnes) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession session = server.accept_and_welcome(2);
+    std::vector<std::future<Result<v1::Response>>> responses;
+    for (std::uint64_t i = 1; i <= 5; ++i) {
+        responses.push_back(connection.send(run_request(i)));
+    }
+    v1::Request first = session.read_request();
+    v1::Request second = session.read_request();
+    session.send_event(1);
+    ASSERT_TRUE(connection.wait_event(hang)); // the client's thread has been through all five
+    EXPECT_EQ(session.unread_bytes(), 0U);
+    session.answer(second);
+    EXPECT_TRUE(responses[1].get());
+    const v1::Request third = session.read_request();
+    EXPECT_EQ(third.run().generations(), 3U);
+    session.answer(first);
+    session.answer(third);
+    for (int i = 0; i < 2; ++i) {
+        session.answer(session.read_request());
+    }
+    for (const std::size_t i : {0U, 2U, 3U, 4U}) {
+        EXPECT_TRUE(responses[i].get());
+    }
+}
+
+TEST(Requests, TooLongForTheServerAreNotSent) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::Request request;
+    request.mutable_create_world()->set_name(std::string(2 << 20, 'x'));
+    const auto response = connection.request(request);
+    ASSERT_FALSE(response);
+    EXPECT_EQ(response.error().kind, Error::Kind::Usage);
+}
+
+TEST(Requests, AreAllAnsweredWhenTheConnectionIsDestroyed) {
+    FakeServer server;
+    std::future<Result<v1::Response>> response;
+    {
+        Connection connection{server.options()};
+        response = connection.send(run_request(1));
+    }
+    EXPECT_EQ(response.get().error().kind, Error::Kind::Closed);
+}
+
+TEST(Requests, EndWithTheConnectionWhereReconnectingIsOff) {
+    FakeServer server;
+    Options options = server.options();
+    options.reconnect = false;
+    Connection connection{options};
+    std::future<Result<v1::Response>> response;
+    {
+        FakeSession session = server.accept_and_welcome();
+        response = connection.send(run_request(1));
+        session.read_request();
+    }
+    const auto result = response.get();
+    ASSERT_FALSE(result);
+    EXPECT_THAT(result.error().what, HasSubstr("closed the connection"));
+}
+
+TEST(Reconnection, FollowsDamagedFrames) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession first = server.accept_and_welcome();
+    ASSERT_TRUE(connection.wait_connected(hang));
+    first.write("nonsense");
+    FakeSession second = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("sent damaged data"));
+    second.welcome();
+    EXPECT_TRUE(wait_until([&] { return is_connected(connection); }));
+}
+
+TEST(Reconnection, FollowsAMessageThatIsNoMessage) {
+    FakeServer server;
+    Connection connection{server.options()};
+    FakeSession first = server.accept_and_welcome();
+    first.write(std::string("EV\x01\x01\x02\x00\x00\x00\xff\xff", 10));
+    FakeSession second = server.accept_and_welcome();
+    EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 2; }));
+}
+
+TEST(Reconnection, TellsTheServersLastWord) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession first = server.accept_and_welcome();
+        first.refuse(0, v1::CODE_INVALID_ARGUMENT, "that was no message");
+        first.send_event(1); // the session went on
+    }
+    {
+        FakeSession second = server.accept();
+        EXPECT_THAT(connection.status().reason, HasSubstr("closed the connection"));
+        EXPECT_FALSE(connection.status().refusal);
+        second.welcome();
+        second.say_goodbye(v1::CODE_RESOURCE_EXHAUSTED, "this client takes nothing");
+    }
+    FakeSession third = server.accept();
+    EXPECT_THAT(connection.status().reason, HasSubstr("ended the session: RESOURCE_EXHAUSTED: this client takes"));
+    third.welcome();
+    EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 3; }));
+    EXPECT_FALSE(connection.status().refusal);
+}
+
+TEST(Reconnection, DoesNotFollowARevokedToken) {
+    FakeServer server;
+    Connection connection{server.options()};
+    {
+        FakeSession session = server.accept_and_welcome();
+        session.say_goodbye(v1::CODE_UNAUTHENTICATED, "the token has been revoked");
+    }
+    EXPECT_TRUE(wait_until([&] { return connection.status().state == State::Failed; }));
+    const ConnectionStatus status = connection.status();
+    EXPECT_THAT(status.reason, HasSubstr("the token has been revoked"));
+    EXPECT_TRUE(status.token_needed);
+    ASSERT_TRUE(status.refusal);
+    EXPECT_EQ(status.refusal->message(), "the token has been revoked");
+}
+
+TEST(Subscriptions, AreAskedForInTurnAtFirstAndAheadOfTheRestAfterALoss) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::Request create;
+    create.mutable_create_world()->set_name("new");
+    auto created = connection.send(create);
+    v1::SubscribeSnapshots snapshots;
+    snapshots.set_world("new");
+    const SubscriptionHandle handle = connection.subscribe(snapshots);
+    connection.subscribe(v1::SubscribeEvents{});
+    auto ran = connection.send(run_request(1));
+    {
+        FakeSession session = server.accept_and_welcome();
+        const auto request = session.read_request();
+        EXPECT_TRUE(request.has_create_world());
+        session.answer(request);
+        session.answer_subscription(session.read_request(), 1);
+        session.answer_subscription(session.read_request(), 2);
+        EXPECT_TRUE(session.read_request().has_run());
+        EXPECT_TRUE(created.get());
+        const auto answer = connection.wait_subscribed(handle, hang);
+        ASSERT_TRUE(answer) << answer.error().what;
+        EXPECT_EQ(answer->subscription().subscription_id(), 1U);
+    }
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request again = session.read_request();
+    EXPECT_EQ(again.subscribe_snapshots().world(), "new");
+    session.answer_subscription(again, 8);
+    EXPECT_TRUE(session.read_request().has_subscribe_events());
+    session.answer(session.read_request(), 5);
+    EXPECT_EQ(ran.get()->applied_tick(), 5U);
+    session.send_picture(8, 0, 99);
+    std::shared_ptr<const codec::DecodedSnapshot> picture;
+    EXPECT_TRUE(wait_until([&] { return (picture = connection.take_snapshot(handle)) != nullptr; }));
+    EXPECT_EQ(picture->about.tick(), 99U) << "the handle outlives the session";
+}
+
+TEST(Subscriptions, ARefusalIsShown) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.refuse(session.read_request().request_id(), v1::CODE_NOT_FOUND, "there is no world 'x'");
+    const auto answer = connection.wait_subscribed(handle, hang);
+    ASSERT_TRUE(answer);
+    EXPECT_FALSE(accepted(*answer));
+    EXPECT_EQ(to_text(answer->status()), "NOT_FOUND: there is no world 'x'");
+}
+
+TEST(Subscriptions, OneThatWasLetGoBeforeItsAnswerIsUndone) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    const v1::Request request = session.read_request();
+    connection.unsubscribe(handle);
+    auto marker = connection.send(run_request(1));
+    session.answer(session.read_request());
+    EXPECT_TRUE(marker.get());
+    session.answer_subscription(request, 3);
+    EXPECT_EQ(session.read_request().unsubscribe().subscription_id(), 3U);
+}
+
+TEST(Pictures, OnlyTheNewestOfEachIslandIsKept) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    for (const std::uint64_t tick : {10, 20, 30}) {
+        session.send_picture(1, 0, tick);
+        session.send_picture(1, 2, tick + 1);
+    }
+    session.send_picture(77, 0, 40); // of a subscription that nobody made
+    session.send_event(1);           // comes after all of them
+    ASSERT_TRUE(connection.wait_event(hang));
+    const auto pictures = connection.take_snapshots(handle);
+    ASSERT_EQ(pictures.size(), 2U);
+    EXPECT_EQ(pictures[0]->about.tick(), 30U);
+    EXPECT_EQ(pictures[1]->about.tick(), 31U);
+    EXPECT_EQ(pictures[1]->about.island(), 2U);
+    EXPECT_FALSE(connection.take_snapshot(handle, 0)) << "taken is taken";
+}
+
+TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    v1::SnapshotFrame frame;
+    frame.set_width_px(100);
+    frame.set_height_px(100);
+    codec::encode({}, frame);
+    frame.set_island_count(1);
+    frame.set_subscription_id(1);
+    frame.set_organism_count(1'000'000'000);
+    session.send(frame);
+    session.send_event(1);
+    ASSERT_TRUE(connection.wait_event(hang));
+    EXPECT_FALSE(connection.take_snapshot(handle));
+    EXPECT_EQ(connection.status().damaged_snapshot_count, 1U);
+    EXPECT_THAT(connection.status().last_damage, HasSubstr("body"));
+    EXPECT_EQ(connection.status().state, State::Connected);
+}
+
+/// A server's end of a chain of deltas: one organism that goes to the right.
+class WalkingPictures {
+  public:
+    v1::SnapshotFrame keyframe() { return next(false); }
+    v1::SnapshotFrame delta() { return next(true); }
+
+  private:
+    v1::SnapshotFrame next(bool as_delta) {
+        const auto x = static_cast<std::uint32_t>(sequence_) * 16;
+        const auto scene = std::make_shared<const codec::QuantisedSnapshot>(
+            codec::QuantisedSnapshot{.organisms = {.id = {5}, .x = {x}, .y = {16}, .width = {16}, .height = {32}}});
+        v1::SnapshotFrame frame;
+        frame.set_width_px(100);
+        frame.set_height_px(100);
+        codec::describe(*scene, frame);
+        frame.set_island_count(1);
+        frame.set_subscription_id(1);
+        frame.set_codec(v1::CODEC_DELTA);
+        frame.set_sequence(++sequence_);
+        frame.set_tick(sequence_);
+        const codec::Baseline baseline = baseline_.scene ? codec::advanced_baseline(baseline_, scene, 1) : codec::initial_baseline(scene);
+        if (as_delta) {
+            frame.set_base_sequence(sequence_ - 1);
+            frame.set_body(codec::encode_delta(baseline_, *scene, 1));
+            codec::leave_out_unchanging(frame);
+        } else {
+            frame.set_body(codec::encode_keyframe(baseline));
+        }
+        frame.set_checksum(codec::checksum_of(frame, frame.body()));
+        baseline_ = baseline;
+        return frame;
+    }
+
+    codec::Baseline baseline_;
+    std::uint64_t sequence_ = 0;
+};
+
+std::shared_ptr<const codec::DecodedSnapshot> picture_of_tick(Connection& connection, SubscriptionHandle handle,
+                                                     std::uint64_t tick) {
+    std::shared_ptr<const codec::DecodedSnapshot> picture;
+    EXPECT_TRUE(wait_until([&] {
+        if (auto newest = connection.take_snapshot(handle)) {
+            picture = std::move(newest);
+        }
+        return picture && picture->about.tick() == tick;
+    }));
+    return picture;
+}
+
+TEST(Pictures, AreAskedForInTheFewestBytesUnlessACodecIsChosen) {
+    FakeServer server;
+    Connection connection{server.options()};
+    connection.subscribe(v1::SubscribeSnapshots{});
+    v1::SubscribeSnapshots plain;
+    plain.set_codec(v1::CODEC_COLUMNS);
+    connection.subscribe(plain);
+    FakeSession session = server.accept_and_welcome();
+    const v1::SubscribeSnapshots first = session.read_request().subscribe_snapshots();
+    EXPECT_EQ(first.codec(), v1::CODEC_DELTA);
+    EXPECT_EQ(first.compression(), v1::COMPRESSION_ZSTD);
+    EXPECT_EQ(first.unacknowledged_max(), Connection::unacknowledged_snapshots_max);
+    const v1::SubscribeSnapshots second = session.read_request().subscribe_snapshots();
+    EXPECT_EQ(second.codec(), v1::CODEC_COLUMNS);
+    EXPECT_FALSE(second.has_unacknowledged_max());
+}
+
+TEST(Pictures, DeltasAreDecodedAndAcknowledged) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    for (std::uint64_t sequence = 1; sequence <= 3; ++sequence) {
+        session.send(sequence == 1 ? pictures.keyframe() : pictures.delta());
+        const auto message = session.read();
+        EXPECT_EQ(message.acknowledge_snapshot().subscription_id(), 1U);
+        EXPECT_EQ(message.acknowledge_snapshot().sequence(), sequence);
+        const auto picture = picture_of_tick(connection, handle, sequence);
+        ASSERT_TRUE(picture);
+        EXPECT_EQ(picture->organisms.x_px, std::vector<float>{static_cast<float>(sequence - 1)});
+        EXPECT_EQ(picture->about.width_px(), 100) << "of the keyframe";
+    }
+}
+
+TEST(Pictures, ADamagedDeltaIsMendedByAKeyframeThatIsAskedFor) {
+    FakeServer server;
+    Connection connection{server.options()};
+    const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    session.send(pictures.keyframe());
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    auto damaged = pictures.delta();
+    damaged.mutable_body()->back() ^= 1;
+    session.send(damaged);
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    const v1::Request request = session.read_request();
+    EXPECT_EQ(request.request_keyframe().subscription_id(), 1U);
+    session.send(pictures.delta()); // on its way before the request came
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    session.answer(request);
+    session.send(pictures.keyframe());
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    session.send(pictures.delta());
+    const auto picture = picture_of_tick(connection, handle, 5);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->organisms.x_px, std::vector<float>{4.F});
+    const ConnectionStatus status = connection.status();
+    EXPECT_EQ(status.damaged_snapshot_count, 1U);
+    EXPECT_THAT(status.last_damage, HasSubstr("checksum"));
+    EXPECT_EQ(status.keyframe_request_count, 1U);
+}
+
+TEST(Pictures, AServerWhoseKeyframesAreDamagedIsNotAskedForEver) {
+    FakeServer server;
+    Connection connection{server.options()};
+    connection.subscribe(v1::SubscribeSnapshots{});
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    WalkingPictures pictures;
+    for (int i = 0; i < 20; ++i) {
+        auto damaged = pictures.keyframe();
+        damaged.mutable_body()->back() ^= 1;
+        session.send(damaged);
+    }
+    EXPECT_TRUE(wait_until([&] { return connection.status().damaged_snapshot_count == 20; }));
+    EXPECT_EQ(connection.status().keyframe_request_count, 3U);
+}
+
+v1::View view_of(double left_px) {
+    v1::View view;
+    view.mutable_region()->set_left_px(left_px);
+    view.mutable_region()->set_width_px(10);
+    view.mutable_region()->set_height_px(10);
+    return view;
+}
+
+TEST(Views, AreAskedForChangedAndAskedForAgain) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::SubscribeSnapshots subscribe;
+    *subscribe.mutable_view() = view_of(1);
+    const SubscriptionHandle handle = connection.subscribe(subscribe);
+    {
+        FakeSession session = server.accept_and_welcome();
+        const v1::Request request = session.read_request();
+        EXPECT_EQ(request.subscribe_snapshots().view().region().left_px(), 1);
+        EXPECT_EQ(request.subscribe_snapshots().codec(), v1::CODEC_DELTA);
+        connection.set_view(handle, view_of(2)); // before the server knows of any
+        auto marker = connection.send(run_request(1));
+        session.answer(session.read_request());
+        ASSERT_TRUE(marker.get());
+        session.answer_subscription(request, 7);
+        const v1::Request changed = session.read_request();
+        EXPECT_EQ(changed.set_view().subscription_id(), 7U);
+        EXPECT_EQ(changed.set_view().view().region().left_px(), 2);
+        connection.set_view(handle, view_of(3));
+        EXPECT_EQ(session.read_request().set_view().view().region().left_px(), 3);
+    }
+    FakeSession again = server.accept_and_welcome();
+    EXPECT_EQ(again.read_request().subscribe_snapshots().view().region().left_px(), 3);
+}
+
+/// A picture of one tile, with two organisms in it.
+v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequence) {
+    const auto scene = std::make_shared<const codec::QuantisedSnapshot>(
+        codec::QuantisedSnapshot{.organisms = {.id = {5, 6}, .x = {16, 16}, .y = {16, 16}, .width = {16, 16}, .height = {16, 16}}});
+    v1::SnapshotFrame frame;
+    frame.set_width_px(100);
+    frame.set_height_px(100);
+    codec::describe(*scene, frame);
+    frame.set_codec(v1::CODEC_DELTA);
+    frame.set_island_count(1);
+    frame.set_subscription_id(1);
+    frame.set_sequence(sequence);
+    frame.set_tick(sequence);
+    codec::SnapshotTiles tiled{scene, codec::tile_layout(100, 100)};
+    frame.set_tile_px(tiled.layout().tile_px);
+    v1::SnapshotTile& tile = *frame.add_tiles();
+    tile.set_detail(v1::DETAIL_FULL);
+    tile.set_organism_count(2);
+    tile.set_sequence(sequence);
+    tile.set_base_sequence(base_sequence);
+    codec::BaselineView standing;
+    standing.scene = tiled.full(0);
+    const std::vector<std::uint32_t> still(2);
+    standing.organisms = {still, still};
+    tile.set_body(base_sequence ? codec::encode_delta(standing, standing.scene, 1) : codec::encode_keyframe(standing));
+    tile.set_checksum(codec::checksum_of(frame, tile, tile.body()));
+    return frame;
+}
+
+TEST(Views, ADamagedTileIsMendedByAKeyframeThatIsAskedFor) {
+    FakeServer server;
+    Connection connection{server.options()};
+    v1::SubscribeSnapshots subscribe;
+    subscribe.mutable_view();
+    const SubscriptionHandle handle = connection.subscribe(subscribe);
+    FakeSession session = server.accept_and_welcome();
+    session.answer_subscription(session.read_request(), 1);
+    session.send(tile_picture(1, 0));
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    const auto first = picture_of_tick(connection, handle, 1);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->organisms.id, (std::vector<std::uint32_t>{5, 6}));
+    EXPECT_EQ(first->tiles.size(), 1U);
+    auto damaged = tile_picture(2, 1);
+    damaged.mutable_tiles(0)->mutable_body()->back() ^= 1;
+    session.send(damaged);
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    EXPECT_EQ(session.read_request().request_keyframe().subscription_id(), 1U);
+    session.send(tile_picture(3, 2)); // on its way before the request came
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    session.send(tile_picture(4, 0));
+    EXPECT_TRUE(session.read().has_acknowledge_snapshot());
+    session.send(tile_picture(5, 4));
+    EXPECT_TRUE(picture_of_tick(connection, handle, 5));
+    EXPECT_EQ(connection.status().damaged_snapshot_count, 1U);
+    EXPECT_EQ(connection.status().keyframe_request_count, 1U);
+}
+
+TEST(Events, ComeInOrderAndALossIsTold) {
+    FakeServer server;
+    Options options = server.options();
+    options.events_kept = 3;
+    Connection connection{options};
+    FakeSession session = server.accept_and_welcome();
+    for (std::uint64_t tick = 1; tick <= 5; ++tick) {
+        session.send_event(tick);
+    }
+    auto marker = connection.send(run_request(1));
+    session.answer(session.read_request());
+    ASSERT_TRUE(marker.get());
+    const auto events = connection.take_events();
+    ASSERT_EQ(events.size(), 4U);
+    EXPECT_EQ(events[0].events_dropped().dropped_count(), 2U);
+    EXPECT_EQ(events[1].tick(), 3U);
+    EXPECT_EQ(events[3].tick(), 5U);
+    EXPECT_FALSE(connection.wait_event(1ms));
+}
+
+TEST(Endpoint, IsReadInEveryUsualForm) {
+    EXPECT_EQ(parse_endpoint("lab").value(), (Endpoint{"lab", 7744}));
+    EXPECT_EQ(parse_endpoint("lab:80").value(), (Endpoint{"lab", 80}));
+    EXPECT_EQ(parse_endpoint("[::1]").value(), (Endpoint{"::1", 7744}));
+    EXPECT_EQ(parse_endpoint("[fe80::1%eth0]:65535").value(), (Endpoint{"fe80::1%eth0", 65535}));
+    EXPECT_EQ(parse_endpoint("::1").value(), (Endpoint{"::1", 7744}));
+    EXPECT_EQ(to_text(Endpoint{"::1", 7744}), "[::1]:7744");
+    for (const char* wrong : {"", ":80", "lab:", "lab:0", "lab:65536", "lab:80x", "lab:-1", "[::1", "[::1]80", "[]"}) {
+        EXPECT_FALSE(parse_endpoint(wrong)) << wrong;
+    }
+}
+
+} // namespace
+} // namespace evod::core
