@@ -131,8 +131,9 @@ std::unique_ptr<char[]> memory_for_last_message;
 /// As many file descriptors as the system allows: what is usual, 1,024, is soon taken by connections.
 void allow_descriptors() {
     rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0)
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) {
         return;
+    }
     limit.rlim_cur = limit.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &limit);
 }
@@ -144,21 +145,25 @@ int serve(network::ServerOptions options) {
     const bool encrypted = !options.tls.certificate.empty();
     const std::string replay = options.replay ? ", replay of " + options.replay->path : "";
     const auto server = network::Server::open(std::move(options));
-    if (!server)
+    if (!server) {
         return fail(to_text(server.error()));
-    if (!folder.empty())
+    }
+    if (!folder.empty()) {
         log::info("runs are kept in {}", folder);
+    }
     const auto endpoint = (*server)->endpoint();
-    if (!endpoint.address().is_loopback() && !encrypted)
+    if (!endpoint.address().is_loopback() && !encrypted) {
         log::warn("without TLS, whoever is on the way to {} can read tokens and take them: see --tls-cert",
                   endpoint.address().to_string());
+    }
     if (const auto http = (*server)->http_endpoint()) {
         const std::string address = http->address().to_string();
         log::info("metrics and health at http://{}:{}/metrics and /healthz",
                   http->address().is_v6() ? "[" + address + "]" : address, http->port());
-        if (!http->address().is_loopback())
+        if (!http->address().is_loopback()) {
             log::warn("whoever reaches {}:{} can read the metrics: there are no tokens for HTTP", address,
                       http->port());
+        }
     }
     const auto seed = (*server)->first_seed();
     log::info("evod {} listening on {}:{}{}", EVOD_VERSION, endpoint.address().to_string(), endpoint.port(),
@@ -215,19 +220,22 @@ void add_common_options(Command& command, ServeOptions& options) {
 
 /// "max" or a factor of real time; nullopt: neither.
 std::optional<simulation::Speed> parse_speed(const std::string& text) {
-    if (text == "max")
+    if (text == "max") {
         return simulation::Speed{};
+    }
     double factor = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), factor);
     if (read.ec != std::errc{} || read.ptr != text.data() + text.size() ||
-        !(factor >= simulation::speed_min && factor <= simulation::speed_max))
+        !(factor >= simulation::speed_min && factor <= simulation::speed_max)) {
         return std::nullopt;
+    }
     return simulation::Speed{factor};
 }
 
 std::optional<network::ServerOptions::HttpOptions> http_options(const ServeOptions& options) {
-    if (!options.http_port)
+    if (!options.http_port) {
         return std::nullopt;
+    }
     return network::ServerOptions::HttpOptions{.bind_address = options.http_bind_address, .port = *options.http_port};
 }
 
@@ -237,25 +245,29 @@ int serve(ServeOptions& options) {
         .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
     if (!options.experiment_file.empty()) {
         const auto experiment = console::load_experiment(options.experiment_file);
-        if (!experiment)
+        if (!experiment) {
             return fail(to_text(experiment.error()));
+        }
         create.name = console::world_name(options.experiment_file);
         create.parameters = experiment->parameters;
         create.schedule = experiment->schedule;
         create.seed = experiment->seed.value_or(create.seed);
     }
-    if (options.seed)
+    if (options.seed) {
         create.seed = base::Seed{*options.seed};
+    }
     auto population = console::load_population(options.population_file, create.parameters);
-    if (!population)
+    if (!population) {
         return fail("--population: " + to_text(population.error()));
+    }
     create.first_population = *std::move(population);
 
     std::string data_folder = console::data_folder_or_default(options.data_folder);
-    if (options.keep_nothing)
+    if (options.keep_nothing) {
         data_folder.clear();
-    else if (data_folder.empty())
+    } else if (data_folder.empty()) {
         return fail(std::string{console::no_data_folder} + ", or give --keep-nothing");
+    }
     network::ServerOptions server_options{
         .bind_address = options.bind_address,
         .port = options.port,
@@ -277,8 +289,9 @@ int serve(ServeOptions& options) {
         .first_seed_asked = options.seed.has_value(),
         .first_speed = {},
         .first_run = options.start};
-    if (!options.speed.empty())
+    if (!options.speed.empty()) {
         server_options.first_speed = *parse_speed(options.speed);
+    }
 
     return serve(std::move(server_options));
 }

@@ -655,7 +655,8 @@ Result<evod::v1::Response> Connection::wait_subscribed(SubscriptionHandle handle
                  .what = "no answer to the subscription within " + std::to_string(timeout.count()) + " ms"};
 }
 
-std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(SubscriptionHandle handle, std::uint32_t island) {
+std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
+                                                                        std::uint32_t island) {
     const std::lock_guard lock{io_->mutex_};
     const auto islands = io_->pictures_.find(handle);
     if (islands == io_->pictures_.end()) {

@@ -119,7 +119,7 @@ struct ConnectionStatus {
     std::optional<evod::v1::Status> refusal;  // what the server said, where that is the reason
     std::optional<evod::v1::Welcome> welcome; // of the last server we were connected with
     std::uint64_t connected_count = 0;        // times that Connected was reached
-    std::uint64_t damaged_snapshot_count = 0;  // pictures thrown away because they could not be decoded
+    std::uint64_t damaged_snapshot_count = 0; // pictures thrown away because they could not be decoded
     std::string last_damage;                  // what was wrong with the last of them
     std::uint64_t keyframe_request_count = 0; // keyframes asked for because of that
 };

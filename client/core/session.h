@@ -82,7 +82,7 @@ class Session : public std::enable_shared_from_this<Session> {
     std::vector<std::byte> received_;
     std::deque<std::string> to_send_; // the first is being written
     bool welcomed_ = false, ended_ = false;
-    bool going_away_ = false;                   // the server has said so
+    bool going_away_ = false;                 // the server has said so
     std::optional<evod::v1::Status> goodbye_; // why the server ends the session
 };
 

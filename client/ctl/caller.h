@@ -1,12 +1,12 @@
 // Caller: one call's line to the server. What goes wrong ends the call: see Stop.
 #pragma once
 
+#include "client/core/connection.h"
+#include "client/core/credentials.h"
 #include "client/ctl/json.h"
 #include "client/ctl/registry.h"
 #include "client/ctl/stop.h"
 #include "client/ctl/text.h"
-#include "client/core/connection.h"
-#include "client/core/credentials.h"
 #include "proto/command_line/number.h"
 
 #include <google/protobuf/message.h>

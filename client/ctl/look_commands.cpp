@@ -1,7 +1,7 @@
 // What only reads: status, worlds, stats, history, organism, describe.
+#include "client/core/history_csv.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-#include "client/core/history_csv.h"
 #include "proto/command_line/command.h"
 
 #include <google/protobuf/text_format.h>

@@ -1,7 +1,7 @@
 // Parameters: set, get, params.
+#include "client/core/actor.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
-#include "client/core/actor.h"
 #include "proto/command_line/command.h"
 
 namespace evod::ctl {

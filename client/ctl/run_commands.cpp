@@ -2,9 +2,9 @@
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
 #include "client/ctl/text.h"
-#include "proto/command_line/command.h"
 #include "proto/codec/framing.h"
 #include "proto/codec/population_csv.h"
+#include "proto/command_line/command.h"
 
 #include <unistd.h>
 

@@ -1,8 +1,8 @@
 // What follows a world: watch, events.
+#include "client/core/actor.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/text.h"
-#include "client/core/actor.h"
 #include "proto/command_line/command.h"
 
 #include <algorithm>

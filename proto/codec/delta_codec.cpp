@@ -28,11 +28,12 @@ struct Kind {
 };
 
 const std::array<Kind, 5> kinds{{
-    {"organisms", &QuantisedSnapshot::organisms, &QuantisedView::organisms, &Baseline::organisms, &BaselineView::organisms, true, true,
-     true},
+    {"organisms", &QuantisedSnapshot::organisms, &QuantisedView::organisms, &Baseline::organisms,
+     &BaselineView::organisms, true, true, true},
     {"food", &QuantisedSnapshot::food, &QuantisedView::food, nullptr, nullptr, true, false, false},
     {"poison", &QuantisedSnapshot::poison, &QuantisedView::poison, nullptr, nullptr, true, false, false},
-    {"crates", &QuantisedSnapshot::crates, &QuantisedView::crates, &Baseline::crates, &BaselineView::crates, false, true, false},
+    {"crates", &QuantisedSnapshot::crates, &QuantisedView::crates, &Baseline::crates, &BaselineView::crates, false,
+     true, false},
     {"obstacles", &QuantisedSnapshot::obstacles, &QuantisedView::obstacles, nullptr, nullptr, false, true, false},
 }};
 
@@ -423,7 +424,8 @@ Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> scene) {
     return baseline;
 }
 
-QuantisedView::QuantisedView(const QuantisedSnapshot& scene) : position_bytes{scene.position_bytes}, of_tile{scene.of_tile} {
+QuantisedView::QuantisedView(const QuantisedSnapshot& scene)
+    : position_bytes{scene.position_bytes}, of_tile{scene.of_tile} {
     for (const Kind& kind : kinds) {
         const Entities& entities = scene.*kind.entities;
         this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height};
@@ -455,7 +457,8 @@ const AdvancedColumns::Displacements& of_kind(const AdvancedColumns& to, const K
 
 } // namespace
 
-void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks, const AdvancedColumns& moved) {
+void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
+                      const AdvancedColumns& moved) {
     for (const Kind& kind : kinds) {
         if (!kind.seen_displacements) {
             continue;
@@ -479,8 +482,9 @@ void advance_baseline(const BaselineView& base, const QuantisedView& next, std::
 Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const QuantisedSnapshot> next, std::uint16_t ticks) {
     Baseline baseline = initial_baseline(std::move(next));
     baseline.ticks = ticks > 0 ? ticks : base.ticks;
-    advance_baseline(base, *baseline.scene, ticks,
-            {.organisms = {baseline.organisms.x, baseline.organisms.y}, .crates = {baseline.crates.x, baseline.crates.y}});
+    advance_baseline(
+        base, *baseline.scene, ticks,
+        {.organisms = {baseline.organisms.x, baseline.organisms.y}, .crates = {baseline.crates.x, baseline.crates.y}});
     return baseline;
 }
 
@@ -499,8 +503,8 @@ std::string encode_keyframe(const BaselineView& baseline, Seams* seams) {
     return writer.take();
 }
 
-std::string encode_delta(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks, const AdvancedColumns* moved,
-                         Seams* seams) {
+std::string encode_delta(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
+                         const AdvancedColumns* moved, Seams* seams) {
     BodyWriter writer;
     writer.number(ticks);
     const Foretold foretold{ticks, base.ticks};

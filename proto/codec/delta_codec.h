@@ -14,8 +14,8 @@
 
 #include "evod/v1/stream.pb.h"
 #include "proto/codec/compression.h"
-#include "proto/codec/result.h"
 #include "proto/codec/quantised_snapshot.h"
+#include "proto/codec/result.h"
 
 #include <cstdint>
 #include <memory>
@@ -77,7 +77,8 @@ struct AdvancedColumns {
     };
     Displacements organisms, crates;
 };
-void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks, const AdvancedColumns& to);
+void advance_baseline(const BaselineView& base, const QuantisedView& next, std::uint16_t ticks,
+                      const AdvancedColumns& to);
 
 /// The body of a keyframe. seams: set to those of the body.
 std::string encode_keyframe(const BaselineView& baseline, Seams* seams = nullptr);

@@ -47,27 +47,33 @@ bool is_deeper(google::protobuf::io::CodedInputStream& in, const google::protobu
     using google::protobuf::internal::WireFormatLite;
     while (const std::uint32_t tag = in.ReadTag()) {
         const auto type = WireFormatLite::GetTagWireType(tag);
-        if (type == WireFormatLite::WIRETYPE_END_GROUP)
+        if (type == WireFormatLite::WIRETYPE_END_GROUP) {
             return false;
+        }
         if (type == WireFormatLite::WIRETYPE_START_GROUP) {
-            if (levels == 0 || is_deeper(in, nullptr, levels - 1))
+            if (levels == 0 || is_deeper(in, nullptr, levels - 1)) {
                 return true;
+            }
             continue;
         }
         const auto* field = of == nullptr ? nullptr : of->FindFieldByNumber(WireFormatLite::GetTagFieldNumber(tag));
         if (type != WireFormatLite::WIRETYPE_LENGTH_DELIMITED || field == nullptr || field->message_type() == nullptr) {
-            if (!WireFormatLite::SkipField(&in, tag))
+            if (!WireFormatLite::SkipField(&in, tag)) {
                 return false;
+            }
             continue;
         }
         int bytes = 0;
-        if (!in.ReadVarintSizeAsInt(&bytes))
+        if (!in.ReadVarintSizeAsInt(&bytes)) {
             return false;
-        if (levels == 0)
+        }
+        if (levels == 0) {
             return true;
+        }
         const auto rest = in.PushLimit(bytes);
-        if (is_deeper(in, field->message_type(), levels - 1))
+        if (is_deeper(in, field->message_type(), levels - 1)) {
             return true;
+        }
         in.PopLimit(rest);
     }
     return false;
@@ -79,10 +85,11 @@ Damage damage_of_body(std::span<const std::byte> body, const google::protobuf::D
     const std::string frame = "the body of a frame of " + std::to_string(body.size()) + " bytes ";
     google::protobuf::io::CodedInputStream in{reinterpret_cast<const std::uint8_t*>(body.data()),
                                               static_cast<int>(body.size())};
-    if (is_deeper(in, &message, message_depth_max))
+    if (is_deeper(in, &message, message_depth_max)) {
         return {.what =
                     frame + "has messages within messages, more than " + std::to_string(message_depth_max) + " deep",
                 .beyond = Beyond::MessageDepth};
+    }
     return {.what = frame + "is not a " + message.full_name()};
 }
 

@@ -27,10 +27,12 @@ bool take(std::string_view& line, T& value) {
 }
 
 bool next_line(std::istream& in, std::string& line) {
-    if (!std::getline(in, line))
+    if (!std::getline(in, line)) {
         return false;
-    if (line.ends_with('\r'))
+    }
+    if (line.ends_with('\r')) {
         line.pop_back();
+    }
     return true;
 }
 
@@ -38,8 +40,9 @@ bool next_line(std::istream& in, std::string& line) {
 
 Result<std::vector<std::vector<float>>> read_population(std::istream& in) {
     std::string line;
-    if (!next_line(in, line) || line != population_heading)
+    if (!next_line(in, line) || line != population_heading) {
         return wrong_line(1, "the heading " + std::string{population_heading}, line);
+    }
 
     std::vector<std::vector<float>> islands;
     for (std::uint64_t number = 2; next_line(in, line); ++number) {
@@ -47,25 +50,31 @@ Result<std::vector<std::vector<float>>> read_population(std::istream& in) {
         std::uint64_t island = 0, organism = 0;
         std::array<float, population_genes> genes;
         bool good = take(rest, island) && take(rest, organism);
-        for (float& gene : genes)
+        for (float& gene : genes) {
             good = good && take(rest, gene);
-        if (!good || !rest.empty() || std::count(line.begin(), line.end(), ',') != population_genes + 1)
+        }
+        if (!good || !rest.empty() || std::count(line.begin(), line.end(), ',') != population_genes + 1) {
             return wrong_line(number, "an island, an organism and six genes", line);
-        if (island == islands.size() && organism == 0)
+        }
+        if (island == islands.size() && organism == 0) {
             islands.emplace_back();
+        }
         const std::uint64_t last = islands.empty() ? 0 : islands.size() - 1;
         const std::uint64_t next = islands.empty() ? 0 : islands.back().size() / population_genes;
-        if (islands.empty() || island != last || organism != next)
+        if (islands.empty() || island != last || organism != next) {
             return wrong_line(number,
                               "organism " + std::to_string(next) + " of island " + std::to_string(last) +
                                   ", or the next island",
                               line);
+        }
         islands.back().insert(islands.back().end(), genes.begin(), genes.end());
     }
-    if (in.bad())
+    if (in.bad()) {
         return Damage{std::string{"cannot be read: "} + std::strerror(errno)};
-    if (islands.empty())
+    }
+    if (islands.empty()) {
         return Damage{"holds no organism"};
+    }
     return islands;
 }
 

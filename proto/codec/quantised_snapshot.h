@@ -30,8 +30,9 @@ struct QuantisedSnapshot {
 
 /// Of organisms, food, poison, crates, obstacles: the order of everything that is told.
 using Counts = std::array<std::uint32_t, 5>;
-constexpr std::array<Entities QuantisedSnapshot::*, 5> snapshot_parts{&QuantisedSnapshot::organisms, &QuantisedSnapshot::food, &QuantisedSnapshot::poison, &QuantisedSnapshot::crates,
-                                                       &QuantisedSnapshot::obstacles};
+constexpr std::array<Entities QuantisedSnapshot::*, 5> snapshot_parts{
+    &QuantisedSnapshot::organisms, &QuantisedSnapshot::food, &QuantisedSnapshot::poison, &QuantisedSnapshot::crates,
+    &QuantisedSnapshot::obstacles};
 inline Counts counts_of(const QuantisedSnapshot& scene) {
     Counts counts;
     std::ranges::transform(snapshot_parts, counts.begin(),

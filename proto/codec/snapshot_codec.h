@@ -9,8 +9,8 @@
 #pragma once
 
 #include "evod/v1/stream.pb.h"
-#include "proto/codec/result.h"
 #include "proto/codec/quantised_snapshot.h"
+#include "proto/codec/result.h"
 
 #include <cstdint>
 #include <optional>
@@ -57,14 +57,14 @@ struct DecodedTile {
     std::uint32_t tile = 0; // index
     evod::v1::Detail detail = evod::v1::DETAIL_FULL;
     double left_px = 0, top_px = 0; // its corner; its side is SnapshotFrame.tile_px
-    DecodedDots dots;                // DETAIL_DOTS
+    DecodedDots dots;               // DETAIL_DOTS
     DecodedDensity density;         // DETAIL_DENSITY
 };
 
 /// One picture of one island, ready to draw. All columns of a struct have the same length, and all numbers are finite.
 struct DecodedSnapshot {
     evod::v1::SnapshotFrame about; // every field of the frame but its body and tiles: tick, walls, statistics, …
-    DecodedOrganisms organisms;     // with tiles, of all those of DETAIL_FULL together; so too the others
+    DecodedOrganisms organisms;    // with tiles, of all those of DETAIL_FULL together; so too the others
     DecodedItems food, poison;
     DecodedBoxes crates, obstacles;
     std::vector<DecodedTile> tiles; // with a View: those that are seen, by rising index

@@ -40,10 +40,10 @@ std::vector<std::uint32_t> kept(const Column& column) {
 
 DecodedBoxes boxes_of(const Entities& entities) {
     DecodedBoxes boxes{.x_px = in_px(entities.x),
-                     .y_px = in_px(entities.y),
-                     .half_width_px = in_px(entities.width),
-                     .half_height_px = in_px(entities.height),
-                     .id = kept(entities.id)};
+                       .y_px = in_px(entities.y),
+                       .half_width_px = in_px(entities.width),
+                       .half_height_px = in_px(entities.height),
+                       .id = kept(entities.id)};
     if (boxes.id.empty()) {
         boxes.id.resize(entities.x.size());
         std::iota(boxes.id.begin(), boxes.id.end(), 0U);

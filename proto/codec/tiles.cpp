@@ -147,7 +147,8 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
     view.position_bytes = scene_->position_bytes;
     view.of_tile = true;
     constexpr std::array<EntitiesView QuantisedView::*, snapshot_parts.size()> parts_seen{
-        &QuantisedView::organisms, &QuantisedView::food, &QuantisedView::poison, &QuantisedView::crates, &QuantisedView::obstacles};
+        &QuantisedView::organisms, &QuantisedView::food, &QuantisedView::poison, &QuantisedView::crates,
+        &QuantisedView::obstacles};
     const bool gathers = !together_[tile];
     together_[tile] = true;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -252,7 +253,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
 }
 
 Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, const TileLayout& layout,
-                               std::uint32_t tile) {
+                                std::uint32_t tile) {
     const auto count = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (body.size() != 2 * count) {
         return Damage{"a tile's body is " + std::to_string(body.size()) + " bytes long, not " +
@@ -270,7 +271,7 @@ Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, con
     DecodedDots dots;
     std::size_t next = 0;
     const std::array<DecodedDots::Places*, 5> parts{&dots.organisms, &dots.food, &dots.poison, &dots.crates,
-                                                   &dots.obstacles};
+                                                    &dots.obstacles};
     for (std::size_t p = 0; p < parts.size(); ++p) {
         parts[p]->x_px = in_px(body.substr(next, counts[p]), tile % layout.columns);
         parts[p]->y_px = in_px(body.substr(count + next, counts[p]), tile / layout.columns);

@@ -112,7 +112,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
 
 /// What bodies tell, which may be anything.
 Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, const TileLayout& layout,
-                               std::uint32_t tile);
+                                std::uint32_t tile);
 Result<DecodedDensity> decode_density(std::string_view body, const Counts& counts);
 
 /// The longest body that a tile of DETAIL_DENSITY can have.

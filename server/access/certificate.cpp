@@ -42,8 +42,9 @@ bool is_host_name(const std::string& host) {
 std::string alternative_name(const std::string& host) {
     boost::system::error_code error;
     const auto address = boost::asio::ip::make_address(host, error);
-    if (!error)
+    if (!error) {
         return "IP:" + address.to_string();
+    }
     return is_host_name(host) ? "DNS:" + host : std::string{};
 }
 
@@ -66,8 +67,9 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
            X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -day_s) != nullptr && // clocks differ
            X509_gmtime_adj(X509_getm_notAfter(certificate.get()), certificate_days * day_s) != nullptr &&
            X509_set_pubkey(certificate.get(), key) == 1;
-    if (!good)
+    if (!good) {
         return nullptr;
+    }
     X509_NAME* subject = X509_get_subject_name(certificate.get());
     good = X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC,
                                       reinterpret_cast<const unsigned char*>(common_name.c_str()), -1, -1, 0) == 1 &&
@@ -84,10 +86,11 @@ Certificate certificate_of(EVP_PKEY* key, const std::string& names, const std::s
 template <class Write>
 Result<void> write_pem(const std::string& path, mode_t mode, const Write& write) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (descriptor < 0)
+    if (descriptor < 0) {
         return refusal(errno == EEXIST ? RefusalCode::AlreadyExists : RefusalCode::Unavailable,
                        errno == EEXIST ? path + " is there already"
                                        : path + ": cannot be written: " + std::strerror(errno));
+    }
     std::FILE* file = ::fdopen(descriptor, "w");
     const bool written = write(file) == 1;
     if (std::fclose(file) != 0 || !written) {
@@ -103,25 +106,29 @@ Result<void> make_certificate(const std::vector<std::string>& hosts, const std::
     std::string names;
     for (const std::string& host : hosts) {
         const std::string name = alternative_name(host);
-        if (name.empty())
+        if (name.empty()) {
             return refusal(RefusalCode::InvalidArgument, "\"" + host + "\" is no host name or IP address");
+        }
         names += (names.empty() ? "" : ",") + name;
     }
     const Key key{EVP_EC_gen("P-256")};
     const std::string common_name = hosts.front().substr(0, 64);
     const Certificate certificate = key ? certificate_of(key.get(), names, common_name) : nullptr;
-    if (!certificate)
+    if (!certificate) {
         return refusal(RefusalCode::Unavailable, "OpenSSL cannot make such a certificate");
+    }
     const std::string key_path = folder + "/evod.key", certificate_path = folder + "/evod.crt";
-    if (::access(certificate_path.c_str(), F_OK) == 0)
+    if (::access(certificate_path.c_str(), F_OK) == 0) {
         return refusal(RefusalCode::AlreadyExists, certificate_path + " is there already");
+    }
     if (auto written = write_pem(key_path, 0600,
                                  [&](std::FILE* file) {
                                      return PEM_write_PrivateKey(file, key.get(), nullptr, nullptr, 0, nullptr,
                                                                  nullptr);
                                  });
-        !written)
+        !written) {
         return written;
+    }
     return write_pem(certificate_path, 0644, [&](std::FILE* file) { return PEM_write_X509(file, certificate.get()); });
 }
 

@@ -13,8 +13,9 @@ using base::Result;
 
 Gate::Stamp Gate::stamp() const {
     struct stat about {};
-    if (folder_.empty() || ::lstat(token_file_of(folder_).c_str(), &about) != 0)
+    if (folder_.empty() || ::lstat(token_file_of(folder_).c_str(), &about) != 0) {
         return {};
+    }
     return {true,         about.st_ino,         about.st_size,        about.st_mode,
             about.st_uid, about.st_ctim.tv_sec, about.st_ctim.tv_nsec};
 }
@@ -22,9 +23,10 @@ Gate::Stamp Gate::stamp() const {
 Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
     Gate gate{folder, token_needed};
     gate.refresh();
-    if (gate.trouble_)
+    if (gate.trouble_) {
         return *gate.trouble_;
-    if (token_needed && gate.tokens_.empty())
+    }
+    if (token_needed && gate.tokens_.empty()) {
         return refusal(RefusalCode::FailedPrecondition,
                        folder.empty()
                            ? "others could command this server, and without a folder there are no tokens to tell who "
@@ -32,25 +34,29 @@ Result<Gate> Gate::open(const std::string& folder, bool token_needed) {
                            : "others could command this server, and there are no tokens yet to tell who may: make one "
                              "with `evod token add NAME --role admin --data " +
                                  folder + "`, or listen on 127.0.0.1 without --require-token");
+    }
     return gate;
 }
 
 bool Gate::refresh() {
     // Taken before the reading, so that what comes in between is seen the next time.
     const Stamp now = stamp();
-    if (now == stamp_)
+    if (now == stamp_) {
         return false;
+    }
     stamp_ = now;
     auto tokens = folder_.empty() ? Result<Tokens>{Tokens{}} : read_tokens(folder_);
     trouble_ = tokens ? std::nullopt : std::optional{tokens.error()};
-    if (tokens)
+    if (tokens) {
         tokens_ = *std::move(tokens);
+    }
     return true;
 }
 
 bool Gate::knows(const Visitor& visitor) const {
-    if (visitor.name.empty())
+    if (visitor.name.empty()) {
         return !token_needed_;
+    }
     const Token* token = find(tokens_, visitor.token);
     return token != nullptr && token->name == visitor.name && token->role == visitor.role;
 }
@@ -58,8 +64,9 @@ bool Gate::knows(const Visitor& visitor) const {
 void Gate::fail(const std::string& address, Clock::time_point now) {
     ++failed_login_count_;
     std::erase_if(failures_, [&](const auto& item) { return now - item.second.last > forgotten_after; });
-    if (failures_.size() >= addresses_max && !failures_.contains(address))
+    if (failures_.size() >= addresses_max && !failures_.contains(address)) {
         failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& item) { return item.second.last; }));
+    }
     Failures& failures = failures_[address];
     const auto delay = std::min<Clock::duration>(delay_max, delay_min * (1 << std::min(failures.count, 10)));
     ++failures.count;
@@ -68,22 +75,25 @@ void Gate::fail(const std::string& address, Clock::time_point now) {
 }
 
 Result<Visitor> Gate::admit(const std::string& token, const std::string& address, Clock::time_point now) {
-    if (token.empty() && !token_needed_)
+    if (token.empty() && !token_needed_) {
         return Visitor{};
-    if (trouble_)
+    }
+    if (trouble_) {
         return refusal(RefusalCode::Unavailable,
                        "the server cannot tell at present who may come in: its log says why, to whoever runs it",
                        base::Reason::AuthenticationUnavailable);
+    }
     const Digest digest = digest_of(token);
     const Token* known = token.empty() ? nullptr : find(tokens_, digest);
     if (known != nullptr) {
         failures_.erase(address);
         return Visitor{known->name, known->role, digest};
     }
-    if (token.empty())
+    if (token.empty()) {
         return refusal(RefusalCode::Unauthenticated,
                        "this server wants a token: EVOD_TOKEN or --token-file gives it one; whoever runs it makes them",
                        base::Reason::TokenMissing);
+    }
     if (const auto before = failures_.find(address); before != failures_.end() && now < before->second.not_before) {
         const auto wait = std::chrono::ceil<std::chrono::seconds>(before->second.not_before - now);
         return refusal(RefusalCode::ResourceExhausted,

@@ -15,9 +15,11 @@ const char* name_of(Role role) {
 }
 
 std::optional<Role> role_named(std::string_view name) {
-    for (const Role role : {Role::Viewer, Role::Controller, Role::Admin})
-        if (name == name_of(role))
+    for (const Role role : {Role::Viewer, Role::Controller, Role::Admin}) {
+        if (name == name_of(role)) {
             return role;
+        }
+    }
     return std::nullopt;
 }
 

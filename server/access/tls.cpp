@@ -28,44 +28,54 @@ Refusal refusal(std::string message) {
 } // namespace
 
 Result<std::unique_ptr<ssl::context>> server_context(const TlsFiles& files) {
-    if (files.certificate.empty() != files.key.empty())
+    if (files.certificate.empty() != files.key.empty()) {
         return refusal(files.key.empty() ? "--tls-cert needs --tls-key too" : "--tls-key needs --tls-cert too");
-    if (files.certificate.empty())
+    }
+    if (files.certificate.empty()) {
         return files.client_ca.empty() ? Result<std::unique_ptr<ssl::context>>{nullptr}
                                        : refusal("--tls-client-ca needs --tls-cert and --tls-key too");
+    }
     struct stat about {};
-    if (::stat(files.key.c_str(), &about) != 0)
+    if (::stat(files.key.c_str(), &about) != 0) {
         return refusal("--tls-key: " + files.key + " cannot be read: " + std::strerror(errno));
-    if ((about.st_mode & 007) != 0)
+    }
+    if ((about.st_mode & 007) != 0) {
         return refusal("--tls-key: everybody can read " + files.key + ": chmod 600 it");
+    }
     auto context = std::make_unique<ssl::context>(ssl::context::tls_server);
     SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
     // Hands what a file holds to `use`.
     const auto load = [](const char* option, const std::string& file, const auto& use) -> Result<void> {
         const auto text = files::read_file(file, "a PEM file", pem_bytes_max);
-        if (!text)
+        if (!text) {
             return refusal(std::string{option} + ": " + text.error().message);
+        }
         boost::system::error_code error;
         use(boost::asio::buffer(*text), error);
-        if (error)
+        if (error) {
             return refusal(std::string{option} + ": " + file + " cannot be used: " + error.message());
+        }
         return {};
     };
     auto loaded = load("--tls-cert", files.certificate,
                        [&](const auto& pem, auto& error) { context->use_certificate_chain(pem, error); });
-    if (loaded)
+    if (loaded) {
         loaded = load("--tls-key", files.key,
                       [&](const auto& pem, auto& error) { context->use_private_key(pem, ssl::context::pem, error); });
-    if (!loaded)
+    }
+    if (!loaded) {
         return loaded.error();
-    if (SSL_CTX_check_private_key(context->native_handle()) != 1)
+    }
+    if (SSL_CTX_check_private_key(context->native_handle()) != 1) {
         return refusal("--tls-key: " + files.key + " is not the key of " + files.certificate);
+    }
     if (!files.client_ca.empty()) {
         loaded = load("--tls-client-ca", files.client_ca,
                       [&](const auto& pem, auto& error) { context->add_certificate_authority(pem, error); });
-        if (!loaded)
+        if (!loaded) {
             return loaded.error();
+        }
         context->set_verify_mode(ssl::verify_peer | ssl::verify_fail_if_no_peer_cert);
     }
     return context;

@@ -44,20 +44,24 @@ bool is_token_name(std::string_view name) {
 
 std::string to_hex(const Digest& bytes) {
     std::string text;
-    for (const unsigned char byte : bytes)
-        for (const int digit : {byte >> 4, byte & 15})
+    for (const unsigned char byte : bytes) {
+        for (const int digit : {byte >> 4, byte & 15}) {
             text += "0123456789abcdef"[digit];
+        }
+    }
     return text;
 }
 
 std::optional<Digest> from_hex(std::string_view text) {
     Digest bytes;
-    if (text.size() != 2 * bytes.size())
+    if (text.size() != 2 * bytes.size()) {
         return std::nullopt;
+    }
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto digit = std::string_view{"0123456789abcdef"}.find(text[i]);
-        if (digit == std::string_view::npos)
+        if (digit == std::string_view::npos) {
             return std::nullopt;
+        }
         bytes[i / 2] = static_cast<unsigned char>(i % 2 == 0 ? digit << 4 : bytes[i / 2] | digit);
     }
     return bytes;
@@ -68,8 +72,9 @@ class Descriptor {
   public:
     explicit Descriptor(int number) : number_{number} {}
     ~Descriptor() {
-        if (number_ >= 0)
+        if (number_ >= 0) {
             ::close(number_);
+        }
     }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
@@ -97,17 +102,21 @@ Result<void> write_tokens(const std::string& folder, int folder_descriptor, cons
     {
         ::unlink(next.c_str()); // of somebody who was interrupted
         const Descriptor file{::open(next.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
-        if (!file.open())
+        if (!file.open()) {
             return cannot("written", next);
+        }
         errno = ENOSPC; // of a write that takes only a part
-        if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0)
+        if (::write(*file, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(*file) != 0) {
             return cannot("written", next);
+        }
     }
-    if (::rename(next.c_str(), path.c_str()) != 0)
+    if (::rename(next.c_str(), path.c_str()) != 0) {
         return cannot("replaced", path);
+    }
     // Otherwise a token that was revoked could be back after a power cut.
-    if (::fsync(folder_descriptor) != 0)
+    if (::fsync(folder_descriptor) != 0) {
         return cannot("written", folder);
+    }
     return {};
 }
 
@@ -117,13 +126,16 @@ Result<void> change_tokens(const std::string& folder, const Change& change) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     const Descriptor locked{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-    if (!locked.open() || ::flock(*locked, LOCK_EX) != 0)
+    if (!locked.open() || ::flock(*locked, LOCK_EX) != 0) {
         return cannot("used", folder);
+    }
     auto tokens = read_tokens(folder);
-    if (!tokens)
+    if (!tokens) {
         return tokens.error();
-    if (Result<void> changed = change(*tokens); !changed)
+    }
+    if (Result<void> changed = change(*tokens); !changed) {
         return changed;
+    }
     return write_tokens(folder, *locked, *tokens);
 }
 
@@ -137,9 +149,11 @@ Digest digest_of(std::string_view secret) {
 
 const Token* find(const Tokens& tokens, const Digest& digest) {
     const Token* found = nullptr;
-    for (const Token& token : tokens)
-        if (CRYPTO_memcmp(token.digest.data(), digest.data(), digest.size()) == 0)
+    for (const Token& token : tokens) {
+        if (CRYPTO_memcmp(token.digest.data(), digest.data(), digest.size()) == 0) {
             found = &token;
+        }
+    }
     return found;
 }
 
@@ -149,8 +163,9 @@ std::string token_file_of(const std::string& folder) {
 
 std::string to_text(const Tokens& tokens) {
     std::string text = std::string{heading} + '\n';
-    for (const Token& token : tokens)
+    for (const Token& token : tokens) {
         text += token.name + ' ' + name_of(token.role) + ' ' + to_hex(token.digest) + ' ' + token.made_on + '\n';
+    }
     return text;
 }
 
@@ -161,13 +176,15 @@ Result<Tokens> parse_tokens(std::string_view text) {
     Tokens tokens;
     for (std::size_t number = 1; !text.empty() || number == 1; ++number) {
         const std::size_t end = text.find('\n');
-        if (end == std::string_view::npos)
+        if (end == std::string_view::npos) {
             return wrong(number, "a whole line");
+        }
         const std::string line{text.substr(0, end)};
         text.remove_prefix(end + 1);
         if (number == 1) {
-            if (line != heading)
+            if (line != heading) {
                 return wrong(1, '"' + std::string{heading} + '"');
+            }
             continue;
         }
         std::istringstream words{line};
@@ -175,12 +192,15 @@ Result<Tokens> parse_tokens(std::string_view text) {
         words >> name >> role >> digest >> made_on;
         const auto role_of = role_named(role);
         const auto bytes = from_hex(digest);
-        if (!is_token_name(name) || !role_of || !bytes || made_on.empty() || made_on.size() > 10 || words >> more)
+        if (!is_token_name(name) || !role_of || !bytes || made_on.empty() || made_on.size() > 10 || words >> more) {
             return wrong(number, "NAME ROLE SHA256 DATE");
-        if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; }))
+        }
+        if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; })) {
             return wrong(number, "a token of another name than those before");
-        if (tokens.size() == tokens_max)
+        }
+        if (tokens.size() == tokens_max) {
             return wrong(number, "among the " + std::to_string(tokens_max) + " that there may be");
+        }
         tokens.push_back({name, *role_of, *bytes, made_on});
     }
     return tokens;
@@ -189,49 +209,59 @@ Result<Tokens> parse_tokens(std::string_view text) {
 Result<Tokens> read_tokens(const std::string& folder) {
     const std::string path = token_file_of(folder);
     const auto file = files::RegularFile::open(path, "a file of tokens", files::Links::Refused);
-    if (!file)
+    if (!file) {
         return file.error().code == RefusalCode::NotFound ? Result<Tokens>{Tokens{}} : file.error();
+    }
     const struct stat& about = file->about();
-    if (about.st_uid != ::geteuid() || (about.st_mode & 077) != 0)
+    if (about.st_uid != ::geteuid() || (about.st_mode & 077) != 0) {
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is not for its owner alone, so it cannot be believed: chown it to the user who runs "
                               "evod, and chmod 600");
+    }
     const auto text = file->read(file_bytes_max);
-    if (!text)
+    if (!text) {
         return text.error();
+    }
     auto tokens = parse_tokens(*text);
-    if (!tokens)
+    if (!tokens) {
         return refusal(tokens.error().code, path + " is damaged: " + tokens.error().message);
+    }
     return tokens;
 }
 
 Result<std::string> add_token(const std::string& folder, const std::string& name, Role role) {
-    if (!is_token_name(name))
+    if (!is_token_name(name)) {
         return refusal(RefusalCode::InvalidArgument,
                        "a token's name must be 1 to 64 of a-z A-Z 0-9 _ - ., not \"" + name + '"');
+    }
     Digest drawn;
-    if (RAND_bytes(drawn.data(), static_cast<int>(drawn.size())) != 1)
+    if (RAND_bytes(drawn.data(), static_cast<int>(drawn.size())) != 1) {
         return refusal(RefusalCode::Unavailable, "the system gives no random numbers");
+    }
     const std::string secret = "evod_" + to_hex(drawn);
     const auto added = change_tokens(folder, [&](Tokens& tokens) -> Result<void> {
-        if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; }))
+        if (std::ranges::any_of(tokens, [&](const Token& token) { return token.name == name; })) {
             return refusal(RefusalCode::AlreadyExists,
                            "there is a token of the name " + name + " already: revoke it, or choose another name");
-        if (tokens.size() >= tokens_max)
+        }
+        if (tokens.size() >= tokens_max) {
             return refusal(RefusalCode::ResourceExhausted,
                            "there are " + std::to_string(tokens_max) + " tokens already");
+        }
         tokens.push_back({name, role, digest_of(secret), today()});
         return {};
     });
-    if (!added)
+    if (!added) {
         return added.error();
+    }
     return secret;
 }
 
 Result<void> revoke_token(const std::string& folder, const std::string& name) {
     return change_tokens(folder, [&](Tokens& tokens) -> Result<void> {
-        if (std::erase_if(tokens, [&](const Token& token) { return token.name == name; }) == 0)
+        if (std::erase_if(tokens, [&](const Token& token) { return token.name == name; }) == 0) {
             return refusal(RefusalCode::NotFound, "there is no token of the name \"" + name + '"');
+        }
         return {};
     });
 }

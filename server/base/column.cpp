@@ -21,9 +21,10 @@ std::align_val_t alignment(std::size_t bytes) {
 void* allocate_column(std::size_t bytes) {
     void* memory = ::operator new(bytes, alignment(bytes));
 #if defined(__linux__)
-    if (bytes >= 2 * large_page)
+    if (bytes >= 2 * large_page) {
         madvise(memory, bytes / large_page * large_page,
                 MADV_HUGEPAGE); // advice: nothing is lost where it is not taken
+    }
 #endif
     return memory;
 }

@@ -14,10 +14,11 @@ namespace evod::base {
 /// value += change; returns what it was before.
 template <bool side_by_side, class T>
 T fetch_add(T& value, T change) {
-    if constexpr (side_by_side)
+    if constexpr (side_by_side) {
         return std::atomic_ref{value}.fetch_add(change, std::memory_order_relaxed);
-    else
+    } else {
         return std::exchange(value, value + change);
+    }
 }
 
 /// value = min(value, candidate). Numbers only, no NaN.
@@ -36,10 +37,11 @@ void fetch_min(T& value, T candidate) {
 /// value = what; all who write at the same time write the same.
 template <bool side_by_side, class T>
 void put(T& value, T what) {
-    if constexpr (side_by_side)
+    if constexpr (side_by_side) {
         std::atomic_ref{value}.store(what, std::memory_order_relaxed);
-    else
+    } else {
         value = what;
+    }
 }
 
 /// What is there while others may write.

@@ -80,18 +80,21 @@ double sin_turns(double turns) {
 }
 
 double exp(double x) {
-    if (x < -700)
+    if (x < -700) {
         return 0;
-    if (x > 700)
+    }
+    if (x > 700) {
         return std::numeric_limits<double>::max();
+    }
     // ln 2 in two parts, the first with 21 zero bits at its end, so that k · ln2_high is exact.
     constexpr double ln2_high = 0x1.62e42feep-1;
     constexpr double ln2_low = 0x1.a39ef35793c76p-33;
     const double k = std::floor(x / ln2 + 0.5);
     const double r = (x - k * ln2_high) - k * ln2_low;
     double sum = 0;
-    for (int n = 14; n >= 0; --n)
+    for (int n = 14; n >= 0; --n) {
         sum = sum * r + inverse_factorial[static_cast<unsigned>(n)];
+    }
     const auto exponent = static_cast<std::uint64_t>(static_cast<std::int64_t>(k) + 1023);
     return sum * std::bit_cast<double>(exponent << 52);
 }
@@ -109,14 +112,16 @@ double log(double x) {
     const double s = (mantissa - 1) / (mantissa + 1);
     const double square = s * s;
     double sum = 0;
-    for (int n = 23; n >= 1; n -= 2)
+    for (int n = 23; n >= 1; n -= 2) {
         sum = sum * square + 1.0 / n;
+    }
     return exponent * ln2 + 2 * s * sum;
 }
 
 double pow(double x, double y) {
-    if (x == 0)
+    if (x == 0) {
         return y == 0 ? 1 : 0;
+    }
     return exp(y * log(x));
 }
 

@@ -45,12 +45,14 @@ class Executor {
     /// Runs `body` over [0, count) in pieces of at most `grain` indices (grain >= 1), cut at multiples of `grain`.
     /// Returns when all have run. May be called from inside a piece. A loop of one piece runs on the calling thread.
     void parallel_for(std::size_t count, std::size_t grain, FunctionRef<void(Range)> body) {
-        if (count == 0)
+        if (count == 0) {
             return;
-        if (count <= grain)
+        }
+        if (count <= grain) {
             body({0, count});
-        else
+        } else {
             run(count, grain, body);
+        }
     }
 
     /// Threads that may work at once, >= 1. For choosing whether to cut, never for how: results must not depend on it.

@@ -51,8 +51,9 @@ struct HashSums {
 
 inline std::uint64_t sum_of(Longs v) {
     std::uint64_t sum = 0;
-    for (std::size_t i = 0; i < lanes / 2; ++i)
+    for (std::size_t i = 0; i < lanes / 2; ++i) {
         sum += v[i];
+    }
     return sum;
 }
 

@@ -14,8 +14,9 @@ class InlineExecutor final : public Executor {
 
   protected:
     void run(std::size_t count, std::size_t grain, FunctionRef<void(Range)> body) override {
-        for (std::size_t begin = 0; begin < count; begin += grain)
+        for (std::size_t begin = 0; begin < count; begin += grain) {
             body({begin, std::min(begin + grain, count)});
+        }
     }
 };
 

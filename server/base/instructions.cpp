@@ -15,8 +15,9 @@ Instructions& in_use() {
 Instructions widest_instructions() {
 #if defined(__x86_64__)
     __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2"))
+    if (__builtin_cpu_supports("avx2")) {
         return Instructions::Avx2;
+    }
 #endif
     return Instructions::Baseline;
 }

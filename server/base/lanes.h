@@ -50,8 +50,9 @@ inline void store(T* to, Vector vector) {
 template <class... Columns>
 inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
     constexpr std::size_t ahead = 512, per_cache_line = 16, into_second_level = 2;
-    if (i % per_cache_line == 0)
+    if (i % per_cache_line == 0) {
         (__builtin_prefetch(columns + i + ahead, 0, into_second_level), ...);
+    }
 }
 
 /// All lanes the same.
@@ -82,8 +83,9 @@ inline Floats square_root(Floats v) {
 #elif defined(__x86_64__)
     return (Floats)_mm_sqrt_ps((__m128)v);
 #else
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < lanes; ++i) {
         v[i] = __builtin_sqrtf(v[i]);
+    }
     return v;
 #endif
 }
@@ -96,8 +98,9 @@ inline Integers round_to_integers(Floats v) {
     return (Integers)_mm_cvtps_epi32((__m128)v);
 #else
     Integers rounded{};
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < lanes; ++i) {
         rounded[i] = static_cast<std::int32_t>(__builtin_lrintf(v[i]));
+    }
     return rounded;
 #endif
 }
@@ -110,8 +113,9 @@ inline unsigned bits_of(Integers mask) {
     return static_cast<unsigned>(_mm_movemask_ps((__m128)mask));
 #else
     unsigned bits = 0;
-    for (std::size_t i = 0; i < lanes; ++i)
+    for (std::size_t i = 0; i < lanes; ++i) {
         bits |= (mask[i] != 0 ? 1u : 0u) << i;
+    }
     return bits;
 #endif
 }

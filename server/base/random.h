@@ -101,8 +101,9 @@ class RandomStream {
         std::uint64_t product = std::uint64_t{word()} * bound;
         if (static_cast<std::uint32_t>(product) < bound) {
             const std::uint32_t threshold = (0u - bound) % bound;
-            while (static_cast<std::uint32_t>(product) < threshold)
+            while (static_cast<std::uint32_t>(product) < threshold) {
                 product = std::uint64_t{word()} * bound;
+            }
         }
         return static_cast<std::uint32_t>(product >> 32);
     }
@@ -113,8 +114,9 @@ class RandomStream {
     /// Every order of `items` equally likely (Fisher & Yates; Durstenfeld 1964).
     template <class T>
     void shuffle(std::span<T> items) {
-        for (std::size_t left = items.size(); left > 1; --left)
+        for (std::size_t left = items.size(); left > 1; --left) {
             std::swap(items[left - 1], items[below(static_cast<std::uint32_t>(left))]);
+        }
     }
 
   private:

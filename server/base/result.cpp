@@ -39,10 +39,11 @@ namespace {
 std::string visible(std::string utf8) {
     for (std::size_t i = 0; i < utf8.size(); ++i) {
         const auto byte = static_cast<unsigned char>(utf8[i]);
-        if ((byte < 0x20 && byte != '\n') || byte == 0x7f)
+        if ((byte < 0x20 && byte != '\n') || byte == 0x7f) {
             utf8[i] = '?';
-        else if (i > 0 && utf8[i - 1] == '\xc2' && byte >= 0x80 && byte < 0xa0) // U+0080 to U+009F
+        } else if (i > 0 && utf8[i - 1] == '\xc2' && byte >= 0x80 && byte < 0xa0) { // U+0080 to U+009F
             utf8.replace(--i, 2, "?");
+        }
     }
     return utf8;
 }
@@ -55,8 +56,9 @@ std::string to_text(const Violation& violation) {
 
 std::string to_text(const Refusal& refusal) {
     std::string text = visible(refusal.message);
-    for (const Violation& violation : refusal.violations)
+    for (const Violation& violation : refusal.violations) {
         text += "\n  " + to_text(violation);
+    }
     return text;
 }
 

@@ -23,11 +23,14 @@ using base::Result;
 template <class Write>
 Result<void> write_file(const fs::path& path, Write&& write) {
     std::ofstream out{path, std::ios::binary};
-    if (out)
-        if (Result<void> written = write(out); !written)
+    if (out) {
+        if (Result<void> written = write(out); !written) {
             return written;
-    if (!out.flush())
+        }
+    }
+    if (!out.flush()) {
         return refusal(RefusalCode::Unavailable, path.string() + " cannot be written, the disk may be full");
+    }
     return {};
 }
 
@@ -52,25 +55,30 @@ Result<std::string> sha256_of(const fs::path& path) {
     }
     unsigned char digest[EVP_MAX_MD_SIZE];
     unsigned int bytes = 0;
-    if (!good || EVP_DigestFinal_ex(context.get(), digest, &bytes) != 1)
+    if (!good || EVP_DigestFinal_ex(context.get(), digest, &bytes) != 1) {
         return refusal(RefusalCode::Unavailable, path.string() + ": its checksum cannot be made");
+    }
     std::string text;
-    for (unsigned int i = 0; i < bytes; ++i)
-        for (const int digit : {digest[i] >> 4, digest[i] & 15})
+    for (unsigned int i = 0; i < bytes; ++i) {
+        for (const int digit : {digest[i] >> 4, digest[i] & 15}) {
             text += "0123456789abcdef"[digit];
+        }
+    }
     return text;
 }
 
 Result<void> write_checksums(const fs::path& folder) {
     std::vector<std::string> names;
-    for (const auto& file : fs::directory_iterator{folder})
+    for (const auto& file : fs::directory_iterator{folder}) {
         names.push_back(file.path().filename().string());
+    }
     std::ranges::sort(names);
     return write_file(folder / "SHA256SUMS", [&](std::ostream& out) -> Result<void> {
         for (const std::string& name : names) {
             const auto sum = sha256_of(folder / name);
-            if (!sum)
+            if (!sum) {
                 return sum.error();
+            }
             out << *sum << "  " << name << '\n';
         }
         return {};
@@ -81,20 +89,23 @@ Result<void> write_checksums(const fs::path& folder) {
 Result<std::string> rerun_text(storage::RunFile& file) {
     const storage::RunIdentity& identity = file.identity();
     const auto changes = parameter_changes(file);
-    if (!changes)
+    if (!changes) {
         return changes.error();
+    }
     const std::uint64_t generations = file.last_generation_ended();
     if (identity.forked_from) {
-        return "The run is a fork: it begins in generation " + std::to_string(identity.first_generation) + ", at tick " +
-               std::to_string(identity.first_tick) + ", of another run, and only the run file contains that state. `evod verify` " +
-               "begins there.\n";
+        return "The run is a fork: it begins in generation " + std::to_string(identity.first_generation) +
+               ", at tick " + std::to_string(identity.first_tick) +
+               ", of another run, and only the run file contains that state. `evod verify` " + "begins there.\n";
     }
-    if (generations == 0)
+    if (generations == 0) {
         return std::string{"No generation has ended, so there are no numbers to compare.\n"};
-    if (!changes->empty())
+    }
+    if (!changes->empty()) {
         return "Parameters were changed while it ran, " + std::to_string(changes->size()) +
                (changes->size() == 1 ? " time" : " times") +
                " (events.csv). `evod verify` makes the same changes at the same ticks.\n";
+    }
     return "    evod run experiment.json " +
            std::string{identity.first_population ? "--population population.csv " : ""} + "--generations " +
            std::to_string(generations) +
@@ -105,8 +116,9 @@ Result<std::string> rerun_text(storage::RunFile& file) {
 Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_name) {
     const storage::RunIdentity& identity = file.identity();
     const auto rerun = rerun_text(file);
-    if (!rerun)
+    if (!rerun) {
         return rerun.error();
+    }
     const std::string model = std::to_string(identity.model_version);
     const std::uint64_t left_out = tables::generations_out_of_reach(file);
     return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
@@ -130,16 +142,18 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
 
 Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
     const std::string file_name = run.file.identity().name + ".evod";
-    if (auto copied = run.file.copy_to((folder / file_name).string()); !copied)
+    if (auto copied = run.file.copy_to((folder / file_name).string()); !copied) {
         return copied;
+    }
     const auto write_text = [&](const char* name, const std::string& text) {
         return write_file(folder / name, [&](std::ostream& out) -> Result<void> {
             out << text;
             return {};
         });
     };
-    if (auto done = write_text("experiment.json", experiment_text(run.file.identity())); !done)
+    if (auto done = write_text("experiment.json", experiment_text(run.file.identity())); !done) {
         return done;
+    }
     constexpr auto csv = tables::Table::Format::Csv;
     using tables::RunTable;
     constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
@@ -150,22 +164,26 @@ Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
         const tables::WantedTable wanted{.table = table, .format = csv};
         if (auto done =
                 write_file(folder / name, [&](std::ostream& out) { return tables::write_table(run, wanted, out); });
-            !done)
+            !done) {
             return done;
+        }
     }
     if (const auto& first = run.file.identity().first_population) {
         const auto write = [&](std::ostream& out) -> Result<void> {
             tables::write_population(*first, csv, out);
             return {};
         };
-        if (auto done = write_file(folder / "population.csv", write); !done)
+        if (auto done = write_file(folder / "population.csv", write); !done) {
             return done;
+        }
     }
     const auto repeat = repeat_text(run.file, file_name);
-    if (!repeat)
+    if (!repeat) {
         return repeat.error();
-    if (auto done = write_text("REPEAT.md", *repeat); !done)
+    }
+    if (auto done = write_text("REPEAT.md", *repeat); !done) {
         return done;
+    }
     return write_checksums(folder);
 }
 
@@ -173,12 +191,14 @@ Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
 
 Result<void> write_bundle(const tables::RunSource& run, const std::string& folder) {
     std::error_code error;
-    if (!fs::create_directory(folder, error))
+    if (!fs::create_directory(folder, error)) {
         return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot make " + folder + ": " + error.message())
                      : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " is there already");
+    }
     Result<void> filled = fill(run, folder);
-    if (!filled)
+    if (!filled) {
         fs::remove_all(folder, error);
+    }
     return filled;
 }
 

@@ -14,14 +14,16 @@ int check(const std::string& path) {
         return 1;
     }
     std::cout << path << ": good";
-    if (!experiment->description.empty())
+    if (!experiment->description.empty()) {
         std::cout << "\n" << experiment->description;
+    }
     const std::string changes =
         simulation::to_experiment_text(experiment->parameters, simulation::Written::Differences, experiment->schedule);
-    if (changes == "{}\n")
+    if (changes == "{}\n") {
         std::cout << "\nEvery parameter has its default.\n";
-    else
+    } else {
         std::cout << "\nParameters that differ from their defaults:\n" << changes;
+    }
     return 0;
 }
 

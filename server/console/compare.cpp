@@ -33,17 +33,20 @@ struct Plan {
 };
 
 base::Result<Plan> plan_of(const CompareOptions& options) {
-    if (options.controls && options.experiments.size() > 1)
+    if (options.controls && options.experiments.size() > 1) {
         return refusal(base::RefusalCode::InvalidArgument,
                        "--controls are those of one experiment; got " + std::to_string(options.experiments.size()));
-    if (!options.controls && options.experiments.size() < 2)
+    }
+    if (!options.controls && options.experiments.size() < 2) {
         return refusal(base::RefusalCode::InvalidArgument, "give --controls, or two experiments or more");
+    }
     std::vector<simulation::Experiment> experiments;
     std::vector<std::string> names;
     for (const std::string& path : options.experiments) {
         const auto loaded = load_experiment(path);
-        if (!loaded)
+        if (!loaded) {
             return loaded.error();
+        }
         experiments.push_back(*loaded);
         const std::string name = world_name(path);
         names.push_back(std::ranges::count(names, name) == 0 ? name : name + "_" + std::to_string(names.size() + 1));
@@ -54,32 +57,37 @@ base::Result<Plan> plan_of(const CompareOptions& options) {
     }
     const std::uint32_t limit = experiments[0].parameters.generation_limit;
     const std::uint32_t generations = options.generations.value_or(limit > 0 ? limit : default_generations);
-    if (generations < 2)
+    if (generations < 2) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "nothing rises in so few generations; see --generations",
                              .violations = {{"generation_limit", "at least 2", std::to_string(generations)}}};
+    }
     Plan plan{.arms = {},
               .controls = {},
               .seed = options.seed ? base::Seed{*options.seed} : experiments[0].seed.value_or(options.drawn_seed),
               .generations = generations};
     for (std::size_t i = 0; i < experiments.size(); ++i) {
         auto experiment = with_changes(experiments[i], options.changes);
-        if (!experiment)
+        if (!experiment) {
             return experiment.error();
+        }
         experiment->parameters = of_fixed_length(experiment->parameters, generations);
         experiment->schedule = of_fixed_length(experiment->schedule);
-        if (auto fits = fit_schedule(*experiment); !fits)
+        if (auto fits = fit_schedule(*experiment); !fits) {
             return fits.error();
+        }
         plan.arms.push_back({names[i], experiment->parameters, experiment->schedule});
     }
     if (options.controls) {
         const Arm world = plan.arms[0];
         for (const ControlKind kind : all_controls) {
             plan.controls.push_back(control_of(world.parameters, kind));
-            if (matters(world.schedule, kind))
+            if (matters(world.schedule, kind)) {
                 plan.controls.back().cannot_differ.clear();
-            if (const Control& control = plan.controls.back(); control.cannot_differ.empty())
+            }
+            if (const Control& control = plan.controls.back(); control.cannot_differ.empty()) {
                 plan.arms.push_back({control.name, control.parameters, schedule_of(world.schedule, kind)});
+            }
         }
     }
     return plan;
@@ -90,8 +98,9 @@ bool can_be_written(const std::string& path) {
     std::error_code error;
     const bool was_there = std::filesystem::exists(path, error);
     const bool good = std::ofstream{path, std::ios::app}.good();
-    if (good && !was_there)
+    if (good && !was_there) {
         std::filesystem::remove(path, error);
+    }
     return good;
 }
 
@@ -100,8 +109,8 @@ void write_csv(std::ostream& out, const Plan& plan, std::span<const std::vector<
         out,
         tables::Table::Format::Csv,
         {"arm", "replicate", "seed", "generation", "fitness_mean", "fitness_best", "organism_count", "alive_count"}};
-    for (std::size_t arm = 0; arm < courses.size(); ++arm)
-        for (std::size_t replicate = 0; replicate < courses[arm].size(); ++replicate)
+    for (std::size_t arm = 0; arm < courses.size(); ++arm) {
+        for (std::size_t replicate = 0; replicate < courses[arm].size(); ++replicate) {
             for (std::size_t i = 0; i < courses[arm][replicate].size(); ++i) {
                 const GenerationFitness& generation = courses[arm][replicate][i];
                 table.text(plan.arms[arm].name)
@@ -114,6 +123,8 @@ void write_csv(std::ostream& out, const Plan& plan, std::span<const std::vector<
                     .number(generation.alive_count)
                     .end_row();
             }
+        }
+    }
 }
 
 std::string picture_of(const Plan& plan, std::span<const std::vector<Course>> courses) {
@@ -123,8 +134,9 @@ std::string picture_of(const Plan& plan, std::span<const std::vector<Course>> co
         curve.name = plan.arms[arm].name;
         for (std::uint32_t i = 0; i < plan.generations; ++i) {
             std::vector<double> means;
-            for (const Course& course : courses[arm])
+            for (const Course& course : courses[arm]) {
                 means.push_back(course[i].mean);
+            }
             const Interval interval = student_interval(means);
             curve.points.push_back({i + 1.0, mean_of(means), interval.low, interval.high});
         }
@@ -142,8 +154,9 @@ std::string picture_of(const Plan& plan, std::span<const std::vector<Course>> co
 bool write_file(const std::string& option, const std::string& path, const auto& write) {
     std::ofstream file{path, std::ios::binary};
     write(file);
-    if (file.flush())
+    if (file.flush()) {
         return true;
+    }
     std::cerr << "evod compare: " << option << ": cannot write " << path << ", the disk may be full\n";
     return false;
 }
@@ -157,8 +170,9 @@ std::string formatted(const char* format, Values... values) {
 
 int columns_of(const Plan& plan) {
     std::size_t width = 16;
-    for (const Arm& arm : plan.arms)
+    for (const Arm& arm : plan.arms) {
         width = std::max(width, arm.name.size());
+    }
     return static_cast<int>(width);
 }
 
@@ -179,8 +193,9 @@ void print_rises(const Plan& plan, std::span<const std::vector<Course>> courses,
             rises.push_back(rise_of(course));
             extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
         }
-        if (plan.arms[arm].parameters.fitness != simulation::FitnessFunction::Life)
+        if (plan.arms[arm].parameters.fitness != simulation::FitnessFunction::Life) {
             extinct = 0;
+        }
         std::string line =
             formatted("%-*s %9.*f %9.*f %9s  %-20s %7zu  ", name_width, plan.arms[arm].name.c_str(), decimals,
                       mean_of(first), decimals, mean_of(last), signed_text(mean_of(rises), decimals).c_str(),
@@ -189,9 +204,11 @@ void print_rises(const Plan& plan, std::span<const std::vector<Course>> courses,
         line.erase(line.find_last_not_of(' ') + 1);
         std::puts(line.c_str());
     }
-    for (const Control& control : plan.controls)
-        if (!control.cannot_differ.empty())
+    for (const Control& control : plan.controls) {
+        if (!control.cannot_differ.empty()) {
             std::printf("%-*s is not run: %s\n", name_width, control.name.c_str(), control.cannot_differ.c_str());
+        }
+    }
 }
 
 void print_findings(const Plan& plan, std::span<const Finding> findings, int decimals) {
@@ -210,9 +227,11 @@ void print_findings(const Plan& plan, std::span<const Finding> findings, int dec
 /// As many as tell the numbers of a comparison apart.
 int decimals_for(std::span<const std::vector<Course>> courses) {
     double greatest = 0;
-    for (const std::vector<Course>& of_arm : courses)
-        for (const Course& course : of_arm)
+    for (const std::vector<Course>& of_arm : courses) {
+        for (const Course& course : of_arm) {
             greatest = std::max({greatest, std::abs(course.front().mean), std::abs(course.back().mean)});
+        }
+    }
     return greatest >= 20 ? 1 : greatest >= 2 ? 2 : 4;
 }
 
@@ -237,20 +256,24 @@ void print_verdict(const Plan& plan, std::span<const std::vector<Course>> course
                    int decimals) {
     std::puts("");
     if (plan.controls.empty()) {
-        for (std::size_t i = 0; i < findings.size(); ++i)
+        for (std::size_t i = 0; i < findings.size(); ++i) {
             std::puts(sentence_of(plan.arms[0], plan.arms[i + 1], findings[i], findings.size(), decimals).c_str());
+        }
         return;
     }
     std::vector<Weighed> weighed;
     std::size_t run = 0;
-    for (const Control& control : plan.controls)
+    for (const Control& control : plan.controls) {
         weighed.push_back(
             {control, control.cannot_differ.empty() ? std::optional{findings[run++]} : std::optional<Finding>{}});
+    }
     std::vector<double> rises;
-    for (const Course& course : courses[0])
+    for (const Course& course : courses[0]) {
         rises.push_back(rise_of(course));
-    for (const std::string& sentence : verdict(mean_of(rises), student_interval(rises), weighed, decimals))
+    }
+    for (const std::string& sentence : verdict(mean_of(rises), student_interval(rises), weighed, decimals)) {
         std::puts(sentence.c_str());
+    }
 }
 
 } // namespace
@@ -261,14 +284,16 @@ int compare(const CompareOptions& options) {
         std::cerr << "evod compare: " << base::to_text(plan.error()) << '\n';
         return RunError;
     }
-    for (const auto& [option, path] : {std::pair{"--csv", &options.csv}, {"--picture", &options.picture}})
+    for (const auto& [option, path] : {std::pair{"--csv", &options.csv}, {"--picture", &options.picture}}) {
         if (!path->empty() && !can_be_written(*path)) {
             std::cerr << "evod compare: " << option << ": cannot write " << *path << '\n';
             return RunError;
         }
-    if (options.replicates < replicates_advised)
+    }
+    if (options.replicates < replicates_advised) {
         std::cerr << "evod compare: --replicates: with fewer than " << replicates_advised
                   << " only large differences can be told from chance\n";
+    }
     mind_interrupts();
 
     std::printf("%s: %u replicates of %u generations, from seed %llu\n", plan->arms[0].name.c_str(), options.replicates,
@@ -300,11 +325,13 @@ int compare(const CompareOptions& options) {
     }
     print_verdict(*plan, *courses, findings, decimals);
     bool written = true;
-    if (!options.csv.empty())
+    if (!options.csv.empty()) {
         written &= write_file("--csv", options.csv, [&](std::ostream& out) { write_csv(out, *plan, *courses); });
-    if (!options.picture.empty())
+    }
+    if (!options.picture.empty()) {
         written &=
             write_file("--picture", options.picture, [&](std::ostream& out) { out << picture_of(*plan, *courses); });
+    }
     return written ? 0 : RunError;
 }
 

@@ -56,8 +56,9 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
             while (world.outcome() == evolution::Outcome::Running && !wanted.stopped()) {
                 world.advance_tick(executor);
                 world.take_events();
-                if (!world.generation_over())
+                if (!world.generation_over()) {
                     continue;
+                }
                 course.push_back(fitness_of(world.history().back()));
                 const std::scoped_lock lock{progress_mutex};
                 ++generations_done;
@@ -65,8 +66,9 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
             }
         },
         wanted.stopped);
-    if (generations_done < trials * generations)
+    if (generations_done < trials * generations) {
         return std::nullopt;
+    }
     return courses;
 }
 
@@ -76,8 +78,9 @@ std::vector<Finding> find_differences(std::span<const std::vector<Course>> cours
     std::vector<double> p;
     for (const std::vector<Course>& other : courses.subspan(1)) {
         Finding finding;
-        for (std::size_t replicate = 0; replicate < other.size(); ++replicate)
+        for (std::size_t replicate = 0; replicate < other.size(); ++replicate) {
             finding.differences.push_back(rise_of(courses[0][replicate]) - rise_of(other[replicate]));
+        }
         finding.mean = mean_of(finding.differences);
         finding.interval = student_interval(finding.differences);
         finding.effect_size = hedges_g(finding.differences);
@@ -86,14 +89,16 @@ std::vector<Finding> find_differences(std::span<const std::vector<Course>> cours
         findings.push_back(std::move(finding));
     }
     const std::vector<double> adjusted = holm(p);
-    for (std::size_t i = 0; i < findings.size(); ++i)
+    for (std::size_t i = 0; i < findings.size(); ++i) {
         findings[i].adjusted_p = adjusted[i];
+    }
     return findings;
 }
 
 Judgement judge(const Finding& finding, std::size_t tests) {
-    if (finding.adjusted_p < significance)
+    if (finding.adjusted_p < significance) {
         return finding.mean > 0 ? Judgement::Above : Judgement::Below;
+    }
     // Were all of them as small as they can be, Holm's greatest factor would be the number of tests.
     return least_sign_flip_p(finding.differences.size()) * static_cast<double>(tests) >= significance
                ? Judgement::CannotBeShown

@@ -19,8 +19,9 @@ Parameters with_random_selection(Parameters p) {
         // It would keep the best. As many stay, but whoever they are.
         p.population_model =
             p.replaced_count < p.population_size ? PopulationModel::Hybrid : PopulationModel::Generational;
-        if (p.population_model == PopulationModel::Hybrid)
+        if (p.population_model == PopulationModel::Hybrid) {
             p.survivors = static_cast<double>(p.population_size - p.replaced_count) / p.population_size;
+        }
     }
     if (p.migration != Topology::None && p.island_count > 1) {
         p.emigrants = Emigrants::Random;
@@ -43,10 +44,12 @@ Parameters without_mutation(Parameters p) {
 }
 
 std::string why_poison_does_nothing(const Parameters& p) {
-    if (p.fitness != simulation::FitnessFunction::Life)
+    if (p.fitness != simulation::FitnessFunction::Life) {
         return "the fitness is a function of the chromosome: nobody eats";
-    if (simulation::island_plan(p).poison_count == 0)
+    }
+    if (simulation::island_plan(p).poison_count == 0) {
         return "there is no poison";
+    }
     return p.poison_harm == 0 ? "poison_harm is 0 already" : "";
 }
 
@@ -85,8 +88,9 @@ NamesOfControl names_of(ControlKind kind) {
 } // namespace
 
 simulation::Schedule schedule_of(simulation::Schedule world, ControlKind kind) {
-    for (const std::string_view name : names_of(kind).made_by)
+    for (const std::string_view name : names_of(kind).made_by) {
         world.remove(name);
+    }
     return world;
 }
 
@@ -133,16 +137,18 @@ Parameters of_fixed_length(Parameters world, std::uint32_t generations) {
 }
 
 simulation::Schedule of_fixed_length(simulation::Schedule world) {
-    for (const char* name : {"generation_limit", "stop_at_target_fitness", "stagnation_limit", "stop_at_extinction"})
+    for (const char* name : {"generation_limit", "stop_at_target_fitness", "stagnation_limit", "stop_at_extinction"}) {
         world.remove(name);
+    }
     return world;
 }
 
 std::string changes_between(const Parameters& world, const Parameters& other) {
     std::string text;
-    for (const simulation::ParameterDescription* description : simulation::parameters_that_differ(world, other))
+    for (const simulation::ParameterDescription* description : simulation::parameters_that_differ(world, other)) {
         text += (text.empty() ? "" : " ") + std::string{description->name} + "=" +
                 simulation::to_text(description->get(other));
+    }
     return text;
 }
 

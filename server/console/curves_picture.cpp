@@ -31,10 +31,12 @@ std::string number(double value) {
     char text[64];
     const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, 2).ptr;
     std::string_view shown{text, static_cast<std::size_t>(end - text)};
-    while (shown.ends_with('0'))
+    while (shown.ends_with('0')) {
         shown.remove_suffix(1);
-    if (shown.ends_with('.'))
+    }
+    if (shown.ends_with('.')) {
         shown.remove_suffix(1);
+    }
     return shown == "-0" ? "0" : std::string{shown};
 }
 
@@ -43,8 +45,9 @@ std::string tick_text(double value) {
     char text[64];
     const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 6).ptr;
     std::string shown(text, end);
-    if (const std::size_t minus = shown.find('-'); minus == 0)
+    if (const std::size_t minus = shown.find('-'); minus == 0) {
         shown.replace(0, 1, "−");
+    }
     return shown;
 }
 
@@ -106,17 +109,20 @@ class Picture {
     }
     void band(const Curve& curve, const Scale& x, const Scale& y, const Style& style) {
         svg_ += "<polygon points=\"";
-        for (const CurvePoint& point : curve.points)
+        for (const CurvePoint& point : curve.points) {
             at(x(point.x), y(point.high));
-        for (std::size_t i = curve.points.size(); i-- > 0;)
+        }
+        for (std::size_t i = curve.points.size(); i-- > 0;) {
             at(x(curve.points[i].x), y(curve.points[i].low));
+        }
         svg_.back() = '"';
         svg_ += " fill=\"" + std::string{style.colour} + "\" fill-opacity=\"0.18\"/>\n";
     }
     void curve(const Curve& curve, const Scale& x, const Scale& y, const Style& style, double stroke) {
         svg_ += "<polyline points=\"";
-        for (const CurvePoint& point : curve.points)
+        for (const CurvePoint& point : curve.points) {
             at(x(point.x), y(point.y));
+        }
         svg_.back() = '"';
         svg_ += " fill=\"none\" stroke-linejoin=\"round\"" + stroked(style.colour, stroke, style.dashes) + "/>\n";
     }
@@ -144,21 +150,24 @@ class Picture {
 std::vector<double> axis_ticks(double least, double greatest, std::size_t count_max) {
     EVOD_ASSERT(count_max >= 2);
     EVOD_ASSERT(least <= greatest);
-    if (least == greatest)
+    if (least == greatest) {
         return {least};
+    }
     const double smallest = (greatest - least) / static_cast<double>(count_max - 1);
     const double power = std::pow(10, std::floor(std::log10(smallest)));
     double step = 10 * power;
-    for (const double factor : {1.0, 2.0, 5.0})
+    for (const double factor : {1.0, 2.0, 5.0}) {
         if (factor * power >= smallest * (1 - 1e-9)) {
             step = factor * power;
             break;
         }
+    }
     std::vector<double> ticks;
     // A tick on the very end of the axis is one of it, however it was rounded.
     const double slack = step * 1e-9;
-    for (double i = std::ceil((least - slack) / step); i * step <= greatest + slack; ++i)
+    for (double i = std::ceil((least - slack) / step); i * step <= greatest + slack; ++i) {
         ticks.push_back(i * step + 0.0); // which makes 0 of −0
+    }
     return ticks;
 }
 
@@ -167,13 +176,14 @@ std::string curves_picture(const CurvesText& text, std::span<const Curve> curves
     const auto& first = curves.front().points;
     EVOD_ASSERT(!first.empty());
     double x_least = first[0].x, x_greatest = x_least, y_least = first[0].low, y_greatest = first[0].high;
-    for (const Curve& curve : curves)
+    for (const Curve& curve : curves) {
         for (const CurvePoint& point : curve.points) {
             x_least = std::min(x_least, point.x);
             x_greatest = std::max(x_greatest, point.x);
             y_least = std::min(y_least, point.low);
             y_greatest = std::max(y_greatest, point.high);
         }
+    }
     const double room = (y_greatest - y_least) * 0.04;
     const Scale x = scale_of(x_least, x_greatest, left, right);
     const Scale y = scale_of(y_least - room, y_greatest + room, bottom, top);
@@ -189,10 +199,12 @@ std::string curves_picture(const CurvesText& text, std::span<const Curve> curves
         picture.line(x(tick), bottom, x(tick), bottom + 5, "#222222", 1);
         picture.words(x(tick), bottom + 20, "middle", 12, tick_text(tick));
     }
-    for (std::size_t i = curves.size(); i-- > 0;)
+    for (std::size_t i = curves.size(); i-- > 0;) {
         picture.band(curves[i], x, y, style_of(i));
-    for (std::size_t i = curves.size(); i-- > 0;)
+    }
+    for (std::size_t i = curves.size(); i-- > 0;) {
         picture.curve(curves[i], x, y, style_of(i), i == 0 ? 3 : 1.8);
+    }
     picture.line(left, top, left, bottom, "#222222", 1);
     picture.line(left, bottom, right, bottom, "#222222", 1);
     picture.words((left + right) / 2, bottom + 44, "middle", 13, text.x_label);

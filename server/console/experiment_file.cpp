@@ -19,8 +19,9 @@ base::Result<std::string> load_text(const std::string& path, const std::string& 
 
 base::Result<simulation::Experiment> load_experiment(const std::string& path) {
     const base::Result<std::string> text = load_text(path, "an experiment file");
-    if (!text)
+    if (!text) {
         return text.error();
+    }
     base::Result<simulation::Experiment> experiment = simulation::parse_experiment(*text);
     if (!experiment) {
         base::Refusal named = experiment.error();
@@ -47,45 +48,52 @@ base::Result<simulation::Experiment> with_changes(simulation::Experiment experim
             continue;
         }
         base::Result<simulation::ParameterValue> value = simulation::parse_value(*description, text);
-        if (value)
+        if (value) {
             assignments.push_back({name, std::move(*value)});
-        else
+        } else {
             violations.push_back({"--set " + name, description->allowed(), text});
+        }
     }
     base::Result<simulation::Parameters> changed = simulation::assign(experiment.parameters, assignments, "--set ");
     if (!changed) {
         const base::Refusal refused = changed.error();
         violations.insert(violations.end(), refused.violations.begin(), refused.violations.end());
     }
-    if (!violations.empty())
+    if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "some parameters cannot have these values",
                              .violations = std::move(violations)};
+    }
     experiment.parameters = *changed;
-    for (const simulation::Assignment& assignment : assignments)
+    for (const simulation::Assignment& assignment : assignments) {
         experiment.schedule.remove(assignment.name);
+    }
     return experiment;
 }
 
 base::Result<void> fit_schedule(simulation::Experiment& experiment) {
     experiment.schedule.begin_with(experiment.parameters);
     const auto faults = faults_of(experiment.schedule, experiment.parameters);
-    if (faults.empty())
+    if (faults.empty()) {
         return {};
+    }
     base::Refusal refused{.code = base::RefusalCode::InvalidArgument,
                           .message = "what is scheduled cannot hold with the parameters that were set",
                           .violations = {}};
-    for (const simulation::ScheduleFault& fault : faults)
+    for (const simulation::ScheduleFault& fault : faults) {
         refused.violations.push_back({fault.violation.field + " at generation " + std::to_string(fault.generation),
                                       fault.violation.allowed, fault.violation.got});
+    }
     return refused;
 }
 
 std::string world_name(const std::string& path) {
     std::string name = std::filesystem::path{path}.stem().string().substr(0, simulation::world_name_bytes_max);
-    for (char& c : name)
-        if (!simulation::is_world_name_character(c))
+    for (char& c : name) {
+        if (!simulation::is_world_name_character(c)) {
             c = '_';
+        }
+    }
     return name.empty() ? "default" : name;
 }
 

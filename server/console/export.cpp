@@ -37,8 +37,9 @@ std::optional<tables::OrganismName> organism_named(const std::string& text) {
     const char* at = text.data();
     const char* const end = at + text.size();
     const auto read = [&](auto& number, char before) {
-        if (before != 0 && (at == end || *at++ != before))
+        if (before != 0 && (at == end || *at++ != before)) {
             return false;
+        }
         const auto done = std::from_chars(at, end, number);
         at = done.ptr;
         return done.ec == std::errc{};
@@ -56,19 +57,25 @@ Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& opt
                                                         {"population", RunTable::Population},
                                                         {"events", RunTable::Events}};
     const auto table = tables.find(options.what);
-    if (table == tables.end() && options.bundle.empty())
+    if (table == tables.end() && options.bundle.empty()) {
         return wrong_option("--what", "one of its words, or --bundle FOLDER instead", "nothing");
-    if (!options.of.empty() && options.what != "lineage")
+    }
+    if (!options.of.empty() && options.what != "lineage") {
         return wrong_option("--of", "only with --what lineage", options.of);
+    }
     const auto of = organism_named(options.of);
-    if (!options.of.empty() && !of)
+    if (!options.of.empty() && !of) {
         return wrong_option("--of", "GENERATION:ISLAND:ORGANISM", options.of);
-    if (options.generation && options.what != "population")
+    }
+    if (options.generation && options.what != "population") {
         return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
-    if (!options.bundle.empty() && options.format != "csv") // its tables are compared with those of evod run --csv
+    }
+    if (!options.bundle.empty() && options.format != "csv") { // its tables are compared with those of evod run --csv
         return wrong_option("--format", "only csv with --bundle", options.format);
-    if (table == tables.end())
+    }
+    if (table == tables.end()) {
         return std::nullopt;
+    }
     return tables::WantedTable{.table = table->second,
                                .format = options.format == "jsonl" ? tables::Table::Format::JsonLines
                                                                    : tables::Table::Format::Csv,
@@ -77,55 +84,67 @@ Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& opt
 }
 
 void tell_what_is_left_out(RunFile& file) {
-    if (const auto count = tables::generations_out_of_reach(file))
+    if (const auto count = tables::generations_out_of_reach(file)) {
         std::cerr << "evod export: " << count
                   << " generations are left out: they are not held any more, and "
                      "follow another version of the model than this evod, which cannot simulate them again\n";
+    }
 }
 
 /// The options are known by their names on the command line.
 Refusal with_options(Refusal refused) {
-    for (base::Violation& violation : refused.violations)
+    for (base::Violation& violation : refused.violations) {
         violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
+    }
     return refused;
 }
 
 Result<void> export_to(const ExportOptions& options) {
     const auto wanted = wanted_table(options);
-    if (!wanted)
+    if (!wanted) {
         return wanted.error();
+    }
     std::error_code error;
-    if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error))
+    if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error)) {
         return wrong_option("--output", "another file than the run file itself", options.output);
+    }
     const auto file = RunFile::open_checked(options.run);
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held;
+    }
     const Result<void> sound = (*file)->check();
-    if (!sound && !options.bundle.empty())
+    if (!sound && !options.bundle.empty()) {
         return sound;
+    }
     const auto executor = runtime::make_executor(options.threads);
     const tables::RunSource run{**file, *executor};
     using tables::RunTable;
-    if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage)
+    if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage) {
         tell_what_is_left_out(**file);
-    if (!*wanted)
+    }
+    if (!*wanted) {
         return write_bundle(run, options.bundle);
+    }
     std::ofstream output;
     if (!options.output.empty()) {
         output.open(options.output, std::ios::binary);
-        if (!output)
+        if (!output) {
             return cannot_write("--output: cannot write " + options.output + ": " + std::strerror(errno));
+        }
     }
     std::ios::sync_with_stdio(false);
     std::ostream& out = options.output.empty() ? std::cout : output;
-    if (Result<void> written = tables::write_table(run, **wanted, out); !written)
+    if (Result<void> written = tables::write_table(run, **wanted, out); !written) {
         return with_options(written.error());
-    if (!out.flush())
+    }
+    if (!out.flush()) {
         return cannot_write(options.output.empty()
                                 ? "standard output cannot be written, the disk may be full"
                                 : "--output: cannot write " + options.output + ", the disk may be full");
+    }
     return sound; // what is not damaged is written
 }
 

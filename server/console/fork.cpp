@@ -17,25 +17,31 @@ int fork(const ForkOptions& options) {
         std::cerr << "evod fork: " << why << '\n';
         return 1;
     };
-    if (!simulation::is_world_name(options.name))
+    if (!simulation::is_world_name(options.name)) {
         return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
+    }
     // Only read, so a server may be writing it.
     const auto origin = storage::RunFile::open_checked(options.run_file);
-    if (!origin)
+    if (!origin) {
         return fail(to_text(origin.error()));
-    if (const auto held = (*origin)->hold_still(); !held) // what is thinned meanwhile is still there
+    }
+    if (const auto held = (*origin)->hold_still(); !held) { // what is thinned meanwhile is still there
         return fail(to_text(held.error()));
+    }
     const auto folder = storage::DataFolder::open(options.data_folder);
-    if (!folder)
+    if (!folder) {
         return fail(to_text(folder.error()));
+    }
     const std::string path = folder->file_of(options.name);
     base::InlineExecutor executor;
     const auto moment = storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
     if (!moment) {
         base::Refusal refused = moment.error();
-        for (base::Violation& violation : refused.violations)
-            if (violation.field == "generation")
+        for (base::Violation& violation : refused.violations) {
+            if (violation.field == "generation") {
                 violation.field = "--at-generation";
+            }
+        }
         return fail(to_text(refused));
     }
     std::cout << "world \"" << options.name << "\" begins with "

@@ -62,8 +62,9 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
     out << "Enter takes the value in brackets.\n";
     Parameters answers = proposed;
     for (const Question& question : questions) {
-        if (!question.matters(answers))
+        if (!question.matters(answers)) {
             continue;
+        }
         const simulation::ParameterDescription& description = *simulation::find_parameter(question.name);
         while (true) {
             out << description.help << "\n  " << description.name << " (" << description.allowed()
@@ -76,8 +77,9 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
                                "--ask: the input ended before the answer to " + std::string{description.name} +
                                    "; give an empty line for each value in brackets");
             }
-            if (line.empty())
+            if (line.empty()) {
                 break;
+            }
             const auto value = simulation::parse_value(description, line);
             const base::Result<Parameters> changed =
                 value ? simulation::assign(answers, {{{std::string{description.name}, *value}}}) : value.error();

@@ -38,10 +38,12 @@ base::Result<void> NewFile::keep(const std::string& path) {
     // A file system that cannot do it to a folder says so, and has done what it can.
     const bool kept = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
     const int error = errno;
-    if (file >= 0)
+    if (file >= 0) {
         ::close(file);
-    if (!kept)
+    }
+    if (!kept) {
         return cannot_write(path, std::strerror(error));
+    }
     return {};
 }
 
@@ -49,13 +51,15 @@ NewFile::NewFile(std::string path)
     : path_{std::move(path)}
     , unfinished_{unfinished_name(path_)}
     , file_{::open(unfinished_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)} {
-    if (file_ < 0)
+    if (file_ < 0) {
         note_trouble();
+    }
 }
 
 NewFile::~NewFile() {
-    if (file_ < 0)
+    if (file_ < 0) {
         return;
+    }
     ::close(file_);
     ::unlink(unfinished_.c_str());
 }
@@ -66,28 +70,33 @@ void NewFile::note_trouble() {
 
 void NewFile::write(std::string_view text) {
     waiting_ += text;
-    if (waiting_.size() >= waiting_bytes_max)
+    if (waiting_.size() >= waiting_bytes_max) {
         write_out(std::exchange(waiting_, {}));
+    }
 }
 
 void NewFile::write_out(std::string_view text) {
     while (trouble_.empty() && !text.empty()) {
         const ssize_t written = ::write(file_, text.data(), text.size());
-        if (written >= 0)
+        if (written >= 0) {
             text.remove_prefix(static_cast<std::size_t>(written));
-        else if (errno != EINTR)
+        } else if (errno != EINTR) {
             note_trouble();
+        }
     }
 }
 
 base::Result<void> NewFile::finish() {
     write_out(std::exchange(waiting_, {}));
-    if (trouble_.empty() && ::fsync(file_) != 0)
+    if (trouble_.empty() && ::fsync(file_) != 0) {
         note_trouble();
-    if (trouble_.empty() && ::rename(unfinished_.c_str(), path_.c_str()) != 0)
+    }
+    if (trouble_.empty() && ::rename(unfinished_.c_str(), path_.c_str()) != 0) {
         note_trouble();
-    if (!trouble_.empty())
+    }
+    if (!trouble_.empty()) {
         return cannot_write(path_, trouble_);
+    }
     ::close(std::exchange(file_, -1));
     const std::string folder = std::filesystem::path{path_}.parent_path().string();
     return keep(folder.empty() ? "." : folder);

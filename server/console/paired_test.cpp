@@ -20,8 +20,9 @@ double deviation_of(std::span<const double> sample) {
     EVOD_ASSERT(sample.size() >= 2);
     const double mean = mean_of(sample);
     double squares = 0;
-    for (const double value : sample)
+    for (const double value : sample) {
         squares += (value - mean) * (value - mean);
+    }
     return std::sqrt(squares / static_cast<double>(sample.size() - 1));
 }
 
@@ -37,8 +38,9 @@ Interval student_interval(std::span<const double> sample, double confidence) {
 
 std::optional<double> hedges_g(std::span<const double> differences) {
     const bool all_equal = std::ranges::adjacent_find(differences, std::ranges::not_equal_to{}) == differences.end();
-    if (differences.size() < 3 || all_equal)
+    if (differences.size() < 3 || all_equal) {
         return std::nullopt;
+    }
     const double freedom = static_cast<double>(differences.size() - 1);
     return mean_of(differences) / deviation_of(differences) * (1 - 3 / (4 * freedom - 1));
 }
@@ -55,16 +57,18 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
     const std::size_t count = differences.size();
     const auto is_as_far = [&](const auto& is_negative) {
         double sum = 0;
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             sum += is_negative(i) ? -differences[i] : differences[i];
+        }
         return std::abs(sum) >= least;
     };
     if (count <= exact_sign_flips_max) {
         // With all signs the other way round the sum is as far from 0, so the last sign may stay.
         const std::uint32_t patterns = 1u << (count - 1);
         std::uint32_t as_far = 0;
-        for (std::uint32_t signs = 0; signs < patterns; ++signs)
+        for (std::uint32_t signs = 0; signs < patterns; ++signs) {
             as_far += is_as_far([&](std::size_t i) { return (signs >> i & 1) != 0; });
+        }
         return static_cast<double>(as_far) / patterns;
     }
     constexpr std::uint32_t drawn = (1u << exact_sign_flips_max) - 1;
@@ -72,8 +76,9 @@ double sign_flip_p(std::span<const double> differences, base::Seed seed) {
     std::vector<std::uint32_t> words((count + 31) / 32);
     std::uint32_t as_far = 1; // the one found
     for (std::uint32_t i = 0; i < drawn; ++i) {
-        for (std::uint32_t& word : words)
+        for (std::uint32_t& word : words) {
             word = random.word();
+        }
         as_far += is_as_far([&](std::size_t k) { return (words[k / 32] >> (k % 32) & 1) != 0; });
     }
     return static_cast<double>(as_far) / (drawn + 1.0);

@@ -33,10 +33,11 @@ std::string parameter_list() {
         "breeding\n"
         "goes by acts first in the breeding after it; until the first of them, the default holds.\n\n"
         "| name | default | allowed | unit | holds from | meaning |\n|---|---|---|---|---|---|\n";
-    for (const simulation::ParameterDescription& description : simulation::parameter_registry())
+    for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
         text += "| `" + std::string{description.name} + "` | " + simulation::to_text(description.default_value()) +
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
                 effect_text(description.effect) + " | " + std::string{description.help} + " |\n";
+    }
     return text;
 }
 

@@ -14,14 +14,16 @@ class ProgressLine {
     /// text  called for what to say if it is time to say something.
     template <class Text>
     void show(Text&& text) {
-        if (!on_terminal_ || Clock::now() - shown_ < std::chrono::milliseconds{100})
+        if (!on_terminal_ || Clock::now() - shown_ < std::chrono::milliseconds{100}) {
             return;
+        }
         shown_ = Clock::now();
         std::fprintf(stderr, "\r%s \x1b[K", std::string{text()}.c_str());
     }
     void clear() const {
-        if (on_terminal_)
+        if (on_terminal_) {
             std::fprintf(stderr, "\r\x1b[K");
+        }
     }
 
   private:

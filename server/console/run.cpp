@@ -38,35 +38,42 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
     simulation::Experiment experiment;
     if (!options.experiment.empty()) {
         const auto loaded = load_experiment(options.experiment);
-        if (!loaded)
+        if (!loaded) {
             return loaded.error();
+        }
         experiment = *loaded;
     }
     auto changed = with_changes(std::move(experiment), options.changes);
-    if (!changed)
+    if (!changed) {
         return changed.error();
+    }
     experiment = *std::move(changed);
     if (options.ask) {
         // What is answered takes the place of what is scheduled; Enter leaves it.
         const simulation::Parameters proposed = experiment.parameters;
         const auto answers = interview(proposed, std::cin, std::cout);
-        if (!answers)
+        if (!answers) {
             return answers.error();
+        }
         experiment.parameters = *answers;
         for (const simulation::ParameterDescription* description :
-             simulation::parameters_that_differ(experiment.parameters, proposed))
+             simulation::parameters_that_differ(experiment.parameters, proposed)) {
             experiment.schedule.remove(description->name);
+        }
     }
     if (options.generations) {
         experiment.parameters.generation_limit = *options.generations;
         experiment.schedule.remove("generation_limit");
     }
-    if (auto fits = fit_schedule(experiment); !fits)
+    if (auto fits = fit_schedule(experiment); !fits) {
         return fits.error();
-    if (options.seed)
+    }
+    if (options.seed) {
         experiment.seed = base::Seed{*options.seed};
-    if (!experiment.seed)
+    }
+    if (!experiment.seed) {
         experiment.seed = options.drawn_seed;
+    }
     return experiment;
 }
 
@@ -84,10 +91,11 @@ void print_summary(const simulation::World& world, const Cost& cost) {
                 static_cast<unsigned long long>(world.moment().generation - (world.generation_over() ? 0 : 1)),
                 static_cast<unsigned long long>(world.moment().tick), world.moment().simulated_s,
                 base::to_text(world.hash()).c_str());
-    if (cost.tick_s > 0)
+    if (cost.tick_s > 0) {
         std::printf("%.2f M organism-ticks/s, %.0f × real time (%.2f s in ticks)\n",
                     static_cast<double>(cost.organism_ticks) / cost.tick_s / 1e6,
                     world.moment().simulated_s / cost.tick_s, cost.tick_s);
+    }
     std::printf("start-up %.3f s, turnover of generations %.3f s\n", cost.start_s, cost.turnover_s);
 }
 
@@ -161,13 +169,15 @@ int run(const RunOptions& options) {
         } while (!interrupted() && !world.generation_over());
         cost.tick_s += seconds_since(began);
         world.take_events();
-        if (!world.generation_over())
+        if (!world.generation_over()) {
             break;
+        }
         progress.clear();
         for (const simulation::GenerationStatistics& statistics : world.history().back()) {
             std::puts(table_row(statistics, several_islands).c_str());
-            if (table)
+            if (table) {
                 tables::write_row(*table, statistics);
+            }
         }
         std::fflush(stdout);
         if (table && !csv.flush()) {

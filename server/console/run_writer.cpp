@@ -16,41 +16,51 @@ RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId
                                         {.durability = storage::Durability::Relaxed})} {}
 
 RunWriter::~RunWriter() {
-    if (!file_ || *file_ == nullptr)
+    if (!file_ || *file_ == nullptr) {
         return;
+    }
     file_->reset();
     (void)storage::RunFile::remove(unfinished_); // at worst it is left there, under a name that nobody reads
 }
 
 base::Result<void> RunWriter::follow(const simulation::World& world) {
-    if (!file_)
+    if (!file_) {
         return file_.error();
+    }
     storage::RunFile& file = **file_;
     news_.tell(world, [&file](const auto& record) { file.write(record); });
-    if (!world.generation_over())
+    if (!world.generation_over()) {
         return {};
-    if (auto committed = file.commit(); !committed)
+    }
+    if (auto committed = file.commit(); !committed) {
         return committed;
-    if (auto thinned = file.thin_if_large(); !thinned)
+    }
+    if (auto thinned = file.thin_if_large(); !thinned) {
         return thinned;
+    }
     file.begin();
     return {};
 }
 
 base::Result<void> RunWriter::finish() {
-    if (!file_)
+    if (!file_) {
         return file_.error();
+    }
     storage::RunFile& file = **file_;
     file.write(storage::EndMark{.tick = news_.tick()});
-    if (auto committed = file.commit(); !committed)
+    if (auto committed = file.commit(); !committed) {
         return committed;
-    if (auto settled = file.settle(); !settled)
+    }
+    if (auto settled = file.settle(); !settled) {
         return settled;
+    }
     file_->reset();
-    if (auto kept = NewFile::keep(unfinished_); !kept)
+    if (auto kept = NewFile::keep(unfinished_); !kept) {
         return kept;
-    if (auto named = storage::RunFile::rename(unfinished_, path_); !named)
+    }
+    if (auto named = storage::RunFile::rename(unfinished_, path_); !named) {
         return named;
+    }
     return NewFile::keep(std::filesystem::path{path_}.parent_path().string());
 }
 

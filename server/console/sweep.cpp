@@ -42,8 +42,9 @@ double work_of_generation(const Parameters& parameters) {
 
 /// The same of a run, if it goes on to its generation_limit; nothing if it has none.
 std::optional<double> work_of(const Parameters& parameters) {
-    if (parameters.generation_limit == 0)
+    if (parameters.generation_limit == 0) {
         return std::nullopt;
+    }
     return work_of_generation(parameters) * parameters.generation_limit;
 }
 
@@ -104,29 +105,34 @@ class Runs {
     Result<std::size_t> make(std::vector<std::size_t> runs) {
         put_long_ones_first(runs);
         std::optional<double> all = 0.0;
-        for (const std::size_t run : runs)
-            if (const auto work = work_of(sweep_.parameters_of(cell_of(run))); work && all)
+        for (const std::size_t run : runs) {
+            if (const auto work = work_of(sweep_.parameters_of(cell_of(run))); work && all) {
                 *all += *work;
-            else
+            } else {
                 all.reset();
+            }
+        }
         Progress progress{runs.size(), all};
         const std::clock_t cpu = std::clock();
         for_each_trial(
             runs.size(), options_.jobs,
             [&](std::size_t index) {
-                if (auto made = make(runs[index], progress); !made)
+                if (auto made = make(runs[index], progress); !made) {
                     note(made.error());
+                }
             },
             [this] { return stopped(); });
         progress.clear();
-        if (failed_)
+        if (failed_) {
             return *trouble_;
+        }
         const double seconds = progress.seconds(), busy_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
         const std::size_t jobs = std::min(options_.jobs, runs.size());
-        if (const std::size_t made = progress.runs_done(); made > 0)
+        if (const std::size_t made = progress.runs_done(); made > 0) {
             std::printf("%zu %s in %.2f s, %.3g a second; %zu at a time, each %.1f %% busy\n", made,
                         made == 1 ? "run" : "runs", seconds, static_cast<double>(made) / seconds, jobs,
                         100 * busy_s / (seconds * static_cast<double>(jobs)));
+        }
         return progress.runs_done();
     }
 
@@ -135,8 +141,9 @@ class Runs {
     bool stopped() const { return interrupted() || failed_; }
     void note(const Refusal& trouble) {
         const std::unique_lock lock{mutex_};
-        if (!trouble_)
+        if (!trouble_) {
             trouble_ = trouble;
+        }
         failed_ = true;
     }
 
@@ -164,8 +171,9 @@ class Runs {
         std::optional<RunWriter> record;
         if (options_.run_files) {
             record.emplace(folder_.run_file_of(run), folder_.name_of(run), options_.draw_run_id(), world);
-            if (auto followed = record->follow(world); !followed)
+            if (auto followed = record->follow(world); !followed) {
                 return followed;
+            }
         }
         NewFile part{folder_.part_of(run)};
         std::ostringstream rows;
@@ -175,18 +183,22 @@ class Runs {
         base::InlineExecutor executor;
         while (world.outcome() == evolution::Outcome::Running && part.trouble().empty()) {
             do {
-                if (stopped())
+                if (stopped()) {
                     return {};
+                }
                 world.advance_tick(executor);
-                if (record)
-                    if (auto followed = record->follow(world); !followed)
+                if (record) {
+                    if (auto followed = record->follow(world); !followed) {
                         return followed;
+                    }
+                }
             } while (!world.generation_over());
             world.take_events();
             for (const simulation::GenerationStatistics& statistics : world.history().back()) {
                 table.number(cell).number(replicate).number(world.seed().value);
-                for (const simulation::ParameterValue& value : sweep_.cells[cell])
+                for (const simulation::ParameterValue& value : sweep_.cells[cell]) {
                     table.text(simulation::to_text(value));
+                }
                 tables::write_row(table, statistics);
                 ++end.rows;
             }
@@ -195,13 +207,16 @@ class Runs {
             spent += expected ? work : 0;
             progress.generation_done(expected ? work : 0);
         }
-        if (record && part.trouble().empty())
-            if (auto finished = record->finish(); !finished)
+        if (record && part.trouble().empty()) {
+            if (auto finished = record->finish(); !finished) {
                 return finished;
+            }
+        }
         end.outcome = world.outcome();
         part.write(to_text(end));
-        if (auto finished = part.finish(); !finished)
+        if (auto finished = part.finish(); !finished) {
             return finished;
+        }
         progress.run_done(expected.value_or(0) - spent);
         return {};
     }
@@ -230,16 +245,19 @@ std::string seed_text(const Sweep& sweep, std::uint32_t replicate) {
 /// Which runs there would be, as rows with tabs between.
 void print_cells(const SweepOptions& options, const Sweep& sweep) {
     std::printf("%s\n\nreplicate\tseed\n", plan_text(options, sweep).c_str());
-    for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate)
+    for (std::uint32_t replicate = 0; replicate < sweep.replicates; ++replicate) {
         std::printf("%u\t%s\n", replicate, seed_text(sweep, replicate).c_str());
+    }
     std::string heading = "\ncell";
-    for (const simulation::ParameterDescription* parameter : sweep.swept)
+    for (const simulation::ParameterDescription* parameter : sweep.swept) {
         heading += "\t" + std::string{parameter->name};
+    }
     std::puts(heading.c_str());
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
         std::string row = std::to_string(cell);
-        for (const simulation::ParameterValue& value : sweep.cells[cell])
+        for (const simulation::ParameterValue& value : sweep.cells[cell]) {
             row += "\t" + simulation::to_text(value);
+        }
         std::puts(row.c_str());
     }
 }
@@ -247,19 +265,22 @@ void print_cells(const SweepOptions& options, const Sweep& sweep) {
 void print_seeds(const Sweep& sweep) {
     constexpr std::uint32_t told_max = 10;
     std::string text = "seeds of the replicates:";
-    for (std::uint32_t replicate = 0; replicate < std::min(sweep.replicates, told_max); ++replicate)
+    for (std::uint32_t replicate = 0; replicate < std::min(sweep.replicates, told_max); ++replicate) {
         text += " " + seed_text(sweep, replicate);
+    }
     std::puts((text + (sweep.replicates > told_max ? " …; all of them with --dry-run" : "")).c_str());
 }
 
 /// Writes runs.csv and says what is in it.
 Result<void> gather(const SweepFolder& folder) {
     const auto gathered = folder.gather();
-    if (!gathered)
+    if (!gathered) {
         return gathered.error();
+    }
     std::string ends;
-    for (const auto& [outcome, runs] : gathered->runs)
+    for (const auto& [outcome, runs] : gathered->runs) {
         ends += (ends.empty() ? "" : ", ") + std::string{name_of(outcome)} + " " + std::to_string(runs);
+    }
     std::printf("%s: %llu rows; runs by what ended them: %s\n", folder.table().c_str(),
                 static_cast<unsigned long long>(gathered->rows), ends.c_str());
     return {};
@@ -277,8 +298,9 @@ std::vector<std::size_t> missing_among(const std::vector<std::size_t>& runs, con
 Refusal not_all_there(const std::vector<std::size_t>& missing, const Sweep& sweep, const SweepFolder& folder) {
     constexpr std::size_t told_max = 20;
     std::string names;
-    for (std::size_t i = 0; i < std::min(missing.size(), told_max); ++i)
+    for (std::size_t i = 0; i < std::min(missing.size(), told_max); ++i) {
         names += (i == 0 ? "" : ", ") + folder.name_of(missing[i]);
+    }
     return refusal(base::RefusalCode::FailedPrecondition,
                    std::to_string(missing.size()) + " of " + counted(sweep.run_count(), "run") +
                        " are not there yet: " + names + (missing.size() > told_max ? ", …" : ""));
@@ -286,30 +308,36 @@ Refusal not_all_there(const std::vector<std::size_t>& missing, const Sweep& swee
 
 Result<SweepStatus> done(const SweepOptions& options) {
     const auto sweep = load_sweep(options.file);
-    if (!sweep)
+    if (!sweep) {
         return sweep.error();
-    if (options.array_index && *options.array_index >= sweep->cells.size())
+    }
+    if (options.array_index && *options.array_index >= sweep->cells.size()) {
         return refusal(base::RefusalCode::InvalidArgument,
                        "--array-index: got " + std::to_string(*options.array_index) + ", allowed 0 to " +
                            std::to_string(sweep->cells.size() - 1));
+    }
     if (options.dry_run) {
         print_cells(options, *sweep);
         return SweepDone;
     }
     const std::string out = options.out.empty() ? std::filesystem::path{options.file}.stem().string() : options.out;
-    if (std::error_code error; options.gather && !std::filesystem::exists(out, error))
+    if (std::error_code error; options.gather && !std::filesystem::exists(out, error)) {
         return refusal(base::RefusalCode::NotFound, out + ": there is no such folder, so nothing to gather");
+    }
     const auto folder = SweepFolder::open(out, *sweep);
-    if (!folder)
+    if (!folder) {
         return folder.error();
+    }
 
     std::vector<std::size_t> all(sweep->run_count());
     std::iota(all.begin(), all.end(), std::size_t{0});
     if (options.gather) {
-        if (const auto missing = missing_among(all, *folder, SweepFolder::Wanted::Rows); !missing.empty())
+        if (const auto missing = missing_among(all, *folder, SweepFolder::Wanted::Rows); !missing.empty()) {
             return not_all_there(missing, *sweep, *folder);
-        if (auto gathered = gather(*folder); !gathered)
+        }
+        if (auto gathered = gather(*folder); !gathered) {
             return gathered.error();
+        }
         return SweepDone;
     }
 
@@ -318,9 +346,11 @@ Result<SweepStatus> done(const SweepOptions& options) {
         wanted.resize(sweep->replicates);
         std::iota(wanted.begin(), wanted.end(), *options.array_index * sweep->replicates);
     }
-    if (options.run_files)
-        if (auto made = folder->make_place_for_run_files(); !made)
+    if (options.run_files) {
+        if (auto made = folder->make_place_for_run_files(); !made) {
             return made.error();
+        }
+    }
     const std::vector<std::size_t> missing = missing_among(
         wanted, *folder, options.run_files ? SweepFolder::Wanted::RowsAndRunFile : SweepFolder::Wanted::Rows);
     std::printf("%s%s%s; into %s\n", plan_text(options, *sweep).c_str(),
@@ -335,8 +365,9 @@ Result<SweepStatus> done(const SweepOptions& options) {
     mind_interrupts();
     if (!missing.empty()) {
         const auto made = Runs{*sweep, *folder, options}.make(missing);
-        if (!made)
+        if (!made) {
             return made.error();
+        }
         if (*made < missing.size()) {
             std::printf("stopped: %s to go; the same command goes on with them\n",
                         counted(missing.size() - *made, "run").c_str());
@@ -348,8 +379,9 @@ Result<SweepStatus> done(const SweepOptions& options) {
                     folder->table().c_str());
         return SweepDone;
     }
-    if (auto gathered = gather(*folder); !gathered)
+    if (auto gathered = gather(*folder); !gathered) {
         return gathered.error();
+    }
     return SweepDone;
 }
 
@@ -357,8 +389,9 @@ Result<SweepStatus> done(const SweepOptions& options) {
 
 int sweep(const SweepOptions& options) {
     const Result<SweepStatus> status = done(options);
-    if (status)
+    if (status) {
         return *status;
+    }
     std::cerr << "evod sweep: " << to_text(status.error()) << '\n';
     return SweepError;
 }

@@ -41,11 +41,13 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
     std::string text;
     for (std::size_t i = 0; i < sweep.text.size(); ++i) {
         const bool pair = sweep.text[i] == '\r' && i + 1 < sweep.text.size() && sweep.text[i + 1] == '\n';
-        if (!pair)
+        if (!pair) {
             text += sweep.text[i] == '\r' ? '\n' : sweep.text[i];
+        }
     }
-    while (text.ends_with('\n'))
+    while (text.ends_with('\n')) {
         text.pop_back();
+    }
     return {{"evod", std::string{EVOD_VERSION} + ", " + storage::build_text()},
             {"model", std::to_string(simulation::model_version)},
             {"seed", std::to_string(sweep.seed.value)},
@@ -58,15 +60,17 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
 /// As a comment, a fact a line, or several.
 std::string to_text(const Fact& fact) {
     std::string text = "# " + fact.name + ": ";
-    for (const char c : fact.text)
+    for (const char c : fact.text) {
         text += c == '\n' ? "\n#   " : std::string(1, c);
+    }
     return text + "\n";
 }
 
 std::string provenance_of(const Sweep& sweep) {
     std::string text = "# evod sweep: a row per run, generation and island; where they come from:\n";
-    for (const Fact& fact : facts_of(sweep))
+    for (const Fact& fact : facts_of(sweep)) {
         text += to_text(fact);
+    }
     return text;
 }
 
@@ -75,8 +79,9 @@ base::Refusal other_sweep(const std::string& path, const std::string& there, con
     base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
                                     path + " has the results of another sweep; give another folder with --out. Its");
     for (const Fact& fact : facts_of(sweep)) {
-        if (there.find("\n" + to_text(fact)) != std::string::npos)
+        if (there.find("\n" + to_text(fact)) != std::string::npos) {
             continue;
+        }
         const std::string name = "\n# " + fact.name + ": ";
         const std::size_t begin = there.find(name);
         std::string got = begin == std::string::npos ? "nothing" : there.substr(begin + name.size());
@@ -85,8 +90,9 @@ base::Refusal other_sweep(const std::string& path, const std::string& there, con
         refused.violations.push_back({fact.name, long_text ? "the same as before" : fact.text,
                                       long_text ? "one that has been changed" : got.substr(0, got.find('\n'))});
     }
-    if (refused.violations.empty())
+    if (refused.violations.empty()) {
         refused.message += " sweep.txt is not as it was written";
+    }
     return refused;
 }
 
@@ -98,8 +104,9 @@ std::string padded(std::size_t number, std::size_t count) {
 Result<void> make_folder(const std::string& path) {
     std::error_code error;
     fs::create_directories(path, error);
-    if (!error && fs::is_directory(path, error))
+    if (!error && fs::is_directory(path, error)) {
         return {};
+    }
     return refusal(RefusalCode::Unavailable,
                    path + " cannot be made: " + (error ? error.message() : "there is a file of that name"));
 }
@@ -107,38 +114,45 @@ Result<void> make_folder(const std::string& path) {
 /// The last line of a part that is whole.
 std::optional<std::string> last_line(const std::string& part) {
     std::error_code error;
-    if (!fs::is_regular_file(part, error))
+    if (!fs::is_regular_file(part, error)) {
         return std::nullopt;
+    }
     std::ifstream file{part, std::ios::binary | std::ios::ate};
-    if (!file)
+    if (!file) {
         return std::nullopt;
+    }
     constexpr std::streamoff enough = 128;
     const std::streamoff bytes = file.tellg(), begin = std::max<std::streamoff>(bytes - enough, 0);
     std::string text(static_cast<std::size_t>(bytes - begin), '\0');
     file.seekg(begin);
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!file || !text.ends_with('\n'))
+    if (!file || !text.ends_with('\n')) {
         return std::nullopt;
+    }
     const std::size_t before = text.size() < 2 ? std::string::npos : text.rfind('\n', text.size() - 2);
     return before == std::string::npos ? text : text.substr(before + 1);
 }
 
 std::optional<RunEnd> end_from(std::string_view line) {
-    if (!line.starts_with(end_mark))
+    if (!line.starts_with(end_mark)) {
         return std::nullopt;
+    }
     line.remove_prefix(end_mark.size());
     for (const auto& [outcome, name] : outcome_names) {
-        if (!line.starts_with(name))
+        if (!line.starts_with(name)) {
             continue;
+        }
         RunEnd end{.outcome = outcome};
         constexpr std::string_view after_name = ", rows: ";
         const std::string_view rest = line.substr(name.size());
-        if (!rest.starts_with(after_name))
+        if (!rest.starts_with(after_name)) {
             continue;
+        }
         const char* const last = rest.data() + rest.size();
         const auto read = std::from_chars(rest.data() + after_name.size(), last, end.rows);
-        if (read.ec == std::errc{} && std::string_view{read.ptr, last} == "\n")
+        if (read.ec == std::errc{} && std::string_view{read.ptr, last} == "\n") {
             return end;
+        }
     }
     return std::nullopt;
 }
@@ -146,9 +160,11 @@ std::optional<RunEnd> end_from(std::string_view line) {
 } // namespace
 
 std::string_view name_of(Outcome outcome) {
-    for (const auto& [of, name] : outcome_names)
-        if (of == outcome)
+    for (const auto& [of, name] : outcome_names) {
+        if (of == outcome) {
             return name;
+        }
+    }
     return "nothing";
 }
 
@@ -158,8 +174,9 @@ std::string to_text(const RunEnd& end) {
 
 std::vector<std::string> sweep_columns(const Sweep& sweep) {
     std::vector<std::string> columns{"cell", "replicate", "seed"};
-    for (const simulation::ParameterDescription* parameter : sweep.swept)
+    for (const simulation::ParameterDescription* parameter : sweep.swept) {
         columns.emplace_back(parameter->name);
+    }
     const std::vector<std::string> statistics = tables::statistics_columns();
     columns.insert(columns.end(), statistics.begin(), statistics.end());
     return columns;
@@ -169,28 +186,36 @@ Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& swee
     const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
     std::error_code error;
     std::string result; // looked for first: another task may be making all of it now, and makes sweep.txt before it
-    for (const char* name : {"/runs.csv", "/parts", "/run-files"})
-        if (fs::exists(path + name, error))
+    for (const char* name : {"/runs.csv", "/parts", "/run-files"}) {
+        if (fs::exists(path + name, error)) {
             result = path + name;
+        }
+    }
     if (!fs::exists(of_sweep, error)) {
-        if (!result.empty())
+        if (!result.empty()) {
             return refusal(RefusalCode::FailedPrecondition,
                            result + " is there, and no sweep.txt that says whose it is; give another folder with "
                                     "--out");
-        if (auto made = make_folder(path); !made)
+        }
+        if (auto made = make_folder(path); !made) {
             return made.error();
+        }
         NewFile file{of_sweep};
         file.write(provenance);
-        if (auto written = file.finish(); !written)
+        if (auto written = file.finish(); !written) {
             return written.error();
+        }
     }
     const auto there = files::read_file(of_sweep, "what evod sweep wrote", provenance_bytes_max);
-    if (!there)
+    if (!there) {
         return there.error();
-    if (*there != provenance)
+    }
+    if (*there != provenance) {
         return other_sweep(path, *there, sweep);
-    if (auto made = make_folder(path + "/parts"); !made)
+    }
+    if (auto made = make_folder(path + "/parts"); !made) {
         return made.error();
+    }
     return SweepFolder{path, sweep};
 }
 
@@ -205,8 +230,9 @@ Result<void> SweepFolder::make_place_for_run_files() const {
 
 std::optional<RunEnd> SweepFolder::end_of(std::size_t run, Wanted wanted) const {
     std::error_code error;
-    if (wanted == Wanted::RowsAndRunFile && !fs::exists(run_file_of(run), error))
+    if (wanted == Wanted::RowsAndRunFile && !fs::exists(run_file_of(run), error)) {
         return std::nullopt;
+    }
     const auto line = last_line(part_of(run));
     return line ? end_from(*line) : std::nullopt;
 }
@@ -218,29 +244,34 @@ Result<void> SweepFolder::add_part(std::size_t run, NewFile& table, Gathered& ga
                                                      "that run again");
     };
     const auto line = last_line(path);
-    if (!line)
+    if (!line) {
         return damaged();
+    }
     const auto end = end_from(*line);
-    if (!end)
+    if (!end) {
         return damaged();
+    }
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(path, error);
-    if (error)
+    if (error) {
         return damaged();
+    }
     std::ifstream file{path, std::ios::binary};
     std::string block(1 << 16, '\0');
     std::uint64_t rows = 0;
     for (std::uintmax_t left = bytes - line->size(); left > 0;) {
         const std::size_t count = std::min<std::uintmax_t>(left, block.size());
-        if (!file.read(block.data(), static_cast<std::streamsize>(count)))
+        if (!file.read(block.data(), static_cast<std::streamsize>(count))) {
             return damaged();
+        }
         const std::string_view text{block.data(), count};
         rows += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
         table.write(text);
         left -= count;
     }
-    if (rows != end->rows)
+    if (rows != end->rows) {
         return damaged();
+    }
     gathered.rows += rows;
     ++gathered.runs[end->outcome];
     return {};
@@ -253,11 +284,14 @@ Result<SweepFolder::Gathered> SweepFolder::gather() const {
     const tables::Table columns{heading, tables::Table::Format::Csv, sweep_columns(*sweep_)};
     table.write(heading.str());
     Gathered gathered;
-    for (std::size_t run = 0; run < sweep_->run_count() && table.trouble().empty(); ++run)
-        if (auto added = add_part(run, table, gathered); !added)
+    for (std::size_t run = 0; run < sweep_->run_count() && table.trouble().empty(); ++run) {
+        if (auto added = add_part(run, table, gathered); !added) {
             return added.error();
-    if (auto written = table.finish(); !written)
+        }
+    }
+    if (auto written = table.finish(); !written) {
         return written.error();
+    }
     tidy();
     return gathered;
 }
@@ -266,12 +300,16 @@ Result<SweepFolder::Gathered> SweepFolder::gather() const {
 void SweepFolder::tidy() const {
     std::error_code error;
     std::vector<fs::path> left;
-    for (const char* folder : {"", "/parts", "/run-files"})
-        for (fs::directory_iterator file{path_ + folder, error}, end; !error && file != end; file.increment(error))
-            if (NewFile::is_unfinished(file->path().filename().string()))
+    for (const char* folder : {"", "/parts", "/run-files"}) {
+        for (fs::directory_iterator file{path_ + folder, error}, end; !error && file != end; file.increment(error)) {
+            if (NewFile::is_unfinished(file->path().filename().string())) {
                 left.push_back(file->path());
-    for (const fs::path& path : left)
+            }
+        }
+    }
+    for (const fs::path& path : left) {
         fs::remove(path, error);
+    }
 }
 
 } // namespace evod::console

@@ -23,8 +23,9 @@ int fail(const base::Refusal& refusal) {
 
 int add_token(const std::string& folder, const std::string& name, access::Role role) {
     const auto secret = access::add_token(folder, name, role);
-    if (!secret)
+    if (!secret) {
         return fail(secret.error());
+    }
     std::cerr << "token of " << name << ", " << access::name_of(role)
               << ", told only now; for evoctl and evoview: the environment's EVOD_TOKEN, or --token-file\n";
     std::cout << *secret << std::endl;
@@ -33,19 +34,23 @@ int add_token(const std::string& folder, const std::string& name, access::Role r
 
 int list_tokens(const std::string& folder) {
     const auto tokens = access::read_tokens(folder);
-    if (!tokens)
+    if (!tokens) {
         return fail(tokens.error());
-    if (tokens->empty())
+    }
+    if (tokens->empty()) {
         std::cerr << "evod token: there are no tokens in " << folder << ": make one with evod token add\n";
+    }
     std::printf("%-24s %-10s %s\n", "NAME", "ROLE", "MADE ON");
-    for (const access::Token& token : *tokens)
+    for (const access::Token& token : *tokens) {
         std::printf("%-24s %-10s %s\n", token.name.c_str(), access::name_of(token.role), token.made_on.c_str());
+    }
     return 0;
 }
 
 int revoke_token(const std::string& folder, const std::string& name) {
-    if (const auto revoked = access::revoke_token(folder, name); !revoked)
+    if (const auto revoked = access::revoke_token(folder, name); !revoked) {
         return fail(revoked.error());
+    }
     return 0;
 }
 

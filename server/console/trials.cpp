@@ -16,16 +16,19 @@ void for_each_trial(std::size_t count, std::size_t jobs, const std::function<voi
     const auto take_turns = [&] {
         while (!stopped()) {
             const std::size_t index = next.fetch_add(1, std::memory_order_relaxed);
-            if (index >= count)
+            if (index >= count) {
                 return;
+            }
             work(index);
         }
     };
     std::vector<std::thread> threads(std::min(jobs, count));
-    for (std::thread& thread : threads)
+    for (std::thread& thread : threads) {
         thread = std::thread{take_turns};
-    for (std::thread& thread : threads)
+    }
+    for (std::thread& thread : threads) {
         thread.join();
+    }
 }
 
 base::Seed replicate_seed(base::Seed seed, std::uint32_t replicate) {

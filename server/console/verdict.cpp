@@ -45,21 +45,26 @@ class Sentences {
 
 std::string Sentences::answer(double rise, const Interval& interval) const {
     const std::string question = "Did evolution do it? ";
-    for (const ControlKind kind : {ControlKind::RandomSelection, ControlKind::ShuffledFitness})
-        if (const std::string& why = of(kind).control.cannot_differ; !why.empty())
+    for (const ControlKind kind : {ControlKind::RandomSelection, ControlKind::ShuffledFitness}) {
+        if (const std::string& why = of(kind).control.cannot_differ; !why.empty()) {
             return question + "No: " + why + ", so nothing is selected for what it does.";
+        }
+    }
     const Judgement judgements[] = {judgement(ControlKind::RandomSelection), judgement(ControlKind::ShuffledFitness)};
     const std::string differences = difference(ControlKind::RandomSelection, "random selection") + ", " +
                                     difference(ControlKind::ShuffledFitness, "shuffled fitness");
     const auto any = [&](Judgement judgement) { return std::ranges::count(judgements, judgement) > 0; };
-    if (any(Judgement::Below))
+    if (any(Judgement::Below)) {
         return question + "No: selection keeps the fitness below what it would be: " + differences + ".";
-    if (any(Judgement::CannotBeShown))
+    }
+    if (any(Judgement::CannotBeShown)) {
         return question +
                "That cannot be told with so few replicates: no difference, however large, has a p-value below " +
                "0.05 after the adjustment. Give more.";
-    if (any(Judgement::NotShown))
+    }
+    if (any(Judgement::NotShown)) {
         return question + "That is not shown: " + differences + "; it takes both below 0.05.";
+    }
     // The pressure might only have kept it from falling.
     const std::string how = interval.low > 0 ? "Yes: the mean fitness rose by " + text(rise).substr(1) +
                                                    ", and selection for fitness is why: "
@@ -70,9 +75,10 @@ std::string Sentences::answer(double rise, const Interval& interval) const {
 
 std::string Sentences::of_mutation(double rise) const {
     const Weighed& weighed = of(ControlKind::MutationOff);
-    if (!weighed.finding)
+    if (!weighed.finding) {
         return "Mutation: " + weighed.control.cannot_differ +
                "; what is selected is the variety of the first generation.";
+    }
     const std::string without =
         "with mutation off the rise is " + text(rise - weighed.finding->mean) + " (" + p_text(*weighed.finding) + "): ";
     switch (judgement(ControlKind::MutationOff)) {
@@ -89,8 +95,9 @@ std::string Sentences::of_mutation(double rise) const {
 
 std::string Sentences::of_poison(double rise) const {
     const Weighed& weighed = of(ControlKind::HarmlessPoison);
-    if (!weighed.finding)
+    if (!weighed.finding) {
         return "Poison: " + weighed.control.cannot_differ + ".";
+    }
     const std::string without = "were it harmless, the rise would be " + text(rise - weighed.finding->mean) + " (" +
                                 p_text(*weighed.finding) + "): ";
     switch (judgement(ControlKind::HarmlessPoison)) {

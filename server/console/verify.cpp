@@ -34,14 +34,16 @@ void print_difference(const std::string& path, const Difference& difference) {
 
 /// simulated_for  how long it has been since the first tick.
 std::string text_of(const VerifyProgress& now, std::chrono::duration<double> simulated_for) {
-    if (now.ticks == 0)
+    if (now.ticks == 0) {
         return "reading: " + std::to_string(now.generations) + " of " + std::to_string(now.generations_in_all) +
                " generations";
+    }
     const double share = static_cast<double>(now.ticks) / static_cast<double>(now.ticks_in_all);
     std::string text = std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) +
                        " ticks simulated again, " + std::to_string(static_cast<int>(100 * share)) + " %";
-    if (simulated_for > std::chrono::seconds{2}) // else it is a guess
+    if (simulated_for > std::chrono::seconds{2}) { // else it is a guess
         text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s to go";
+    }
     return text;
 }
 
@@ -54,8 +56,9 @@ int verify(const VerifyOptions& options) {
         return 1;
     };
     const auto file = storage::RunFile::open_checked(options.run);
-    if (!file)
+    if (!file) {
         return fail(file.error());
+    }
 
     ProgressLine progress;
     std::mutex progress_mutex; // guards the line, which any thread may write, and what follows
@@ -63,15 +66,18 @@ int verify(const VerifyOptions& options) {
     const auto executor = runtime::make_executor(options.threads);
     const auto verified = storage::verify(**file, *executor, [&](const VerifyProgress& now) {
         const std::unique_lock lock{progress_mutex, std::try_to_lock};
-        if (!lock)
+        if (!lock) {
             return;
-        if (now.ticks > 0 && !simulating_since)
+        }
+        if (now.ticks > 0 && !simulating_since) {
             simulating_since = Clock::now();
+        }
         progress.show([&] { return text_of(now, Clock::now() - simulating_since.value_or(Clock::now())); });
     });
     progress.clear();
-    if (!verified)
+    if (!verified) {
         return fail(verified.error());
+    }
     if (verified->difference) {
         print_difference(options.run, *verified->difference);
         return 1;

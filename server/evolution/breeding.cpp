@@ -13,15 +13,18 @@ std::vector<std::uint32_t> elite_then_picks(std::span<const std::uint32_t> elite
                                             std::size_t population) {
     std::vector<std::uint32_t> survivors(elite.begin(), elite.end());
     std::vector<bool> has_a_pick_to_use(population);
-    for (const std::uint32_t organism : elite)
+    for (const std::uint32_t organism : elite) {
         has_a_pick_to_use[organism] = true;
+    }
     for (const std::uint32_t organism : picks) {
-        if (survivors.size() >= picks.size())
+        if (survivors.size() >= picks.size()) {
             break;
-        if (has_a_pick_to_use[organism])
+        }
+        if (has_a_pick_to_use[organism]) {
             has_a_pick_to_use[organism] = false;
-        else
+        } else {
             survivors.push_back(organism);
+        }
     }
     return survivors;
 }
@@ -31,12 +34,15 @@ std::vector<std::uint32_t> elite_then_best(std::span<const std::uint32_t> best_f
                                            std::uint32_t count) {
     std::vector<std::uint32_t> survivors(best_first.begin(), best_first.begin() + elite);
     std::vector<bool> stays(best_first.size());
-    for (const std::uint32_t organism : best_first.subspan(elite, count - elite))
+    for (const std::uint32_t organism : best_first.subspan(elite, count - elite)) {
         stays[organism] = true;
+    }
     survivors.reserve(count);
-    for (std::uint32_t organism = 0; organism < stays.size(); ++organism)
-        if (stays[organism])
+    for (std::uint32_t organism = 0; organism < stays.size(); ++organism) {
+        if (stays[organism]) {
             survivors.push_back(organism);
+        }
+    }
     return survivors;
 }
 
@@ -61,8 +67,9 @@ Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameter
 }
 
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters) {
-    if (parameters.population_model == PopulationModel::Hybrid)
+    if (parameters.population_model == PopulationModel::Hybrid) {
         return {.wanted = places.survivors, .pool = present};
+    }
     return {.wanted = places.children > 0 ? std::max(2u, places.children) : 0,
             .pool = share_of(present, parameters.survivors)};
 }
@@ -77,15 +84,17 @@ Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t want
     Choice choice;
     const Places& places = choice.places = share_places(present, wanted, parameters);
     const Picks picks = picks_for(places, present, parameters);
-    if (picks.wanted > 0)
+    if (picks.wanted > 0) {
         choice.picks = select(ranking, picks, parameters, selection_key(key), executor);
+    }
     const bool hybrid = parameters.population_model == PopulationModel::Hybrid;
-    if (hybrid && places.elite == 0)
+    if (hybrid && places.elite == 0) {
         choice.picks_survive = true;
-    else if (hybrid)
+    } else if (hybrid) {
         choice.others = elite_then_picks(ranking.best_first().first(places.elite), choice.picks, present);
-    else if (places.survivors > 0)
+    } else if (places.survivors > 0) {
         choice.others = elite_then_best(ranking.best_first(), places.elite, places.survivors);
+    }
     choice.pairs = pair_up(hybrid ? choice.survivors() : choice.picks, (places.children + 1) / 2,
                            {key.seed, base::Purpose::Pairing, key.island, key.generation}, executor);
     return choice;

@@ -50,8 +50,9 @@ struct Inheritance {
 /// mask  the genes that the child takes from pair.second; bits beyond the genes do not count.
 inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
     mask &= all_genes;
-    if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count)
+    if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count) {
         return {pair, mask};
+    }
     return {{pair.second, pair.first}, ~mask & all_genes};
 }
 
@@ -87,8 +88,9 @@ class Descent {
     template <class By>
     unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
         std::ranges::copy(column(present_, organism), genes.begin());
-        if (!mutates)
+        if (!mutates) {
             return by.clamp(genes, bounds_);
+        }
         base::RandomStream rearranging{survivor_key_, place, 0}, mutation{survivor_key_, place, 1};
         by.rearrange(rearranging_, genes, rearranging);
         return by.mutate(mutation_, genes, mutation);

@@ -36,14 +36,17 @@ std::vector<Contender> contenders_of(Ranking& ranking, std::span<const std::uint
                                      const Parameters& parameters, const Rows& rows) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
     std::vector<std::uint32_t> ranks(population), copies(population);
-    for (std::uint32_t rank = 0; rank < population; ++rank)
+    for (std::uint32_t rank = 0; rank < population; ++rank) {
         ranks[ranking.best_first()[rank]] = rank;
-    for (const std::uint32_t organism : picks)
+    }
+    for (const std::uint32_t organism : picks) {
         ++copies[organism];
+    }
     const std::vector<double> weights = scaled_fitness(ranking, parameters);
     std::optional<Wheel> wheel;
-    if (spins_a_wheel(parameters))
+    if (spins_a_wheel(parameters)) {
         wheel.emplace(weights);
+    }
     const SelectionLaw law{population, asked, parameters};
 
     std::vector<Contender> contenders;
@@ -68,8 +71,9 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
                            base::Executor& executor) {
     const auto wanted = static_cast<std::uint32_t>(picked.size());
     std::vector<double> turns;
-    if (parameters.selection == SelectionMethod::Roulette)
+    if (parameters.selection == SelectionMethod::Roulette) {
         turns = roulette_turns(wanted, key, executor);
+    }
     if (parameters.selection == SelectionMethod::StochasticUniversal) {
         base::RandomStream random = selection_stream(key);
         turns = universal_turns(wanted, random, executor);
@@ -79,15 +83,18 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
     for (std::uint32_t i = rows.first; i < rows.end; ++i) {
         Pick& pick = picks.emplace_back();
         pick.organism = picked[i];
-        if (!turns.empty())
+        if (!turns.empty()) {
             pick.turns = turns[i];
-        if (parameters.selection != SelectionMethod::Tournament)
+        }
+        if (parameters.selection != SelectionMethod::Tournament) {
             continue;
+        }
         pick.tournament = i / winners_of_each(population, tournament, wanted);
         const std::uint32_t contestants =
             tournament.replacement ? tournament.size : std::min(tournament.size, population);
-        if (contestants <= held_contestants_max)
+        if (contestants <= held_contestants_max) {
             pick.contestants = contestants_of(*pick.tournament, population, tournament, wanted, key);
+        }
     }
     return picks;
 }
@@ -100,8 +107,9 @@ struct Telling {
         base::RandomStream same = random;
         std::array<std::uint32_t, gene_count> order{};
         std::iota(order.begin(), order.end(), 0u);
-        if (by.apply(genes, random) && by.apply(GeneOrder{order}, same))
+        if (by.apply(genes, random) && by.apply(GeneOrder{order}, same)) {
             of.order = order;
+        }
     }
     unsigned mutate(const ValueMutation& by, Genes genes, base::RandomStream& random) const {
         return by.apply(genes, random, of.changes);

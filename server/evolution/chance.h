@@ -22,8 +22,9 @@ class Chance {
     /// p is 0 or 1.
     std::uint32_t draw_bits(unsigned count, base::RandomStream& random) const {
         const std::uint64_t all = (std::uint64_t{1} << count) - 1;
-        if (certain_)
+        if (certain_) {
             return static_cast<std::uint32_t>(all);
+        }
         std::uint64_t undecided = all, happens = 0;
         std::uint64_t digits = digits_; // of p, the next one in the highest place
         while (undecided != 0 && digits != 0) {

@@ -36,8 +36,9 @@ GeneMatrix initial_population(std::uint32_t organism_count, const Parameters& pa
     GeneMatrix genes(gene_count, organism_count);
     for (std::uint32_t organism = 0; organism < organism_count; ++organism) {
         base::RandomStream random{key, organism};
-        for (float& gene : column(genes, organism))
+        for (float& gene : column(genes, organism)) {
             gene = static_cast<float>(random.uniform(parameters.initial_gene_min, parameters.initial_gene_max));
+        }
         clamp(column(genes, organism), bounds);
     }
     return genes;

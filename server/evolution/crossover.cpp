@@ -34,19 +34,24 @@ GeneMask mask_of_cuts(GeneMask cuts) {
 Crossover::Crossover(const Parameters& parameters)
     : method_{parameters.crossover}, chance_{parameters.crossover_chance} {
     const int wanted = cut_count(parameters);
-    if (wanted == 0)
+    if (wanted == 0) {
         return;
-    for (GeneMask cuts = 2; cuts <= all_genes; cuts += 2) // an even number has no cut before gene 0
-        if (std::popcount(cuts) == wanted)
+    }
+    for (GeneMask cuts = 2; cuts <= all_genes; cuts += 2) { // an even number has no cut before gene 0
+        if (std::popcount(cuts) == wanted) {
             masks_.at(mask_count_++) = mask_of_cuts(cuts);
+        }
+    }
     EVOD_ASSERT(mask_count_ >= 1);
 }
 
 std::optional<GeneMask> Crossover::draw(base::RandomStream& random) const {
-    if (method_ == CrossoverMethod::None || !chance_.draw(random))
+    if (method_ == CrossoverMethod::None || !chance_.draw(random)) {
         return {};
-    if (method_ == CrossoverMethod::Uniform)
+    }
+    if (method_ == CrossoverMethod::Uniform) {
         return random.word() & all_genes;
+    }
     return masks_[random.below(mask_count_)];
 }
 

@@ -46,8 +46,9 @@ class Crossover {
 
 /// `child` gets the genes of `second` where the mask has a 1, and those of `first` elsewhere.
 inline void cross(ConstGenes first, ConstGenes second, GeneMask mask, Genes child) {
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         child[gene] = (mask >> gene & 1) != 0 ? second[gene] : first[gene];
+    }
 }
 
 } // namespace evod::evolution

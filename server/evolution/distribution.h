@@ -25,8 +25,9 @@ std::vector<std::uint32_t> distribute(std::size_t count, std::size_t bucket_coun
                                       bucket_count); // per block and bucket: how many, then where the next goes
     executor.parallel_for(count, block_size, [&](base::Range block) {
         std::uint32_t* const counts = &places[block.begin / block_size * bucket_count];
-        for (std::size_t i = block.begin; i < block.end; ++i)
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             ++counts[bucket_of(i)];
+        }
     });
     std::vector<std::uint32_t> begins(bucket_count + 1);
     std::uint32_t next = 0;
@@ -42,8 +43,9 @@ std::vector<std::uint32_t> distribute(std::size_t count, std::size_t bucket_coun
     begins[bucket_count] = next;
     executor.parallel_for(count, block_size, [&](base::Range block) {
         std::uint32_t* const next_place = &places[block.begin / block_size * bucket_count];
-        for (std::size_t i = block.begin; i < block.end; ++i)
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             put(i, next_place[bucket_of(i)]++);
+        }
     });
     return begins;
 }

@@ -14,8 +14,9 @@ void shuffle_fitness(std::span<double> fitness, const BreedingKey& key, base::Ex
     base::RandomStream random{{key.seed, base::Purpose::FitnessShuffle, key.island, key.generation}, 0};
     shuffle(whose, random, executor);
     const std::vector<double> own(fitness.begin(), fitness.end());
-    for (std::size_t organism = 0; organism < own.size(); ++organism)
+    for (std::size_t organism = 0; organism < own.size(); ++organism) {
         fitness[organism] = own[whose[organism]];
+    }
 }
 
 } // namespace evod::evolution

@@ -21,8 +21,9 @@ struct Edge {
 /// Ordered by (to, from).
 std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed seed, std::uint64_t generation) {
     std::vector<Edge> result;
-    if (islands < 2)
+    if (islands < 2) {
         return result;
+    }
     for (std::uint32_t from = 0; from < islands; ++from) {
         switch (topology) {
         case Topology::None:
@@ -31,9 +32,11 @@ std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed see
             result.push_back({from, (from + 1) % islands});
             break;
         case Topology::FullyConnected:
-            for (std::uint32_t to = 0; to < islands; ++to)
-                if (to != from)
+            for (std::uint32_t to = 0; to < islands; ++to) {
+                if (to != from) {
                     result.push_back({from, to});
+                }
+            }
             break;
         case Topology::Random: {
             base::RandomStream random{{seed, base::Purpose::Migration, from, generation}, 0, Destination};
@@ -54,8 +57,9 @@ std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed see
 /// returns  how many of them find a place; `wanted` itself where there is room for all, without a draw.
 std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, std::uint32_t places,
                                            base::RandomStream random, base::Executor& executor) {
-    if (std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0}) <= places)
+    if (std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0}) <= places) {
         return wanted;
+    }
     std::vector<std::uint32_t> shares(wanted.size());
     std::vector<std::uint32_t> waiting(wanted.size()); // edges with migrants left; all have the same share so far
     std::iota(waiting.begin(), waiting.end(), 0u);
@@ -63,15 +67,18 @@ std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, st
         std::erase_if(waiting, [&](std::uint32_t edge) { return shares[edge] == wanted[edge]; });
         const auto count = static_cast<std::uint32_t>(waiting.size());
         if (places < count) {
-            for (const std::uint32_t index : draw_unique(count, places, random, executor))
+            for (const std::uint32_t index : draw_unique(count, places, random, executor)) {
                 ++shares[waiting[index]];
+            }
             break;
         }
         std::uint32_t rounds = places / count;
-        for (const std::uint32_t edge : waiting)
+        for (const std::uint32_t edge : waiting) {
             rounds = std::min(rounds, wanted[edge] - shares[edge]);
-        for (const std::uint32_t edge : waiting)
+        }
+        for (const std::uint32_t edge : waiting) {
             shares[edge] += rounds;
+        }
         places -= rounds * count;
     }
     return shares;
@@ -99,8 +106,9 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
         const std::uint32_t to = first->to;
         const auto last = std::find_if(first, all.end(), [&](const Edge& edge) { return edge.to != to; });
         std::vector<std::uint32_t> wanted;
-        for (auto edge = first; edge != last; ++edge)
+        for (auto edge = first; edge != last; ++edge) {
             wanted.push_back(std::min(parameters.migrant_count, population(edge->from)));
+        }
         const std::vector<std::uint32_t> leaving =
             share_of_places(std::move(wanted), population(to), stream(to, 0, LastPlaces), executor);
 
@@ -124,8 +132,9 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
                 drawn = draw_unique(population(from), count, random, executor);
                 emigrants = drawn;
             }
-            for (const std::uint32_t organism : emigrants)
+            for (const std::uint32_t organism : emigrants) {
                 migrants.push_back({from, to, organism, *makes_room++});
+            }
         }
     }
     return migrants;

@@ -23,11 +23,13 @@ class Ziggurat {
     Ziggurat() {
         width_[0] = area / density(tail); // the lowest layer, the tail included
         width_[1] = tail;
-        for (unsigned i = 2; i < layers; ++i)
+        for (unsigned i = 2; i < layers; ++i) {
             width_[i] = std::sqrt(-2 * base::log(area / width_[i - 1] + density(width_[i - 1])));
+        }
         width_[layers] = 0;
-        for (unsigned i = 0; i < layers; ++i)
+        for (unsigned i = 0; i < layers; ++i) {
             wholly_under_[i] = width_[i + 1] / width_[i];
+        }
     }
 
     double draw(base::RandomStream& random) const {
@@ -36,14 +38,17 @@ class Ziggurat {
             const unsigned layer = word % layers;
             const double share = ((word / layers) + 0.5) * (2.0 * layers * 0x1p-32) - 1; // in (−1, 1), 25 bits
             const double x = share * width_[layer];
-            if (std::abs(share) < wholly_under_[layer])
+            if (std::abs(share) < wholly_under_[layer]) {
                 return x;
-            if (layer == 0)
+            }
+            if (layer == 0) {
                 return std::copysign(draw_tail(random), x);
+            }
             // Between the densities at the layer's two edges.
             const double low = density(width_[layer]), high = density(width_[layer + 1]);
-            if (low + random.uniform() * (high - low) < density(x))
+            if (low + random.uniform() * (high - low) < density(x)) {
                 return x;
+            }
         }
     }
 
@@ -57,8 +62,9 @@ class Ziggurat {
     static double draw_tail(base::RandomStream& random) {
         while (true) {
             const double beyond = -base::log(1 - random.uniform()) / tail; // 1 − [0, 1) is never 0
-            if (-2 * base::log(1 - random.uniform()) >= beyond * beyond)
+            if (-2 * base::log(1 - random.uniform()) >= beyond * beyond) {
                 return tail + beyond;
+            }
         }
     }
 
@@ -77,15 +83,17 @@ constexpr double rare_flip_chance_max = 0.125;
 /// Calls `change` for every gene of the mask, in order.
 template <class Change>
 void for_each_gene(std::uint32_t mask, const Change& change) {
-    for (; mask != 0; mask &= mask - 1)
+    for (; mask != 0; mask &= mask - 1) {
         change(static_cast<unsigned>(std::countr_zero(mask)));
+    }
 }
 
 } // namespace
 
 std::uint32_t BinaryView::to_code(float value) const {
-    if (!(min < max))
+    if (!(min < max)) {
         return 0;
+    }
     const double share = (double{value} - min) / (double{max} - min);
     return static_cast<std::uint32_t>(share * ((1u << bits) - 1) + 0.5);
 }
@@ -103,17 +111,20 @@ ValueMutation::ValueMutation(const Parameters& parameters)
     , reset_chance_{parameters.reset_chance}
     , bit_flip_chance_{parameters.bit_flip_chance}
     , bits_{parameters.bit_flip_bits} {
-    if (!bit_flip_chance_.is_never() && parameters.bit_flip_chance <= rare_flip_chance_max)
+    if (!bit_flip_chance_.is_never() && parameters.bit_flip_chance <= rare_flip_chance_max) {
         rare_flips_.emplace(gene_count * bits_, parameters.bit_flip_chance);
+    }
 }
 
 unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes) {
     std::array<float, gene_count> before;
     std::ranges::copy(genes, before.begin());
     const unsigned clamped = clamp(genes, bounds);
-    for (unsigned gene = 0; gene < gene_count; ++gene)
-        if (genes[gene] != before[gene])
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
+        if (genes[gene] != before[gene]) {
             changes.push_back({gene, ChangeKind::Clamp, before[gene], genes[gene]});
+        }
+    }
     return clamped;
 }
 
@@ -136,18 +147,21 @@ unsigned ValueMutation::apply(Genes genes, base::RandomStream& random, std::vect
 template <class Change, class Clamp>
 unsigned ValueMutation::mutate(ConstGenes genes, base::RandomStream& random, const Change& change,
                                const Clamp& clamp_all) const {
-    if (!creep_chance_.is_never())
+    if (!creep_chance_.is_never()) {
         for_each_gene(creep_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
             const double unit = creep_ == Creep::Uniform ? symmetric_uniform(random) : draw_normal(random);
             change(gene, ChangeKind::Creep, static_cast<float>(genes[gene] + step_ * unit));
         });
-    if (!reset_chance_.is_never())
+    }
+    if (!reset_chance_.is_never()) {
         for_each_gene(reset_chance_.draw_bits(gene_count, random), [&](unsigned gene) {
             change(gene, ChangeKind::Reset, static_cast<float>(random.uniform(bounds_.min[gene], bounds_.max[gene])));
         });
+    }
     const unsigned clamped = clamp_all();
-    if (!bit_flip_chance_.is_never())
+    if (!bit_flip_chance_.is_never()) {
         flip_bits(genes, random, change);
+    }
     return clamped;
 }
 
@@ -162,14 +176,16 @@ void ValueMutation::flip_bits(ConstGenes genes, base::RandomStream& random, cons
             flips[gene] |= 1u << (trial - gene * bits_);
         });
     } else {
-        for (std::uint32_t& flipped : flips)
+        for (std::uint32_t& flipped : flips) {
             flipped = bit_flip_chance_.draw_bits(bits_, random);
+        }
     }
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         if (flips[gene] != 0) {
             const BinaryView view{bounds_.min[gene], bounds_.max[gene], bits_};
             change(gene, ChangeKind::BitFlip, view.to_value(view.to_code(genes[gene]) ^ flips[gene]));
         }
+    }
 }
 
 } // namespace evod::evolution

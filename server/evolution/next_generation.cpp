@@ -22,8 +22,9 @@ class Breeding {
     void keep(std::span<const std::uint32_t> survivors, std::uint32_t kept, NextGeneration& next) const {
         next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
             const auto place = static_cast<std::uint32_t>(i);
-            if (i + pairs_prefetched < survivors.size())
+            if (i + pairs_prefetched < survivors.size()) {
                 prefetch(survivors[i + pairs_prefetched]);
+            }
             next.parents[i] = {survivors[i], survivors[i]};
             return descent_.keep(survivors[i], place, place >= kept, column(next.genes, place), Untold{});
         });
@@ -64,8 +65,9 @@ class Breeding {
         std::vector<std::uint64_t> of_piece((count + grain - 1) / grain);
         executor_.parallel_for(count, grain, [&](base::Range piece) {
             std::uint64_t sum = 0;
-            for (std::size_t i = piece.begin; i < piece.end; ++i)
+            for (std::size_t i = piece.begin; i < piece.end; ++i) {
                 sum += work(i);
+            }
             of_piece[piece.begin / grain] = sum;
         });
         return std::accumulate(of_piece.begin(), of_piece.end(), std::uint64_t{0});

@@ -16,8 +16,9 @@ std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32
         base::RandomStream random{key, round};
         order.assign(parents.begin(), parents.end());
         shuffle(order, random, executor);
-        for (std::size_t i = 0; i + 1 < count && pairs.size() < pair_count; i += 2)
+        for (std::size_t i = 0; i + 1 < count && pairs.size() < pair_count; i += 2) {
             pairs.push_back({order[i], order[i + 1]});
+        }
         if (count % 2 == 1 && pairs.size() < pair_count) {
             // The shuffle has made the first any of the others; of a lone parent it is the parent itself.
             pairs.push_back({order[count - 1], order[0]});

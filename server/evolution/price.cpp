@@ -26,18 +26,21 @@ class Numbers {
     double operator[](unsigned gene) const { return pairs_[gene / 2][gene % 2]; }
 
     Numbers& operator+=(const Numbers& other) {
-        for (unsigned pair = 0; pair < pair_count; ++pair)
+        for (unsigned pair = 0; pair < pair_count; ++pair) {
             pairs_[pair] += other.pairs_[pair];
+        }
         return *this;
     }
     friend Numbers operator-(Numbers one, const Numbers& other) {
-        for (unsigned pair = 0; pair < pair_count; ++pair)
+        for (unsigned pair = 0; pair < pair_count; ++pair) {
             one.pairs_[pair] -= other.pairs_[pair];
+        }
         return one;
     }
     friend Numbers middle_of(Numbers one, const Numbers& other) {
-        for (unsigned pair = 0; pair < pair_count; ++pair)
+        for (unsigned pair = 0; pair < pair_count; ++pair) {
             one.pairs_[pair] = (one.pairs_[pair] + other.pairs_[pair]) * 0.5;
+        }
         return one;
     }
 
@@ -59,14 +62,17 @@ SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add&
     std::vector<SumsOf<count>> blocks((organisms + organisms_per_block - 1) / organisms_per_block);
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range block) {
         SumsOf<count> sums{};
-        for (std::size_t i = block.begin; i < block.end; ++i)
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             add(static_cast<std::uint32_t>(i), sums);
+        }
         blocks[block.begin / organisms_per_block] = sums;
     });
     SumsOf<count> total{};
-    for (const SumsOf<count>& block : blocks)
-        for (std::size_t which = 0; which < count; ++which)
+    for (const SumsOf<count>& block : blocks) {
+        for (std::size_t which = 0; which < count; ++which) {
             total[which] += block[which];
+        }
+    }
     return total;
 }
 
@@ -77,8 +83,9 @@ Numbers centre_of(const GeneMatrix& genes, base::Executor& executor) {
     const SumsOf<1> sums =
         summed<1>(organisms, executor, [&](std::uint32_t i, SumsOf<1>& sum) { sum[0] += Numbers{column(genes, i)}; });
     Numbers centre;
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         centre.set(gene, static_cast<double>(static_cast<float>(sums[0][gene] / static_cast<double>(organisms))));
+    }
     return centre;
 }
 
@@ -102,12 +109,13 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
         organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
     // Those whom breeding saw, and by how much they are others than were born.
     SumsOf<2> seen{population[0], {}};
-    if (&before != &bred_from)
+    if (&before != &bred_from) {
         seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
             const Numbers z{column(bred_from, i)};
             sums[0] += z - centre;
             sums[1] += z - Numbers{column(before, i)};
         });
+    }
     // The descendants; their parents, each as often as it has descendants; and by how much the ones differ from the
     // others.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
@@ -125,11 +133,12 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
 
     SelectionAccount account;
     const auto n = static_cast<double>(organisms), descendants = static_cast<double>(parents.size());
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         account[gene] = {.selection = descent[1][gene] / descendants - seen[0][gene] / n,
                          .transmission = descent[2][gene] / descendants,
                          .migration = seen[1][gene] / n,
                          .change = descent[0][gene] / descendants - population[0][gene] / n};
+    }
     return account;
 }
 

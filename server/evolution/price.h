@@ -71,12 +71,13 @@ template <class Next>
 std::optional<SelectionAccount> account_from(Next&& next) {
     SelectionAccount account;
     bool whole = true;
-    for (GeneAccount& gene : account)
+    for (GeneAccount& gene : account) {
         for (double* number : {&gene.selection, &gene.transmission, &gene.migration, &gene.change}) {
             const std::optional<double> value = next();
             whole &= value.has_value();
             *number = value.value_or(0);
         }
+    }
     return whole ? std::optional{account} : std::nullopt;
 }
 

@@ -50,8 +50,9 @@ class Buckets {
 
 std::span<const std::uint32_t> Ranking::best_first() {
     const std::size_t population = fitness_.size();
-    if (best_first_.size() == population)
+    if (best_first_.size() == population) {
         return best_first_;
+    }
     base::InlineExecutor own_thread;
     base::Executor& executor = executor_ == nullptr ? own_thread : *executor_;
 
@@ -64,10 +65,12 @@ std::span<const std::uint32_t> Ranking::best_first() {
         });
     best_first_.resize(population);
     executor.parallel_for(buckets.count(), buckets_per_piece, [&](base::Range piece) {
-        for (std::size_t bucket = piece.begin; bucket < piece.end; ++bucket)
+        for (std::size_t bucket = piece.begin; bucket < piece.end; ++bucket) {
             std::sort(entries.begin() + begins[bucket], entries.begin() + begins[bucket + 1]);
-        for (std::size_t rank = begins[piece.begin]; rank < begins[piece.end]; ++rank)
+        }
+        for (std::size_t rank = begins[piece.begin]; rank < begins[piece.end]; ++rank) {
             best_first_[rank] = entries[rank].organism;
+        }
     });
     return best_first_;
 }

@@ -30,8 +30,9 @@ class RareEvents {
         unsigned skip = trials;
         for (unsigned i = 0; i < guides; ++i) { // the larger the word, the earlier the success
             const std::uint32_t least = i * (0xffffffffu / guides + 1);
-            while (skip > 0 && all_fail_[skip - 1].high < least)
+            while (skip > 0 && all_fail_[skip - 1].high < least) {
                 --skip;
+            }
             guide_[i] = static_cast<std::uint8_t>(skip);
         }
     }
@@ -39,8 +40,9 @@ class RareEvents {
     /// Calls visit(trial) for each trial that succeeds, in order.
     template <class Visit>
     void draw(base::RandomStream& random, const Visit& visit) const {
-        for (unsigned trial = skip(random); trial < trials_; trial += 1 + skip(random))
+        for (unsigned trial = skip(random); trial < trials_; trial += 1 + skip(random)) {
             visit(trial);
+        }
     }
 
   private:
@@ -48,14 +50,17 @@ class RareEvents {
     unsigned skip(base::RandomStream& random) const {
         const std::uint32_t high = random.word();
         unsigned skip = guide_[high / (0xffffffffu / guides + 1)];
-        while (skip > 0 && all_fail_[skip - 1].high < high)
+        while (skip > 0 && all_fail_[skip - 1].high < high) {
             --skip;
+        }
         // Where the first word says no more than that it could be either, a second one decides.
-        if (skip == 0 || all_fail_[skip - 1].high != high)
+        if (skip == 0 || all_fail_[skip - 1].high != high) {
             return skip;
+        }
         const std::uint32_t low = random.word();
-        while (skip > 0 && all_fail_[skip - 1].high == high && all_fail_[skip - 1].low <= low)
+        while (skip > 0 && all_fail_[skip - 1].high == high && all_fail_[skip - 1].low <= low) {
             --skip;
+        }
         return skip;
     }
 

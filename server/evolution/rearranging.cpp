@@ -38,16 +38,18 @@ bool RearrangingMutation::apply(GeneOrder order, base::RandomStream& random) con
 
 template <class T>
 bool RearrangingMutation::rearrange(std::span<T, gene_count> genes, base::RandomStream& random) const {
-    if (is_off() || !chance_.draw(random))
+    if (is_off() || !chance_.draw(random)) {
         return false;
+    }
     switch (method_) {
     case Rearranging::None:
         break;
     case Rearranging::Swap: {
         const bool twice = random.below(2) == 1;
         swap_pair(genes, random);
-        if (twice)
+        if (twice) {
             swap_pair(genes, random);
+        }
         break;
     }
     case Rearranging::Scramble: {

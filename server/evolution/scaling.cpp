@@ -7,8 +7,9 @@
 namespace evod::evolution {
 
 double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double pressure) {
-    if (population == 1)
+    if (population == 1) {
         return 1;
+    }
     return pressure - 2 * (pressure - 1) * (static_cast<double>(rank) / static_cast<double>(population - 1));
 }
 
@@ -23,14 +24,16 @@ std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameter
         const auto [least, greatest] = std::minmax_element(fitness.begin(), fitness.end());
         const double unit = std::isfinite(*greatest - *least) ? 1 : 0.5;
         const double floor = *least * unit;
-        for (double& value : scaled)
+        for (double& value : scaled) {
             value = value * unit - floor;
+        }
         break;
     }
     case FitnessScaling::LinearRanking: {
         const auto best_first = ranking.best_first();
-        for (std::uint32_t rank = 0; rank < population; ++rank)
+        for (std::uint32_t rank = 0; rank < population; ++rank) {
             scaled[best_first[rank]] = linear_rank_weight(rank, population, parameters.ranking_pressure);
+        }
         break;
     }
     case FitnessScaling::ExponentialRanking: {
@@ -39,8 +42,9 @@ std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameter
             scaled[organism] = weight;
             weight *= parameters.ranking_decay;
             // Rounding would keep the least double where it is for ever, at the price of slow arithmetic.
-            if (weight < std::numeric_limits<double>::min())
+            if (weight < std::numeric_limits<double>::min()) {
                 weight = 0;
+            }
         }
         break;
     }

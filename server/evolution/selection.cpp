@@ -19,8 +19,9 @@ template <class Stop>
 void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& executor, const Stop& stop) {
     executor.parallel_for(spins, spins_per_stream, [&](base::Range piece) {
         base::RandomStream random{key, static_cast<std::uint32_t>(piece.begin / spins_per_stream)};
-        for (std::size_t i = piece.begin; i < piece.end; ++i)
+        for (std::size_t i = piece.begin; i < piece.end; ++i) {
             stop(i, random.uniform());
+        }
     });
 }
 
@@ -53,8 +54,9 @@ std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t want
         const auto place = [&](std::size_t pointer) { return pointer_turns(pointer, offset, wanted) * ends.back(); };
         auto slot = std::upper_bound(ends.begin(), ends.end(), place(piece.begin));
         for (std::size_t pointer = piece.begin; pointer < piece.end; ++pointer) {
-            while (slot < ends.end() && *slot <= place(pointer))
+            while (slot < ends.end() && *slot <= place(pointer)) {
                 ++slot;
+            }
             // Rounding can put the last pointer onto the end of the wheel.
             picked[pointer] = static_cast<std::uint32_t>(std::min(slot, ends.end() - 1) - ends.begin());
         }
@@ -70,16 +72,18 @@ std::vector<double> universal_turns(std::uint32_t wanted, base::RandomStream& ra
     shuffle(pointers, random, executor);
     std::vector<double> turns;
     turns.reserve(wanted);
-    for (const std::uint32_t pointer : pointers)
+    for (const std::uint32_t pointer : pointers) {
         turns.push_back(pointer_turns(pointer, offset, wanted));
+    }
     return turns;
 }
 
 std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random,
                                        base::Executor& executor) {
     std::vector<std::uint32_t> picked;
-    if (population == 0)
+    if (population == 0) {
         return picked;
+    }
     picked.reserve(wanted);
     std::vector<std::uint32_t> everyone(population);
     std::iota(everyone.begin(), everyone.end(), 0u);
@@ -102,8 +106,9 @@ std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::
     const auto best_first = ranking.best_first();
     EVOD_ASSERT(pool >= 1 && pool <= best_first.size());
     std::vector<std::uint32_t> picked(wanted);
-    for (std::uint32_t i = 0; i < wanted; ++i)
+    for (std::uint32_t i = 0; i < wanted; ++i) {
         picked[i] = best_first[i % pool];
+    }
     return picked;
 }
 

@@ -36,8 +36,9 @@ double mean_up_to(double most, double least, double mode, double greatest, const
 double expected_winners_up_to(std::uint32_t rank, std::uint32_t population, const Tournament& tournament) {
     const double size = tournament.size, winners = tournament.winners;
     const double good = rank + 1.0, others = population - good;
-    if (others == 0)
+    if (others == 0) {
         return winners;
+    }
     if (tournament.replacement) {
         const double mode = std::min(std::floor((size + 1) * (good / population)), size);
         return mean_up_to(winners, 0, mode, size, [&](double x) { return (size - x) / (x + 1) * (good / others); });
@@ -50,8 +51,9 @@ double expected_winners_up_to(std::uint32_t rank, std::uint32_t population, cons
 
 double SelectionLaw::expected_wins(std::uint32_t rank) const {
     Tournament tournament = tournament_of(parameters_);
-    if (!tournament.replacement)
+    if (!tournament.replacement) {
         tournament.size = std::min(tournament.size, population_);
+    }
     const auto wins_of = [&](std::uint32_t winners) {
         tournament.winners = winners;
         const double better = rank == 0 ? 0 : expected_winners_up_to(rank - 1, population_, tournament);
@@ -63,8 +65,9 @@ double SelectionLaw::expected_wins(std::uint32_t rank) const {
 }
 
 double SelectionLaw::expected_copies(std::uint32_t rank, double share) const {
-    if (picks_.wanted == 0)
+    if (picks_.wanted == 0) {
         return 0;
+    }
     switch (parameters_.selection) {
     case SelectionMethod::Roulette:
     case SelectionMethod::StochasticUniversal:

@@ -22,8 +22,9 @@ void shuffle(std::span<std::uint32_t> items, base::RandomStream& random, base::E
     std::vector<std::uint16_t> bucket_of(items.size()); // populations end long before 2^16 buckets
     executor.parallel_for(items.size(), items_per_stream, [&](base::Range block) {
         base::RandomStream choices{key, static_cast<std::uint32_t>(block.begin / items_per_stream), 0};
-        for (std::size_t i = block.begin; i < block.end; ++i)
+        for (std::size_t i = block.begin; i < block.end; ++i) {
             bucket_of[i] = static_cast<std::uint16_t>(choices.below(bucket_count));
+        }
     });
     const std::vector<std::uint32_t> present(items.begin(), items.end());
     const auto begins = distribute(

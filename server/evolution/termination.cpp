@@ -12,16 +12,21 @@ Progress advance(Progress progress, const GenerationResult& result) {
 }
 
 Outcome outcome(const Progress& progress, const Parameters& parameters) {
-    if (progress.generations == 0)
+    if (progress.generations == 0) {
         return Outcome::Running;
-    if (parameters.stop_at_target_fitness && progress.last_best_fitness >= parameters.target_fitness)
+    }
+    if (parameters.stop_at_target_fitness && progress.last_best_fitness >= parameters.target_fitness) {
         return Outcome::TargetFitness;
-    if (parameters.stop_at_extinction && progress.last_died_out)
+    }
+    if (parameters.stop_at_extinction && progress.last_died_out) {
         return Outcome::Extinction;
-    if (parameters.stagnation_limit > 0 && progress.stagnant >= parameters.stagnation_limit)
+    }
+    if (parameters.stagnation_limit > 0 && progress.stagnant >= parameters.stagnation_limit) {
         return Outcome::Stagnation;
-    if (parameters.generation_limit > 0 && progress.generations >= parameters.generation_limit)
+    }
+    if (parameters.generation_limit > 0 && progress.generations >= parameters.generation_limit) {
         return Outcome::GenerationLimit;
+    }
     return Outcome::Running;
 }
 

@@ -32,9 +32,11 @@ class DrawnSet {
     /// Whether `number` was new.
     bool insert(std::uint32_t number) {
         std::size_t slot = number * 0x9e3779b9u & (slots_.size() - 1);
-        for (; slots_[slot].round == round_; slot = (slot + 1) & (slots_.size() - 1))
-            if (slots_[slot].number == number)
+        for (; slots_[slot].round == round_; slot = (slot + 1) & (slots_.size() - 1)) {
+            if (slots_[slot].number == number) {
                 return false;
+            }
+        }
         slots_[slot] = {number, round_};
         return true;
     }
@@ -48,8 +50,9 @@ class DrawnSet {
 };
 
 void draw_contestants(std::uint32_t population, std::span<std::uint32_t> contestants, base::RandomStream& random) {
-    for (std::uint32_t& contestant : contestants)
+    for (std::uint32_t& contestant : contestants) {
         contestant = random.below(population);
+    }
 }
 
 /// Every set of different contestants equally likely. Source: Floyd, in Bentley & Floyd 1987, "A sample of brilliance".
@@ -60,8 +63,9 @@ void draw_different_contestants(std::uint32_t population, std::span<std::uint32_
     for (std::uint32_t& contestant : contestants) {
         const std::uint32_t number = random.below(last + 1);
         contestant = drawn.insert(number) ? number : last;
-        if (contestant == last)
+        if (contestant == last) {
             drawn.insert(last);
+        }
         ++last;
     }
 }
@@ -83,8 +87,9 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
                                   base::RandomStream& random) {
     std::uint32_t rank = 0;
     for (std::uint32_t& winner : ranks) {
-        while (random.below(population - rank) >= size)
+        while (random.below(population - rank) >= size) {
             ++rank;
+        }
         winner = rank++;
         --size;
     }
@@ -93,27 +98,32 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
 /// How many of `population` ranks are better than the best of `size` different draws. Source: Vitter 1987, "An
 /// efficient algorithm for sequential random sampling", algorithm D.
 std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::RandomStream& random) {
-    if (size == 1)
+    if (size == 1) {
         return random.below(population);
+    }
     const double ranks = population, draws = size, ends = ranks - draws + 1; // a skip is less than `ends`
     while (true) {
         // A proposal from nearly the law, ...
         const double x = ranks * (1 - base::pow(1 - random.uniform(), 1 / draws));
-        if (x >= ends)
+        if (x >= ends) {
             continue;
+        }
         const double skip = std::floor(x);
         // ... accepted by a bound that is quick to find, ...
         const double needed = base::pow(random.uniform() * ranks / ends, 1 / (draws - 1));
-        if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1)
+        if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1) {
             return static_cast<std::uint32_t>(skip);
+        }
         // ... or by the law itself.
         double product = 1, above = ranks - 1;
         double below = draws - 1 > skip ? ranks - draws : ranks - skip - 1;
         const double last = draws - 1 > skip ? ranks - skip : ends;
-        for (double factor = ranks - 1; factor >= last; --factor)
+        for (double factor = ranks - 1; factor >= last; --factor) {
             product *= above-- / below--;
-        if (ranks / (ranks - x) >= needed * base::pow(product, 1 / (draws - 1)))
+        }
+        if (ranks / (ranks - x) >= needed * base::pow(product, 1 / (draws - 1))) {
             return static_cast<std::uint32_t>(skip);
+        }
     }
 }
 
@@ -154,14 +164,18 @@ constexpr std::uint64_t walked_ranks_max = 13;
 
 Way choose_way(std::uint32_t population, const Tournament& tournament) {
     const std::uint64_t size = tournament.size, winners = tournament.winners;
-    if (tournament.replacement)
+    if (tournament.replacement) {
         return size <= held_contestants_max || size < 4 * winners ? Way::Held : Way::OrderStatistics;
-    if (winners == 1)
+    }
+    if (winners == 1) {
         return size <= held_contestants_max ? Way::Held : Way::WheelOfRanks;
-    if (size <= held_contestants_max)
+    }
+    if (size <= held_contestants_max) {
         return Way::Held;
-    if (population <= walked_ranks_max * size)
+    }
+    if (population <= walked_ranks_max * size) {
         return Way::WalkDownRanks;
+    }
     return size < 4 * winners ? Way::Held : Way::SkipRanks;
 }
 
@@ -182,10 +196,11 @@ Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint
 
 /// Of Way::Held.
 void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSet& drawn, base::RandomStream& random) {
-    if (rules.replacement)
+    if (rules.replacement) {
         draw_contestants(rules.population, contestants, random);
-    else
+    } else {
         draw_different_contestants(rules.population, contestants, drawn, random);
+    }
 }
 
 DrawnSet drawn_set_for(const Rules& rules) {
@@ -207,8 +222,9 @@ std::uint32_t winners_of_each(std::uint32_t population, const Tournament& tourna
 std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t population, const Tournament& tournament,
                                           std::uint32_t wanted, const base::RandomKey& key) {
     const Rules rules = rules_of(population, tournament, wanted);
-    if (rules.way != Way::Held)
+    if (rules.way != Way::Held) {
         return {};
+    }
     std::vector<std::uint32_t> contestants(rules.size);
     DrawnSet drawn = drawn_set_for(rules);
     base::RandomStream random{key, index};
@@ -219,8 +235,9 @@ std::vector<std::uint32_t> contestants_of(std::uint32_t index, std::uint32_t pop
 std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& tournament, std::uint32_t wanted,
                                             const base::RandomKey& key, base::Executor& executor) {
     const auto population = static_cast<std::uint32_t>(ranking.fitness().size());
-    if (wanted == 0)
+    if (wanted == 0) {
         return {};
+    }
     const Rules rules = rules_of(population, tournament, wanted);
     const std::uint32_t size = rules.size, winners = rules.winners;
     const Way way = rules.way;
@@ -262,19 +279,22 @@ std::vector<std::uint32_t> hold_tournaments(Ranking& ranking, const Tournament& 
                     skip_to_different_winning_ranks(population, size, contestants, random);
                     break;
                 }
-                for (const std::uint32_t contestant : contestants)
+                for (const std::uint32_t contestant : contestants) {
                     __builtin_prefetch(held ? static_cast<const void*>(&ranking.fitness()[contestant])
                                             : static_cast<const void*>(&best_first[contestant]));
+                }
             }
             for (std::size_t i = 0; i < count; ++i) {
                 const std::span<std::uint32_t> contestants = contestants_of(i);
-                if (!held)
-                    for (std::uint32_t& rank : contestants)
+                if (!held) {
+                    for (std::uint32_t& rank : contestants) {
                         rank = best_first[rank];
-                else if (winners == 1)
+                    }
+                } else if (winners == 1) {
                     contestants[0] = *std::min_element(contestants.begin(), contestants.end(), fitter);
-                else
+                } else {
                     std::partial_sort(contestants.begin(), contestants.begin() + winners, contestants.end(), fitter);
+                }
                 const std::size_t begin = (first + i) * winners;
                 std::copy_n(contestants.begin(), std::min<std::size_t>(winners, wanted - begin),
                             picked.begin() + static_cast<std::ptrdiff_t>(begin));

@@ -10,12 +10,14 @@ namespace {
 
 void make_non_negative(std::vector<double>& weights) {
     const auto [least, greatest] = std::minmax_element(weights.begin(), weights.end());
-    if (*least >= 0)
+    if (*least >= 0) {
         return;
+    }
     const double unit = std::isfinite(*greatest - *least) ? 1 : 0.5;
     const double floor = *least * unit;
-    for (double& weight : weights)
+    for (double& weight : weights) {
         weight = weight * unit - floor;
+    }
 }
 
 /// A power of two that brings `greatest` near 1, so that sums neither overflow nor lose all their digits.
@@ -31,8 +33,9 @@ Wheel::Wheel(std::vector<double> weights) : ends_{std::move(weights)} {
     make_non_negative(ends_);
     const double greatest = *std::max_element(ends_.begin(), ends_.end());
     EVOD_ASSERT(std::isfinite(greatest));
-    if (greatest == 0)
+    if (greatest == 0) {
         std::fill(ends_.begin(), ends_.end(), 1.0);
+    }
     const double unit = greatest == 0 ? 1 : near_one(greatest);
     double end = 0;
     for (double& weight : ends_) {
@@ -45,8 +48,9 @@ Wheel::Wheel(std::vector<double> weights) : ends_{std::move(weights)} {
     std::uint32_t organism = 0;
     for (std::size_t i = 0; i < population; ++i) {
         const double place = static_cast<double>(i) * step;
-        while (organism + 1 < population && ends_[organism] <= place)
+        while (organism + 1 < population && ends_[organism] <= place) {
             ++organism;
+        }
         guide_[i] = organism;
     }
 }
@@ -55,10 +59,12 @@ std::uint32_t Wheel::at(double turns) const {
     const double place = turns * ends_.back();
     std::uint32_t organism = guide_[static_cast<std::size_t>(turns * static_cast<double>(guide_.size()))];
     // Rounding can put the guide one slot too far.
-    while (organism > 0 && ends_[organism - 1] > place)
+    while (organism > 0 && ends_[organism - 1] > place) {
         --organism;
-    while (ends_[organism] <= place)
+    }
+    while (ends_[organism] <= place) {
         ++organism;
+    }
     return organism;
 }
 

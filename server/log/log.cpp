@@ -26,15 +26,19 @@ std::size_t character_bytes(std::string_view text) {
                               : byte(0) < 0xf0  ? 3
                               : byte(0) <= 0xf4 ? 4
                                                 : 0;
-    if (count > text.size())
+    if (count > text.size()) {
         return 0;
-    for (std::size_t i = 1; i < count; ++i)
-        if ((byte(i) & 0xc0) != 0x80)
+    }
+    for (std::size_t i = 1; i < count; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) {
             return 0;
+        }
+    }
     // Longer than needed, half of a pair of UTF-16, or beyond the last character: RFC 3629 §4.
     if ((byte(0) == 0xe0 && byte(1) < 0xa0) || (byte(0) == 0xed && byte(1) > 0x9f) ||
-        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f))
+        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f)) {
         return 0;
+    }
     return count;
 }
 
@@ -48,14 +52,15 @@ std::string json_text(std::string_view text) {
                                  : count == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0
                                      ? static_cast<unsigned char>(text[1])
                                      : 0x100u;
-        if (count == 0)
+        if (count == 0) {
             quoted += "\\ufffd";
-        else if (control < 0x100)
+        } else if (control < 0x100) {
             quoted += fmt::format("\\u{:04x}", control);
-        else if (first == '"' || first == '\\')
+        } else if (first == '"' || first == '\\') {
             (quoted += '\\') += text[0];
-        else
+        } else {
             quoted += text.substr(0, count);
+        }
         text.remove_prefix(std::max<std::size_t>(count, 1));
     }
     return quoted + '"';
@@ -95,12 +100,15 @@ std::string json_line(std::chrono::system_clock::time_point time, Level level, c
     std::string line = fmt::format(R"({{"time":"{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z","level":"{}","message":{})",
                                    utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec,
                                    milliseconds, level_names[static_cast<std::size_t>(level)], json_text(message));
-    if (fields.session)
+    if (fields.session) {
         line += fmt::format(R"(,"session":{})", *fields.session);
+    }
     for (const auto& [name, value] :
-         {std::pair{"client", &fields.client}, std::pair{"world", &fields.world}, std::pair{"code", &fields.code}})
-        if (!value->empty())
+         {std::pair{"client", &fields.client}, std::pair{"world", &fields.world}, std::pair{"code", &fields.code}}) {
+        if (!value->empty()) {
             line += fmt::format(R"(,"{}":{})", name, json_text(*value));
+        }
+    }
     return line + '}';
 }
 

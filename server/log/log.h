@@ -47,8 +47,9 @@ template <Level level>
 struct Says {
     template <class... Arguments>
     void operator()(const Fields& fields, fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
-        if (wanted(level))
+        if (wanted(level)) {
             write(level, fields, fmt::format(text, std::forward<Arguments>(arguments)...));
+        }
     }
     template <class... Arguments>
     void operator()(fmt::format_string<Arguments...> text, Arguments&&... arguments) const {

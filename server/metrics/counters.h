@@ -47,8 +47,9 @@ class TimeHistogram {
         duration decade{100};
         for (std::size_t i = 0; i < made.size(); ++i) {
             made[i] = decade * std::array{1, 2, 5}[i % 3];
-            if (i % 3 == 2)
+            if (i % 3 == 2) {
                 decade *= 10;
+            }
         }
         return made;
     }();
@@ -64,8 +65,9 @@ class TimeHistogram {
     std::uint64_t count(std::size_t bucket) const { return counts_[bucket].value(); }
     std::uint64_t count() const {
         std::uint64_t all = 0;
-        for (const Counter& of_bucket : counts_)
+        for (const Counter& of_bucket : counts_) {
             all += of_bucket.value();
+        }
         return all;
     }
     double sum_s() const { return static_cast<double>(sum_ns_.value()) * 1e-9; }
@@ -86,9 +88,10 @@ class TimeHistogram {
     /// By width in bits: the bucket of the least number of that width.
     static constexpr std::array<std::size_t, 65> first_bucket = [] {
         std::array<std::size_t, 65> made{};
-        for (std::size_t width = 1; width < made.size(); ++width)
+        for (std::size_t width = 1; width < made.size(); ++width) {
             made[width] = static_cast<std::size_t>(
                 std::ranges::lower_bound(bounds_ns, std::uint64_t{1} << (width - 1)) - bounds_ns.begin());
+        }
         return made;
     }();
 

@@ -16,8 +16,9 @@ std::string escaped(std::string_view text, bool quotes) {
             safe += "\\n";
             continue;
         }
-        if (c == '\\' || (quotes && c == '"'))
+        if (c == '\\' || (quotes && c == '"')) {
             safe += '\\';
+        }
         safe += c;
     }
     return safe;
@@ -25,10 +26,12 @@ std::string escaped(std::string_view text, bool quotes) {
 
 /// Shortest text that reads back as the same number; whole numbers without an exponent as far as they are exact.
 std::string number_text(double value) {
-    if (std::isnan(value))
+    if (std::isnan(value)) {
         return "NaN";
-    if (std::isinf(value))
+    }
+    if (std::isinf(value)) {
         return value > 0 ? "+Inf" : "-Inf";
+    }
     char digits[32];
     constexpr double exact_max = 9007199254740992; // 2^53
     const auto end = value == std::trunc(value) && std::abs(value) <= exact_max
@@ -44,10 +47,12 @@ std::string labels_text(const v1::MetricSample& sample, const std::string& bound
         text += text.empty() ? '{' : ',';
         text += std::string{name} + "=\"" + escaped(value, true) + '"';
     };
-    for (const v1::MetricLabel& label : sample.labels())
+    for (const v1::MetricLabel& label : sample.labels()) {
         add(label.name(), label.value());
-    if (!bound.empty())
+    }
+    if (!bound.empty()) {
         add("le", bound);
+    }
     return text.empty() ? text : text + '}';
 }
 

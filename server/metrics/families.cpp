@@ -34,10 +34,12 @@ Family& Family::add(double value, Labels labels) {
 
 Family& Family::add(const TimeHistogram& histogram, Labels labels) {
     v1::MetricHistogram& told = *sample(labels).mutable_histogram();
-    for (const auto bound : TimeHistogram::bounds)
+    for (const auto bound : TimeHistogram::bounds) {
         told.add_bounds(seconds(bound));
-    for (std::size_t bucket = 0; bucket <= TimeHistogram::bounds.size(); ++bucket)
+    }
+    for (std::size_t bucket = 0; bucket <= TimeHistogram::bounds.size(); ++bucket) {
         told.add_counts(histogram.count(bucket));
+    }
     told.set_sum(histogram.sum_s());
     return *this;
 }

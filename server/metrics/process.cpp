@@ -25,15 +25,18 @@ double start_time_s() {
     std::ifstream file{"/proc/self/stat"};
     std::string text{std::istreambuf_iterator<char>{file}, {}};
     const auto name_end = text.rfind(')'); // of the second field, which may hold anything
-    if (name_end == std::string::npos)
+    if (name_end == std::string::npos) {
         return 0;
+    }
     std::istringstream fields{text.substr(name_end + 1)};
     std::string skipped;
-    for (int field = 3; field < 22; ++field)
+    for (int field = 3; field < 22; ++field) {
         fields >> skipped;
+    }
     double clock_ticks = 0;
-    if (!(fields >> clock_ticks))
+    if (!(fields >> clock_ticks)) {
         return 0;
+    }
     return seconds_on(CLOCK_REALTIME) - seconds_on(CLOCK_BOOTTIME) +
            clock_ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
@@ -51,18 +54,22 @@ Process look_at_process() {
         process.resident_bytes = resident_pages * page_bytes;
     }
     std::error_code ignored;
-    for (std::filesystem::directory_iterator file{"/proc/self/fd", ignored}, end; file != end; file.increment(ignored))
+    for (std::filesystem::directory_iterator file{"/proc/self/fd", ignored}, end; file != end;
+         file.increment(ignored)) {
         ++process.open_files;
+    }
     rlimit files{};
-    if (::getrlimit(RLIMIT_NOFILE, &files) == 0)
+    if (::getrlimit(RLIMIT_NOFILE, &files) == 0) {
         process.open_files_max = files.rlim_cur;
+    }
     return process;
 }
 
 std::optional<double> cpu_s_of(pthread_t thread) {
     clockid_t clock{};
-    if (::pthread_getcpuclockid(thread, &clock) != 0)
+    if (::pthread_getcpuclockid(thread, &clock) != 0) {
         return std::nullopt;
+    }
     return seconds_on(clock);
 }
 

@@ -18,9 +18,11 @@ std::vector<std::shared_ptr<const World>> Worlds::list() const {
     std::vector<std::shared_ptr<const World>> listed;
     {
         const std::lock_guard lock{mutex_};
-        for (const auto& weak : worlds_)
-            if (auto world = weak.lock())
+        for (const auto& weak : worlds_) {
+            if (auto world = weak.lock()) {
                 listed.push_back(std::move(world));
+            }
+        }
     }
     std::ranges::sort(listed, {}, [](const auto& world) -> const std::string& { return world->name; });
     return listed;

@@ -20,16 +20,19 @@ constexpr std::ptrdiff_t answer_bytes = 2 << 20;
 base::Result<storage::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
                                         const std::stop_token& stop) {
     const auto file = run.past.open();
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held.error();
+    }
     storage::WantedBreeding wanted{.generation = {},
                                    .seen_from = run.generation,
                                    .island = request.island(),
                                    .rows = protocol::wanted_rows(request)};
-    if (request.has_generation())
+    if (request.has_generation()) {
         wanted.generation = request.generation();
+    }
     const auto executor = runtime::make_executor(1);
     return storage::breeding_of(**file, wanted, *executor, stop);
 }
@@ -56,8 +59,9 @@ void Breedings::begin_next() {
         const auto next = std::ranges::find_if(waiting_, [&](const Asked& asked) {
             return std::ranges::find(under_way_, asked.session, &Work::session) == under_way_.end();
         });
-        if (next == waiting_.end())
+        if (next == waiting_.end()) {
             return;
+        }
         Asked asked = std::move(*next);
         waiting_.erase(next);
         begin(std::move(asked));
@@ -65,8 +69,9 @@ void Breedings::begin_next() {
 }
 
 void Breedings::begin(Asked asked) {
-    if (const auto asking = asked.asking.lock())
+    if (const auto asking = asked.asking.lock()) {
         asking->expect(answer_bytes);
+    }
     under_way_.push_back({asked.session, {}});
     const auto work = std::prev(under_way_.end());
     work->thread = std::jthread{[this, work, asked = std::move(asked)](const std::stop_token& stop) {
@@ -74,8 +79,9 @@ void Breedings::begin(Asked asked) {
         outbox_.answer([this, work, asked, response = response_to(asked, stop)]() mutable {
             if (const auto asking = asked.asking.lock()) {
                 asking->expect(-answer_bytes);
-                if (is_cut(asked.request, response.breeding()))
+                if (is_cut(asked.request, response.breeding())) {
                     limit_counters_.met(Limit::BreedingRows);
+                }
                 asking->answer(std::move(response));
             }
             under_way_.erase(work); // its thread is at its end
@@ -86,8 +92,9 @@ void Breedings::begin(Asked asked) {
 
 v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& stop) {
     const auto bred = base::within_memory([&] { return breeding_of(asked.request, asked.run, stop); });
-    if (!bred)
+    if (!bred) {
         return protocol::refusing(asked.request_id, protocol::with_paths(bred.error(), "get_breeding"));
+    }
     v1::Response response;
     response.set_request_id(asked.request_id);
     *response.mutable_breeding() = protocol::to_proto(bred->record, bred->parameters);
@@ -98,9 +105,11 @@ v1::Response Breedings::response_to(const Asked& asked, const std::stop_token& s
 
 void Breedings::forget(const Session& session) {
     std::erase_if(waiting_, [&](const Asked& asked) { return asked.session == session.number(); });
-    for (Work& work : under_way_)
-        if (work.session == session.number())
+    for (Work& work : under_way_) {
+        if (work.session == session.number()) {
             work.thread.request_stop();
+        }
+    }
 }
 
 } // namespace evod::network

@@ -24,8 +24,9 @@ Budget::Clock::time_point Budget::when_saved(double bytes, Clock::time_point now
 }
 
 void Budget::tell_more(v1::Detail detail, Clock::time_point now) {
-    if (detail < detail_)
+    if (detail < detail_) {
         rose_ = now;
+    }
     detail_ = std::min(detail_, detail);
     try_more_ = now + patience_;
 }

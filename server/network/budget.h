@@ -71,8 +71,9 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
         // its dots.
         const auto affordable = [&](v1::Detail detail) { return static_cast<double>(cost(detail)) <= saved_bytes_; };
         v1::Detail more = most_;
-        while (more != detail_ && !affordable(more))
+        while (more != detail_ && !affordable(more)) {
             more = less(more);
+        }
         tell_more(more, now);
     }
     for (;;) {
@@ -83,8 +84,9 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
             tell_less(now);
             continue;
         }
-        if (needed > saved_bytes_)
+        if (needed > saved_bytes_) {
             return {std::nullopt, when_saved(needed, now)};
+        }
         saved_bytes_ -= bytes;
         return {detail_, detail_ == most_ ? now : try_more_};
     }
@@ -93,14 +95,17 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
 template <class Cost>
 Budget::Choice Budget::look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost) {
     save(now);
-    if (detail_ >= shown && now < try_more_)
+    if (detail_ >= shown && now < try_more_) {
         return {std::nullopt, try_more_};
+    }
     for (v1::Detail detail = most_; detail < shown; detail = less(detail)) {
         const auto bytes = static_cast<double>(cost(detail));
-        if (bytes > saved_bytes_max())
+        if (bytes > saved_bytes_max()) {
             continue;
-        if (bytes > saved_bytes_)
+        }
+        if (bytes > saved_bytes_) {
             return {std::nullopt, when_saved(bytes, now)};
+        }
         saved_bytes_ -= bytes;
         tell_more(detail, now);
         return {detail, try_more_};

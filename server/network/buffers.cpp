@@ -8,8 +8,9 @@ namespace evod::network {
 
 Buffers::Held::Held(Buffers& buffers, SharedBytes bytes) : buffers_{&buffers}, bytes_{std::move(bytes)} {
     EVOD_ASSERT(bytes_ != nullptr);
-    if (++buffers_->holders_[bytes_.get()] == 1)
+    if (++buffers_->holders_[bytes_.get()] == 1) {
         buffers_->add(bytes_->size());
+    }
 }
 
 Buffers::Held::Held(Held&& other) noexcept
@@ -25,8 +26,9 @@ Buffers::Held& Buffers::Held::operator=(Held&& other) noexcept {
 }
 
 void Buffers::Held::let_go() {
-    if (!bytes_)
+    if (!bytes_) {
         return;
+    }
     const auto holders = buffers_->holders_.find(bytes_.get());
     if (--holders->second == 0) {
         buffers_->holders_.erase(holders);
@@ -40,17 +42,19 @@ std::size_t Buffers::Held::share() const {
 }
 
 void Buffers::Own::set(std::size_t bytes) {
-    if (bytes > bytes_)
+    if (bytes > bytes_) {
         buffers_.add(bytes - bytes_);
-    else
+    } else {
         buffers_.bytes_ -= bytes_ - bytes;
+    }
     bytes_ = bytes;
 }
 
 void Buffers::add(std::size_t bytes) {
     bytes_ += bytes;
-    if (bytes_ <= bytes_max_ || std::exchange(told_, true))
+    if (bytes_ <= bytes_max_ || std::exchange(told_, true)) {
         return;
+    }
     over_();
 }
 

@@ -11,20 +11,23 @@ namespace evod::network {
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after) {
     if (!codec::same_unchanging(after, before) || after.generation() != before.generation() ||
         after.generation_tick() < before.generation_tick() ||
-        after.generation_tick() - before.generation_tick() > std::numeric_limits<std::uint16_t>::max())
+        after.generation_tick() - before.generation_tick() > std::numeric_limits<std::uint16_t>::max()) {
         return std::nullopt;
+    }
     return static_cast<std::uint16_t>(after.generation_tick() - before.generation_tick());
 }
 
-ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, bool with_delta) const {
+ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                   bool with_delta) const {
     const auto ticks = ticks_between(*about_, *about);
-    if (!ticks || !with_delta || !codec::follows(*scene, *baseline_.scene))
+    if (!ticks || !with_delta || !codec::follows(*scene, *baseline_.scene)) {
         return std::make_shared<ChainPicture>(std::move(about), std::move(scene), *compressor_);
+    }
     // What stayed is paired once for both: the next baseline, and the delta, which whoever keeps up is sent.
     codec::Baseline baseline = codec::initial_baseline(std::move(scene));
     baseline.ticks = *ticks > 0 ? *ticks : baseline_.ticks;
     const codec::AdvancedColumns moved{.organisms = {baseline.organisms.x, baseline.organisms.y},
-                              .crates = {baseline.crates.x, baseline.crates.y}};
+                                       .crates = {baseline.crates.x, baseline.crates.y}};
     codec::Seams seams;
     std::string delta = codec::encode_delta(baseline_, *baseline.scene, *ticks, &moved, &seams);
     auto picture = std::make_shared<ChainPicture>(std::move(about), std::move(baseline), *compressor_);
@@ -36,8 +39,9 @@ ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::
 
 const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression, bool as_delta) {
     SharedBytes& bytes = forms[compression == v1::COMPRESSION_ZSTD ? 1 : 0];
-    if (bytes)
+    if (bytes) {
         return bytes;
+    }
     v1::SnapshotFrame frame = *about_;
     frame.set_codec(v1::CODEC_DELTA);
     if (as_delta) {
@@ -66,8 +70,9 @@ const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const codec::Q
     const bool keyframe_due = now + between > keyframe_made_ + keyframe_interval;
     latest_ = latest_ ? latest_->next(std::move(about), std::move(scene), !keyframe_due)
                       : std::make_shared<ChainPicture>(std::move(about), std::move(scene), compressor);
-    if (latest_->base_sequence() == 0)
+    if (latest_->base_sequence() == 0) {
         keyframe_made_ = now;
+    }
     return latest_;
 }
 

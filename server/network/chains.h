@@ -48,7 +48,8 @@ class ChainPicture {
 
     /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
     /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
-    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, bool with_delta) const;
+    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                       bool with_delta) const;
 
     std::uint64_t sequence() const { return about_->sequence(); }
     /// Who was sent that picture last can take the delta; 0: there is none.
@@ -80,8 +81,9 @@ using ChainPicturePtr = std::shared_ptr<ChainPicture>;
 class Chain {
   public:
     /// between  how long it usually is to the next picture.
-    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor,
-                               runtime::Clock::time_point now, runtime::Clock::duration between);
+    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                               codec::Compressor& compressor, runtime::Clock::time_point now,
+                               runtime::Clock::duration between);
 
     /// Null before the first.
     const ChainPicturePtr& latest() const { return latest_; }
@@ -98,11 +100,13 @@ class Chain {
 template <class Message>
 std::string_view sent_body(Message& message, std::string_view body, const codec::Seams& seams,
                            v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {
-    if (compression != v1::COMPRESSION_ZSTD)
+    if (compression != v1::COMPRESSION_ZSTD) {
         return body;
+    }
     compressed = compressor.compress(body, seams);
-    if (compressed.size() >= body.size())
+    if (compressed.size() >= body.size()) {
         return body;
+    }
     message.set_compression(v1::COMPRESSION_ZSTD);
     return compressed;
 }

@@ -14,10 +14,12 @@ namespace {
 /// A file after all that it imports.
 void add(const google::protobuf::FileDescriptor& file, google::protobuf::FileDescriptorSet& set,
          std::set<std::string>& added) {
-    if (!added.insert(file.name()).second)
+    if (!added.insert(file.name()).second) {
         return;
-    for (int i = 0; i < file.dependency_count(); ++i)
+    }
+    for (int i = 0; i < file.dependency_count(); ++i) {
         add(*file.dependency(i), set, added);
+    }
     file.CopyTo(set.add_file());
 }
 
@@ -27,8 +29,9 @@ v1::Description make_description() {
     std::set<std::string> added;
     add(*v1::ClientMessage::descriptor()->file(), set, added);
     description.set_file_descriptor_set(set.SerializeAsString());
-    for (const auto& parameter : simulation::parameter_registry())
+    for (const auto& parameter : simulation::parameter_registry()) {
         *description.add_parameters() = protocol::to_proto(parameter);
+    }
     return description;
 }
 

@@ -57,40 +57,46 @@ v1::Response response_to(std::uint64_t request_id) {
 
 v1::Response response_to(const v1::Request& request, const simulation::Laboratory& laboratory,
                          const base::Result<simulation::Applied>& applied) {
-    if (!applied)
+    if (!applied) {
         return protocol::refusing(request.request_id(), protocol::with_paths(applied.error(), name_of(request)));
+    }
     v1::Response response = response_to(request.request_id());
     response.set_applied_tick(applied->tick);
-    if (applied->planned)
+    if (applied->planned) {
         *response.mutable_planned_change() = protocol::to_proto(*applied->planned);
-    else if (applied->parameters)
+    } else if (applied->parameters) {
         *response.mutable_parameters() = protocol::to_proto(*applied->parameters);
-    else if (const auto entry = laboratory.find(applied->world); entry && !request.has_delete_world())
+    } else if (const auto entry = laboratory.find(applied->world); entry && !request.has_delete_world()) {
         *response.mutable_world() = protocol::to_proto(**entry);
+    }
     return response;
 }
 
 storage::WantedMoment wanted(const v1::RunMoment& moment) {
     storage::WantedMoment to;
-    if (moment.has_generation())
+    if (moment.has_generation()) {
         to.generation = moment.generation();
-    if (moment.has_tick())
+    }
+    if (moment.has_tick()) {
         to.tick = moment.tick();
+    }
     return to;
 }
 
 /// request  of RequestKind::Past.
 runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, runtime::PastReply reply) {
-    if (request.has_open_replay())
+    if (request.has_open_replay()) {
         return {runtime::OpenReplay{.world = protocol::lookup_name(request.open_replay().world()),
-                                  .at = wanted(request.open_replay().at()),
-                                  .owner = owner},
+                                    .at = wanted(request.open_replay().at()),
+                                    .owner = owner},
                 std::move(reply)};
-    if (request.has_seek())
+    }
+    if (request.has_seek()) {
         return {runtime::Seek{.world = protocol::lookup_name(request.seek().world()),
                               .to = wanted(request.seek().to()),
                               .owner = owner},
                 std::move(reply)};
+    }
     return {runtime::CloseReplay{protocol::lookup_name(request.close_replay().world())}, std::move(reply)};
 }
 
@@ -101,10 +107,12 @@ tables::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
     to.table = static_cast<tables::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
         request.format() == v1::TEXT_FORMAT_JSON_LINES ? tables::Table::Format::JsonLines : tables::Table::Format::Csv;
-    if (request.has_generation())
+    if (request.has_generation()) {
         to.generation = request.generation();
-    if (request.has_of())
+    }
+    if (request.has_of()) {
         to.of = {request.of().generation(), request.of().island(), request.of().organism()};
+    }
     return to;
 }
 
@@ -132,11 +140,13 @@ bool is_of_own_past(const Session& session, const v1::Request& request) {
 
 /// Of a command that is wrong in itself.
 void count_limits_met(const v1::Request& request, LimitCounters& counters) {
-    if (request.client_key().size() > protocol::client_key_bytes_max)
+    if (request.client_key().size() > protocol::client_key_bytes_max) {
         counters.met(Limit::ClientKeyBytes);
+    }
     if (std::max(request.create_world().name().size(), request.fork_world().name().size()) >
-        simulation::world_name_bytes_max)
+        simulation::world_name_bytes_max) {
         counters.met(Limit::WorldNameBytes);
+    }
 }
 
 base::Refusal server_goes_away() {
@@ -188,46 +198,56 @@ void Dispatcher::handle(Session& session, v1::Request request) {
     const auto refuse_it = [&](const base::Refusal& refused) {
         session.send_unasked(protocol::refusing(request.request_id(), refused));
     };
-    if (going_away_)
+    if (going_away_) {
         return refuse_it(server_goes_away());
+    }
     const auto kind = protocol::kind_of(request);
-    if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace))
+    if (kind != protocol::RequestKind::Unknown && log::wanted(log::Level::Trace)) {
         log::trace({.session = session.number(), .client = session.by()}, "session {}: {} asks {}, request {}",
                    session.number(), session.by(), name_of(request), request.request_id());
-    if (kind == protocol::RequestKind::Unknown)
+    }
+    if (kind == protocol::RequestKind::Unknown) {
         return refuse_it(refusal(
             base::RefusalCode::Unimplemented,
             "this server does not know the request: it may be older than the client; Describe tells what it knows",
             base::Reason::RequestUnknown));
+    }
     if (const auto needed = access::role_needed(request.kind_case(), is_of_own_past(session, request));
-        session.visitor().role < needed)
+        session.visitor().role < needed) {
         return refuse_it(refusal(base::RefusalCode::PermissionDenied,
                                  name_of(request) + " needs the role " + access::name_of(needed) +
                                      "; this session has the role " + access::name_of(session.visitor().role) +
                                      ": come with a token of that role"));
-    if (request.request_id() == 0)
+    }
+    if (request.request_id() == 0) {
         return refuse_it(protocol::invalid({{"request_id", "at least 1", "0"}}));
-    if (!session.admit_request())
+    }
+    if (!session.admit_request()) {
         return refuse_it(refusal(base::RefusalCode::ResourceExhausted,
                                  std::to_string(requests_in_flight_max) +
                                      " requests of this session are unanswered already: wait for an answer",
                                  base::Reason::RequestsInFlightMax));
-    if (session.query_under_way)
+    }
+    if (session.query_under_way) {
         return session.hold_back(std::move(request));
+    }
     serve(session, std::move(request));
 }
 
 void Dispatcher::serve_held_back(Session& session) {
-    while (!session.query_under_way)
-        if (auto request = session.take_held_back())
+    while (!session.query_under_way) {
+        if (auto request = session.take_held_back()) {
             serve(session, *std::move(request));
-        else
+        } else {
             return;
+        }
+    }
 }
 
 void Dispatcher::serve(Session& session, v1::Request request) {
-    if (going_away_)
+    if (going_away_) {
         return session.answer(protocol::refusing(request.request_id(), server_goes_away()));
+    }
     switch (protocol::kind_of(request)) {
     case protocol::RequestKind::Command:
         return command(session, request);
@@ -252,22 +272,24 @@ void Dispatcher::serve(Session& session, v1::Request request) {
 }
 
 void Dispatcher::restore(const std::vector<storage::JournalEntry>& answers) {
-    for (const storage::JournalEntry& entry : answers)
+    for (const storage::JournalEntry& entry : answers) {
         retries_.restore(Retries::key_of(storage::user_of(entry.origin), entry.origin.client_key),
                          entry.origin.request_id, entry.origin.request,
                          std::make_shared<const std::string>(entry.answer));
+    }
 }
 
 void Dispatcher::command(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
     const auto refused = [id](const base::Refusal& why) { return protocol::refusing(id, why); };
 
-    if (const auto unknown = protocol::unknown_field_of(request))
+    if (const auto unknown = protocol::unknown_field_of(request)) {
         return session.answer(refused(
             {.code = base::RefusalCode::Unimplemented,
              .message = "this server does not know a field of the command: it may be older than the client",
              .violations = {{*unknown, "fields of this server's version; Describe lists them", "an unknown field"}},
              .reason = base::Reason::FieldUnknown}));
+    }
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     if (!command) {
         count_limits_met(request, limit_counters_);
@@ -277,8 +299,9 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
     const std::string key = Retries::key_of(session.visitor().name, request.client_key());
     const auto verdict =
         retries_.begin(key, id, bytes_of(request), [weak = session.weak_from_this()](const auto& frame) {
-            if (const auto waiting = weak.lock())
+            if (const auto waiting = weak.lock()) {
                 waiting->answer(frame);
+            }
         });
     switch (verdict) {
     case Retries::Verdict::Known:
@@ -301,14 +324,17 @@ void Dispatcher::command(Session& session, const v1::Request& request) {
 
     auto answered = [this, key, id](const SharedBytes& frame, const base::Refusal* why) {
         // A refusal that may pass leaves no trace: the same request sent again may be carried out.
-        if (why != nullptr && (why->code == base::RefusalCode::Unavailable ||
-                               why->code == base::RefusalCode::ResourceExhausted))
+        if (why != nullptr &&
+            (why->code == base::RefusalCode::Unavailable || why->code == base::RefusalCode::ResourceExhausted)) {
             retries_.forget(key, id, frame);
-        else
+        } else {
             retries_.finish(key, id, frame);
+        }
     };
-    if (!carry_out(*std::move(command), request, {session.number(), session.by(), session.visitor().name}, std::move(answered)))
+    if (!carry_out(*std::move(command), request, {session.number(), session.by(), session.visitor().name},
+                   std::move(answered))) {
         retries_.forget(key, id, encode_response(refused(busy())));
+    }
 }
 
 void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> lease) {
@@ -316,19 +342,22 @@ void Dispatcher::handle_own(v1::Request request, std::optional<std::uint64_t> le
     request.set_request_id(++own_request_id_);
     auto command = protocol::to_command(request, {draw_seed(), draw_run_id()});
     EVOD_ASSERT(command.has_value());
-    if (auto* release = std::get_if<simulation::ReleaseLease>(&*command))
+    if (auto* release = std::get_if<simulation::ReleaseLease>(&*command)) {
         release->lease = lease;
+    }
     carry_out(*std::move(command), request, {0, std::string{protocol::by_the_server}, ""},
               [name = name_of(request)](const SharedBytes&, const base::Refusal* refused) {
-                  if (refused != nullptr && refused->reason != base::Reason::NoLease)
+                  if (refused != nullptr && refused->reason != base::Reason::NoLease) {
                       log::error("{} of the server itself is refused: {}", name, to_text(*refused));
+                  }
               });
 }
 
 bool Dispatcher::carry_out(simulation::Command command, const v1::Request& request, const From& from,
                            Answered answered) {
-    if (auto* change = std::get_if<simulation::SetParameters>(&command))
+    if (auto* change = std::get_if<simulation::SetParameters>(&command)) {
         change->by = from.by;
+    }
     // On the simulation thread: the answer shows the state in which the command begins to hold. Everybody is told once
     // the command cannot be lost any more.
     auto reply = [this, request, from, answered = std::move(answered)](
@@ -347,32 +376,40 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
         if (!applied) {
             told->refused = applied.error();
             if (applied.error().code == base::RefusalCode::ResourceExhausted) {
-                if (request.has_set_parameters())
+                if (request.has_set_parameters()) {
                     limit_counters_.met(Limit::PlannedChanges);
-                else if (laboratory.is_full()) // or memory did not suffice
+                } else if (laboratory.is_full()) { // or memory did not suffice
                     limit_counters_.met(Limit::Worlds);
+                }
             }
         } else if (demand_.events_wanted()) {
             told->event = protocol::event_of(applied_command, *applied, from.by, laboratory);
         }
-        if (applied)
-            if (const auto entry = laboratory.find(applied->world))
-                if ((*entry)->control.leased)
+        if (applied) {
+            if (const auto entry = laboratory.find(applied->world)) {
+                if ((*entry)->control.leased) {
                     told->lease = (*entry)->control.lease;
+                }
+            }
+        }
         auto give = [this, told, answered, key = Retries::key_of(from.user, request.client_key()),
-                     steps = request.has_run_until_tick(),
-                     gone = applied && request.has_delete_world(), world = applied ? applied->world : ""] {
+                     steps = request.has_run_until_tick(), gone = applied && request.has_delete_world(),
+                     world = applied ? applied->world : ""] {
             answered(told->frame, told->refused ? &*told->refused : nullptr);
-            if (gone)
+            if (gone) {
                 streams_.forget_world(world);
-            if (told->event)
+            }
+            if (told->event) {
                 streams_.tell(*told->event);
-            if (told->refused)
+            }
+            if (told->refused) {
                 return; // nothing has changed
-            if (!told->lease)
+            }
+            if (!told->lease) {
                 leases_.end(world);
-            else if (steps && !going_away_)
+            } else if (steps && !going_away_) {
                 leases_.begin(world, *told->lease, key);
+            }
         };
         // At once: who subscribes after the answer hears of what comes after it.
         return runtime::CommandAnswer{*told->frame,
@@ -393,8 +430,9 @@ void Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer) 
 bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, Then then) {
     auto ask = [this, request_id, answer = std::move(answer), then = std::move(then),
                 weak = session.weak_from_this()](const simulation::Laboratory& laboratory) {
-        if (weak.expired())
+        if (weak.expired()) {
             return; // nobody waits for it
+        }
         v1::Response response = response_to(request_id);
         answer(laboratory, response);
         outbox_.answer([this, weak, then, response = std::move(response)]() mutable {
@@ -416,15 +454,17 @@ bool Dispatcher::ask(Session& session, std::uint64_t request_id, Answer answer, 
 
 void Dispatcher::query(Session& session, v1::Request request) {
     const std::uint64_t id = request.request_id();
-    if (auto faults = protocol::faults_of(request); !faults.empty())
+    if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
+    }
     const std::string name = name_of(request);
     const auto put = [name]<class Message>(base::Result<Message> result, v1::Response& response,
                                            Message* (v1::Response::*field)()) {
-        if (result)
+        if (result) {
             *(response.*field)() = *std::move(result);
-        else
+        } else {
             refuse(response, protocol::with_paths(result.error(), name));
+        }
     };
     // The rows of a long answer are copied there and made into a message here.
     const auto ask_for_rows = [&](std::ptrdiff_t bytes, auto find, auto put_rows) {
@@ -433,18 +473,21 @@ void Dispatcher::query(Session& session, v1::Request request) {
         const bool asked = ask(
             session, id,
             [name, find, rows](const simulation::Laboratory& laboratory, v1::Response& response) {
-                if (auto found = find(laboratory))
+                if (auto found = find(laboratory)) {
                     *rows = *std::move(found);
-                else
+                } else {
                     refuse(response, protocol::with_paths(found.error(), name));
+                }
             },
             [bytes, put_rows, rows](Session& asking, v1::Response& response) {
                 asking.expect(-bytes);
-                if (*rows)
+                if (*rows) {
                     put_rows(**rows, response);
+                }
             });
-        if (asked)
+        if (asked) {
             session.expect(bytes);
+        }
     };
     switch (request.kind_case()) {
     case v1::Request::kListWorlds:
@@ -457,8 +500,9 @@ void Dispatcher::query(Session& session, v1::Request request) {
                        const simulation::Laboratory& laboratory, v1::Response& response) {
                        put(protocol::get_parameters(laboratory, request.get_parameters()), response,
                            &v1::Response::mutable_parameters);
-                       if (views)
+                       if (views) {
                            protocol::keep_users_only(response);
+                       }
                    });
     case v1::Request::kGetStatistics:
         return ask(session, id, [put, request](const simulation::Laboratory& laboratory, v1::Response& response) {
@@ -476,10 +520,12 @@ void Dispatcher::query(Session& session, v1::Request request) {
                 return protocol::get_history(laboratory, request.get_history());
             },
             [this](const protocol::HistoryPart& part, v1::Response& response) {
-                if (part.begins_late)
+                if (part.begins_late) {
                     limit_counters_.met(Limit::HistoryGenerationsKept);
-                if (part.next_generation)
+                }
+                if (part.next_generation) {
                     limit_counters_.met(Limit::HistoryGenerations);
+                }
                 *response.mutable_history() = protocol::to_proto(part);
             });
     case v1::Request::kGetBreeding:
@@ -491,8 +537,9 @@ void Dispatcher::query(Session& session, v1::Request request) {
                 return protocol::get_population(laboratory, request.get_population());
             },
             [this](const protocol::PopulationRows& rows, v1::Response& response) {
-                if (rows.first + rows.genes.size() < rows.organism_count)
+                if (rows.first + rows.genes.size() < rows.organism_count) {
                     limit_counters_.met(Limit::PopulationRows);
+                }
                 *response.mutable_population() = protocol::to_proto(rows);
             });
     case v1::Request::kGetMotion:
@@ -518,27 +565,32 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     const auto refuse_it = [&](const base::Refusal& refused) { session.answer(protocol::refusing(id, refused)); };
     if (request.has_unsubscribe()) {
         const std::uint32_t subscription_id = request.unsubscribe().subscription_id();
-        if (!streams_.unsubscribe(session, subscription_id))
+        if (!streams_.unsubscribe(session, subscription_id)) {
             return refuse_it(no_such_subscription("unsubscribe.subscription_id", subscription_id));
+        }
         return session.answer(response_to(id));
     }
     if (request.has_request_keyframe()) {
         const std::uint32_t subscription_id = request.request_keyframe().subscription_id();
-        if (!streams_.send_keyframes(session, subscription_id))
+        if (!streams_.send_keyframes(session, subscription_id)) {
             return refuse_it(no_such_subscription("request_keyframe.subscription_id", subscription_id));
+        }
         return session.answer(response_to(id));
     }
-    if (auto faults = protocol::faults_of(request); !faults.empty())
+    if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return refuse_it(protocol::invalid(std::move(faults)));
+    }
     if (request.has_set_view()) {
         const std::uint32_t subscription_id = request.set_view().subscription_id();
         const auto found = session.snapshots.find(subscription_id);
-        if (found == session.snapshots.end())
+        if (found == session.snapshots.end()) {
             return refuse_it(no_such_subscription("set_view.subscription_id", subscription_id));
-        if (!found->second.view)
+        }
+        if (!found->second.view) {
             return refuse_it(refusal(base::RefusalCode::FailedPrecondition,
                                      "the subscription has no view: its pictures are not made of tiles",
                                      base::Reason::NoView));
+        }
         v1::Response response = response_to(id);
         response.mutable_subscription()->set_subscription_id(subscription_id);
         response.mutable_subscription()->set_rate_hz(found->second.rate_hz);
@@ -549,16 +601,19 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     // The world is looked up by the simulation; the subscription begins back here.
     const auto full = [this](const Session& s) {
         const bool is = s.snapshots.size() + s.events.size() >= subscriptions_max;
-        if (is)
+        if (is) {
             limit_counters_.met(Limit::Subscriptions);
+        }
         return is;
     };
     const auto too_many_islands = [this](const Session& s, const SnapshotSubscription& wanted) {
         std::size_t watched = wanted.island_count;
-        for (const auto& [number, other] : s.snapshots)
+        for (const auto& [number, other] : s.snapshots) {
             watched += other.island_count;
-        if (watched > watched_islands_max)
+        }
+        if (watched > watched_islands_max) {
             limit_counters_.met(Limit::WatchedIslands);
+        }
         return watched > watched_islands_max;
     };
     const auto too_many = refusal(base::RefusalCode::ResourceExhausted,
@@ -573,35 +628,44 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
             [this, name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
                 const auto& subscribe = request.subscribe_snapshots();
                 const auto watched = protocol::find_watched(laboratory, subscribe);
-                if (!watched)
+                if (!watched) {
                     return refuse(response, protocol::with_paths(watched.error(), name));
+                }
                 wanted->world = watched->world;
-                if (subscribe.has_island())
+                if (subscribe.has_island()) {
                     wanted->island = subscribe.island();
-                else
+                } else {
                     wanted->island_count = watched->island_count;
+                }
                 wanted->rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
-                if (wanted->rate_hz < subscribe.rate_hz())
+                if (wanted->rate_hz < subscribe.rate_hz()) {
                     limit_counters_.met(Limit::SnapshotRate);
-                if (subscribe.codec() != v1::CODEC_UNSPECIFIED)
+                }
+                if (subscribe.codec() != v1::CODEC_UNSPECIFIED) {
                     wanted->codec = subscribe.codec();
+                }
                 wanted->compression = subscribe.compression();
-                if (subscribe.has_unacknowledged_max())
+                if (subscribe.has_unacknowledged_max()) {
                     wanted->unacknowledged_max = subscribe.unacknowledged_max();
-                if (subscribe.has_view())
+                }
+                if (subscribe.has_view()) {
                     wanted->set_view(subscribe.view());
+                }
             },
             [this, wanted, full, too_many, too_many_islands](Session& subscriber, v1::Response& response) {
-                if (response.status().code() != v1::CODE_UNSPECIFIED)
+                if (response.status().code() != v1::CODE_UNSPECIFIED) {
                     return;
-                if (full(subscriber))
+                }
+                if (full(subscriber)) {
                     return refuse(response, too_many);
-                if (too_many_islands(subscriber, *wanted))
+                }
+                if (too_many_islands(subscriber, *wanted)) {
                     return refuse(response, refusal(base::RefusalCode::ResourceExhausted,
                                                     "the subscriptions of this session would come to more than " +
                                                         std::to_string(watched_islands_max) +
                                                         " islands: subscribe to single islands, or unsubscribe first",
                                                     base::Reason::SubscriptionsMax));
+                }
                 response.mutable_subscription()->set_rate_hz(wanted->rate_hz);
                 response.mutable_subscription()->set_subscription_id(
                     streams_.subscribe(subscriber, std::move(*wanted)));
@@ -612,57 +676,70 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     ask(
         session, id,
         [name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
-            if (!request.subscribe_events().has_world())
+            if (!request.subscribe_events().has_world()) {
                 return;
+            }
             const auto entry = laboratory.find(protocol::lookup_name(request.subscribe_events().world()));
-            if (!entry)
+            if (!entry) {
                 return refuse(response, protocol::with_paths(entry.error(), name));
+            }
             wanted->world = (*entry)->name;
         },
         [this, wanted, full, too_many](Session& subscriber, v1::Response& response) {
-            if (response.status().code() != v1::CODE_UNSPECIFIED)
+            if (response.status().code() != v1::CODE_UNSPECIFIED) {
                 return;
-            if (full(subscriber))
+            }
+            if (full(subscriber)) {
                 return refuse(response, too_many);
+            }
             response.mutable_subscription()->set_subscription_id(streams_.subscribe(subscriber, std::move(*wanted)));
         });
 }
 
 void Dispatcher::past(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
-    if (auto faults = protocol::faults_of(request); !faults.empty())
+    if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
-    auto reply = [this, id, name = name_of(request), opens = request.has_open_replay(), closes = request.has_close_replay(),
-                  weak = session.weak_from_this()](const simulation::Laboratory& laboratory,
-                                                   const base::Result<std::string>& world) {
+    }
+    auto reply = [this, id, name = name_of(request), opens = request.has_open_replay(),
+                  closes = request.has_close_replay(), weak = session.weak_from_this()](
+                     const simulation::Laboratory& laboratory, const base::Result<std::string>& world) {
         v1::Response response = response_to(id);
-        if (opens && !world && world.error().code == base::RefusalCode::ResourceExhausted)
+        if (opens && !world && world.error().code == base::RefusalCode::ResourceExhausted) {
             limit_counters_.met(Limit::Pasts);
-        if (!world)
+        }
+        if (!world) {
             refuse(response, protocol::with_paths(world.error(), name));
-        else if (const auto entry = laboratory.find(*world); entry && !closes)
+        } else if (const auto entry = laboratory.find(*world); entry && !closes) {
             *response.mutable_world() = protocol::to_proto(**entry);
+        }
         outbox_.answer([weak, opens, closes, world, response = std::move(response)]() mutable {
             const auto asking = weak.lock();
-            if (!asking)
+            if (!asking) {
                 return;
-            if (world && opens)
+            }
+            if (world && opens) {
                 asking->pasts.insert(*world);
-            if (world && closes)
+            }
+            if (world && closes) {
                 asking->pasts.erase(*world);
+            }
             asking->answer(std::move(response));
         });
     };
-    if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply))))
+    if (!mailbox_.try_push(past_mail(request, session.number(), std::move(reply)))) {
         session.answer(protocol::refusing(id, busy()));
+    }
 }
 
 void Dispatcher::export_text(Session& session, const v1::Request& request) {
     const std::uint64_t id = request.request_id();
-    if (auto faults = protocol::faults_of(request); !faults.empty())
+    if (auto faults = protocol::faults_of(request); !faults.empty()) {
         return session.answer(protocol::refusing(id, protocol::invalid(std::move(faults))));
-    if (request.has_continue_export())
+    }
+    if (request.has_continue_export()) {
         return exports_.go_on(session, id, request.continue_export());
+    }
     find_run(session, request, request.export_run().world(), [this, id, request](Session& asking, const auto& run) {
         exports_.begin(asking, id, run.past, wanted(request.export_run(), asking.visitor().role));
     });
@@ -680,16 +757,19 @@ void Dispatcher::find_run(Session& session, const v1::Request& request, const st
                   weak = session.weak_from_this()](const base::Result<runtime::FoundRun>& run) {
         outbox_.answer([id, name, then, run, weak] {
             const auto asking = weak.lock();
-            if (!asking)
+            if (!asking) {
                 return;
-            if (run)
+            }
+            if (run) {
                 then(*asking, *run);
-            else
+            } else {
                 asking->answer(protocol::refusing(id, protocol::with_paths(run.error(), name)));
+            }
         });
     };
-    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(world), std::move(found)}))
+    if (!mailbox_.try_push(runtime::FindRun{protocol::lookup_name(world), std::move(found)})) {
         session.answer(protocol::refusing(id, busy()));
+    }
 }
 
 void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
@@ -698,19 +778,21 @@ void Dispatcher::renew_lease(Session& session, const v1::Request& request) {
     ask(
         session, request.request_id(),
         [request, world](const simulation::Laboratory& laboratory, v1::Response& response) {
-            if (const auto entry = laboratory.find(protocol::lookup_name(request.renew_lease().world())))
+            if (const auto entry = laboratory.find(protocol::lookup_name(request.renew_lease().world()))) {
                 *world = (*entry)->name;
-            else
+            } else {
                 refuse(response, protocol::with_paths(entry.error(), name_of(request)));
+            }
         },
         [this, world, key = request.client_key()](Session& asking, v1::Response& response) {
             if (response.status().code() == v1::CODE_UNSPECIFIED &&
-                !leases_.renew(*world, Retries::key_of(asking.visitor().name, key)))
+                !leases_.renew(*world, Retries::key_of(asking.visitor().name, key))) {
                 refuse(response, {.code = base::RefusalCode::FailedPrecondition,
                                   .message = "this client_key has no lease of that world: it gets one by "
                                              "run_until_tick, if the world runs",
                                   .violations = {{"client_key", "that of the run_until_tick", key}},
                                   .reason = base::Reason::NoLease});
+            }
         });
 }
 

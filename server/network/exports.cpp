@@ -24,8 +24,9 @@ void Exports::give_up(std::map<std::uint64_t, Export>::iterator of) {
 
 void Exports::begin(Session& session, std::uint64_t request_id, const storage::Past& run,
                     const tables::WantedTable& wanted) {
-    if (const auto before = exports_.find(session.number()); before != exports_.end())
+    if (const auto before = exports_.find(session.number()); before != exports_.end()) {
         give_up(before);
+    }
     std::erase_if(given_up_, [](const auto& thread) { return thread->finished(); });
     if (exports_.size() + given_up_.size() >= exports_max) {
         limit_counters_.met(Limit::Exports);
@@ -40,17 +41,19 @@ void Exports::begin(Session& session, std::uint64_t request_id, const storage::P
 
 void Exports::go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request) {
     const auto found = exports_.find(session.number());
-    if (found == exports_.end() || found->second.id != request.export_id())
+    if (found == exports_.end() || found->second.id != request.export_id()) {
         return session.answer(
             refused(request_id, {.code = RefusalCode::NotFound,
                                  .message = "this session has no such export under way: begin one",
                                  .violations = {{"continue_export.export_id", "the id of the export under way",
                                                  std::to_string(request.export_id())}},
                                  .reason = base::Reason::ExportNotFound}));
-    if (found->second.asked)
+    }
+    if (found->second.asked) {
         return session.answer(refused(request_id, refusal(RefusalCode::FailedPrecondition,
                                                           "the part before has not been answered yet: wait for it",
                                                           base::Reason::ExportEnded)));
+    }
     ask(session, request_id, found->second);
 }
 
@@ -59,14 +62,17 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
     from.thread->next([this, request_id, id = from.id, number = session.number(),
                        weak = session.weak_from_this()](base::Result<runtime::ExportThread::Part> part) {
         outbox_.answer([this, request_id, id, number, weak, part = std::move(part)]() mutable {
-            if (!part && part.error().code == RefusalCode::FailedPrecondition)
+            if (!part && part.error().code == RefusalCode::FailedPrecondition) {
                 limit_counters_.met(Limit::ExportPatience);
+            }
             came(number, id, !part || part->last);
             const auto asking = weak.lock();
-            if (!asking)
+            if (!asking) {
                 return;
-            if (!part)
+            }
+            if (!part) {
                 return asking->answer(refused(request_id, protocol::with_paths(part.error(), "export_run")));
+            }
             v1::Response response;
             response.set_request_id(request_id);
             v1::ExportPart& answer = *response.mutable_export_part();
@@ -81,16 +87,19 @@ void Exports::ask(Session& session, std::uint64_t request_id, Export& from) {
 
 void Exports::came(std::uint64_t session, std::uint64_t id, bool last) {
     const auto found = exports_.find(session);
-    if (found == exports_.end() || found->second.id != id)
+    if (found == exports_.end() || found->second.id != id) {
         return; // another has been begun since
+    }
     found->second.asked = false;
-    if (last)
+    if (last) {
         give_up(found);
+    }
 }
 
 void Exports::forget(const Session& session) {
-    if (const auto found = exports_.find(session.number()); found != exports_.end())
+    if (const auto found = exports_.find(session.number()); found != exports_.end()) {
         give_up(found);
+    }
 }
 
 } // namespace evod::network

@@ -35,18 +35,22 @@ bool is_too_long(boost::system::error_code error) {
 
 /// What is wrong with a request, before anybody looks at its path; nothing if it is good.
 std::optional<Http::Page> fault_of(boost::system::error_code error, const Parser& request) {
-    if (is_too_long(error))
+    if (is_too_long(error)) {
         return Http::Page{.status = http::status::request_header_fields_too_large,
                           .text = "the header is larger than " + std::to_string(http_header_bytes_max) +
                                   " bytes: send fewer or shorter fields\n"};
-    if (error)
+    }
+    if (error) {
         return Http::Page{.status = http::status::bad_request,
                           .text = "this is no request of HTTP/1.1: " + error.message() + "\n"};
-    if (request.get().method() != http::verb::get && request.get().method() != http::verb::head)
+    }
+    if (request.get().method() != http::verb::get && request.get().method() != http::verb::head) {
         return Http::Page{.status = http::status::method_not_allowed,
                           .text = "pages can only be read here: use GET or HEAD\n"};
-    if (!request.is_done())
+    }
+    if (!request.is_done()) {
         return Http::Page{.status = http::status::bad_request, .text = "send the request without a body\n"};
+    }
     return std::nullopt;
 }
 
@@ -54,8 +58,9 @@ http::response<http::string_body> response_of(Http::Page page, unsigned version,
     http::response<http::string_body> response{page.status, version};
     response.set(http::field::content_type, page.type);
     response.set(http::field::cache_control, "no-store");
-    if (page.status == http::status::method_not_allowed)
+    if (page.status == http::status::method_not_allowed) {
         response.set(http::field::allow, "GET, HEAD");
+    }
     response.body() = std::move(page.text);
     response.keep_alive(keep_alive);
     response.prepare_payload();
@@ -70,8 +75,9 @@ asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
     std::array<char, 4096> bytes;
     for (;;) {
         const auto [error, count] = co_await stream.async_read_some(asio::buffer(bytes), no_throw);
-        if (error)
+        if (error) {
             co_return;
+        }
     }
 }
 
@@ -80,18 +86,21 @@ asio::awaitable<void> say_goodbye(boost::beast::tcp_stream& stream) {
 base::Result<std::unique_ptr<Http>> Http::open(asio::io_context& context, const std::string& address,
                                                std::uint16_t port, Pages pages, LimitCounters& counters) {
     auto listener = Listener::open(context, address, port, {.address = "--http-bind", .port = "--http-port"});
-    if (!listener)
+    if (!listener) {
         return listener.error();
+    }
     return std::unique_ptr<Http>{new Http{context, *std::move(listener), std::move(pages), counters}};
 }
 
 void Http::start() {
     const auto accepted = [this](tcp::socket socket) {
         const bool full = connections_.size() >= http_connections_max;
-        if (full)
+        if (full) {
             counters_.met(Limit::HttpConnections);
-        if (closed_ || connections_.size() >= 2 * http_connections_max)
+        }
+        if (closed_ || connections_.size() >= 2 * http_connections_max) {
             return;
+        }
         asio::co_spawn(context_, serve(std::move(socket), full), detached);
     };
     asio::co_spawn(context_, listener_.accept(accepted), detached);
@@ -100,8 +109,9 @@ void Http::start() {
 void Http::close() {
     closed_ = true;
     listener_.close();
-    for (boost::beast::tcp_stream* connection : connections_)
+    for (boost::beast::tcp_stream* connection : connections_) {
         connection->close();
+    }
 }
 
 asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
@@ -115,45 +125,56 @@ asio::awaitable<void> Http::serve(tcp::socket socket, bool full) {
         stream.expires_after(http_request_timeout);
         std::size_t header_bytes = 0;
         std::tie(error, header_bytes) = co_await http::async_read_header(stream, buffer, request, no_throw);
-        if (!error && header_bytes > http_header_bytes_max)
+        if (!error && header_bytes > http_header_bytes_max) {
             error = http::error::header_limit;
+        }
         if (closed_ || (error && error.category() != make_error_code(http::error::bad_method).category()) ||
-            error == http::error::end_of_stream)
+            error == http::error::end_of_stream) {
             break; // gone, or too slow
-        if (is_too_long(error))
+        }
+        if (is_too_long(error)) {
             counters_.met(Limit::HttpHeaderBytes);
+        }
         auto answer = fault_of(error, request);
         goes_on = !answer && !full && request.get().keep_alive();
-        if (full)
+        if (full) {
             answer = Page{.status = http::status::service_unavailable,
                           .text = std::to_string(http_connections_max) +
                                   " connections are open already: close one, or try again in a few seconds\n"};
-        if (!answer)
+        }
+        if (!answer) {
             answer = co_await page(std::string{request.get().target()});
+        }
         const auto response = response_of(*std::move(answer), request.get().version() == 10 ? 10 : 11, goes_on);
         http::response_serializer<http::string_body> serializer{response};
         stream.expires_after(http_request_timeout);
-        if (request.get().method() == http::verb::head)
+        if (request.get().method() == http::verb::head) {
             std::tie(error, std::ignore) = co_await http::async_write_header(stream, serializer, no_throw);
-        else
+        } else {
             std::tie(error, std::ignore) = co_await http::async_write(stream, serializer, no_throw);
-        if (error)
+        }
+        if (error) {
             break;
-        if (!goes_on)
+        }
+        if (!goes_on) {
             co_await say_goodbye(stream);
+        }
     }
-    if (error == boost::beast::error::timeout)
+    if (error == boost::beast::error::timeout) {
         counters_.met(Limit::HttpRequestTimeout);
+    }
     connections_.erase(&stream);
 }
 
 asio::awaitable<Http::Page> Http::page(std::string target) {
     const auto found = pages_.find(target.substr(0, target.find('?')));
-    if (found != pages_.end())
+    if (found != pages_.end()) {
         co_return co_await found->second();
+    }
     std::string known;
-    for (const auto& [path, make] : pages_)
+    for (const auto& [path, make] : pages_) {
         known += (known.empty() ? "" : " and ") + path;
+    }
     co_return Page{.status = http::status::not_found, .text = "there is no such page: there are " + known + "\n"};
 }
 

@@ -15,8 +15,9 @@ void Leases::begin(const std::string& world, std::uint64_t number, const std::st
 
 bool Leases::renew(const std::string& world, const std::string& client_key) {
     const auto lease = leases_.find(world);
-    if (lease == leases_.end() || lease->second.client_key != client_key)
+    if (lease == leases_.end() || lease->second.client_key != client_key) {
         return false;
+    }
     await_end(world, lease->second);
     return true;
 }
@@ -26,8 +27,9 @@ void Leases::await_end(const std::string& world, Lease& lease) {
     lease.timer.async_wait([this, world](boost::system::error_code error) {
         const auto ended = leases_.find(world);
         if (error || ended == leases_.end() ||
-            ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now())
+            ended->second.timer.expiry() > boost::asio::steady_timer::clock_type::now()) {
             return; // renewed when it was as good as over
+        }
         ended->second.client_key.clear();
         await_end(world, ended->second);
         over_(world, ended->second.number);

@@ -109,9 +109,10 @@ std::span<const LimitRow> limit_table() {
 
 std::string limit_list() {
     std::string text = "| name | default | of what | what happens |\n|---|---|---|---|\n";
-    for (const LimitRow& row : table)
+    for (const LimitRow& row : table) {
         text += "| `" + std::string{row.name} + "` | " + std::to_string(row.value) + " | " + std::string{row.of} +
                 " | " + std::string{row.then} + " |\n";
+    }
     return text;
 }
 
@@ -121,12 +122,13 @@ v1::Limits limits_message(const SessionBounds& bounds) {
         const auto* field = v1::Limits::descriptor()->FindFieldByName(std::string{row.name});
         EVOD_ASSERT(field != nullptr);
         const auto& in = *v1::Limits::GetReflection();
-        if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE)
+        if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
             in.SetDouble(&limits, field, static_cast<double>(row.value));
-        else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_UINT64)
+        } else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_UINT64) {
             in.SetUInt64(&limits, field, row.value);
-        else
+        } else {
             in.SetUInt32(&limits, field, static_cast<std::uint32_t>(row.value));
+        }
     }
     limits.set_sessions_max(bounds.sessions_max);
     limits.set_sessions_per_address_max(bounds.sessions_per_address_max);

@@ -136,7 +136,7 @@ constexpr std::size_t retry_bytes_max = 64 << 20;
 // Keys whose answers are gone, but not the highest request_id that they used.
 constexpr std::size_t evicted_keys_max = 100'000;
 
-constexpr std::chrono::milliseconds look_every{500};   // for a token file that has changed, and who is stalled
+constexpr std::chrono::milliseconds look_every{500}; // for a token file that has changed, and who is stalled
 // Free memory is given back to the system: so often at most, and only after sessions have ended or so much was
 // answered.
 constexpr std::chrono::seconds trim_every{2};

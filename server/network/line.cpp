@@ -23,8 +23,9 @@ constexpr unsigned char tls_handshake = 22; // the type of TLS's first record, R
 } // namespace
 
 Line::Line(tcp::socket socket, asio::ssl::context* tls) : socket_{std::move(socket)} {
-    if (tls != nullptr)
+    if (tls != nullptr) {
         tls_.emplace(socket_, *tls);
+    }
 }
 
 boost::system::error_code Line::not_tls() {
@@ -32,13 +33,15 @@ boost::system::error_code Line::not_tls() {
 }
 
 asio::awaitable<boost::system::error_code> Line::begin() {
-    if (!tls_)
+    if (!tls_) {
         co_return boost::system::error_code{};
+    }
     unsigned char first = tls_handshake;
     const auto [peek_error, count] =
         co_await socket_.async_receive(asio::buffer(&first, 1), tcp::socket::message_peek, no_throw);
-    if (peek_error)
+    if (peek_error) {
         co_return peek_error;
+    }
     if (first != tls_handshake) {
         tls_.reset();
         co_return not_tls();
@@ -48,14 +51,16 @@ asio::awaitable<boost::system::error_code> Line::begin() {
 }
 
 asio::awaitable<Line::Transferred> Line::read_some(asio::mutable_buffer buffer) {
-    if (tls_)
+    if (tls_) {
         co_return co_await tls_->async_read_some(buffer, no_throw);
+    }
     co_return co_await socket_.async_read_some(buffer, no_throw);
 }
 
 Line::Transferred Line::write_now(std::span<const asio::const_buffer> buffers) {
-    if (tls_)
+    if (tls_) {
         return {};
+    }
     std::array<iovec, buffers_at_once> parts;
     EVOD_ASSERT(buffers.size() <= parts.size());
     std::transform(buffers.begin(), buffers.end(), parts.begin(), [](const asio::const_buffer& buffer) {
@@ -69,14 +74,16 @@ Line::Transferred Line::write_now(std::span<const asio::const_buffer> buffers) {
         given_ += static_cast<std::uint64_t>(sent);
         return {boost::system::error_code{}, static_cast<std::size_t>(sent)};
     }
-    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR)
+    if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) {
         return {};
+    }
     return {boost::system::error_code{errno, boost::system::system_category()}, 0};
 }
 
 asio::awaitable<Line::Transferred> Line::write(const std::vector<asio::const_buffer>& buffers) {
-    if (tls_)
+    if (tls_) {
         co_return co_await asio::async_write(*tls_, buffers, no_throw);
+    }
     const auto count = [this, before = given_](const boost::system::error_code& error, std::size_t so_far) {
         given_ = before + so_far;
         return asio::transfer_all()(error, so_far);
@@ -92,8 +99,9 @@ Line::Progress Line::progress() {
 }
 
 asio::awaitable<void> Line::finish() {
-    if (tls_) // close_notify, RFC 8446 §6.1: who reads knows that this was all
+    if (tls_) { // close_notify, RFC 8446 §6.1: who reads knows that this was all
         co_await tls_->async_shutdown(no_throw);
+    }
     boost::system::error_code ignored; // it may be gone already
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
 }

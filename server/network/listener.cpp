@@ -20,8 +20,9 @@ using asio::ip::tcp;
 base::Result<void> Listener::check(const std::string& address, const char* option) {
     boost::system::error_code error;
     (void)asio::ip::make_address(address, error);
-    if (!error)
+    if (!error) {
         return {};
+    }
     return base::refusal(base::RefusalCode::InvalidArgument,
                          "cannot listen on '" + address + "', which is not an IP address; give " + option +
                              " the address of an interface, such as 127.0.0.1, or 0.0.0.0 for all of them");
@@ -29,8 +30,9 @@ base::Result<void> Listener::check(const std::string& address, const char* optio
 
 base::Result<Listener> Listener::open(asio::io_context& context, const std::string& address, std::uint16_t port,
                                       const Names& names) {
-    if (auto sound = check(address, names.address); !sound)
+    if (auto sound = check(address, names.address); !sound) {
         return sound.error();
+    }
     const std::string where = address + ":" + std::to_string(port);
     const auto refused = [&](const std::string& why) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
@@ -42,20 +44,26 @@ base::Result<Listener> Listener::open(asio::io_context& context, const std::stri
     tcp::acceptor acceptor{context};
     const tcp::endpoint endpoint{ip, port};
     acceptor.open(endpoint.protocol(), error);
-    if (!error)
+    if (!error) {
         acceptor.set_option(tcp::acceptor::reuse_address{true},
                             error); // do not wait for old connections to be forgotten
-    if (!error)
+    }
+    if (!error) {
         acceptor.bind(endpoint, error);
-    if (!error)
+    }
+    if (!error) {
         acceptor.listen(asio::socket_base::max_listen_connections, error);
-    if (error == asio::error::address_in_use)
+    }
+    if (error == asio::error::address_in_use) {
         return refused(std::string{"the port is taken, perhaps by another evod; stop that, or choose another with "} +
                        names.port);
-    if (error == asio::error::access_denied)
+    }
+    if (error == asio::error::access_denied) {
         return refused(std::string{"ports below 1024 need privileges; choose another with "} + names.port);
-    if (error)
+    }
+    if (error) {
         return refused(error.message());
+    }
     return Listener{std::move(acceptor)};
 }
 
@@ -90,12 +98,13 @@ asio::awaitable<void> Listener::accept(std::function<void(tcp::socket)> accepted
             accepted(std::move(socket));
         } else if (error != asio::error::operation_aborted && error != asio::error::connection_aborted) {
             // It would fail again at once, so give sessions time to end.
-            if (!std::exchange(told, true))
+            if (!std::exchange(told, true)) {
                 log::warn("cannot accept a connection: {}; newcomers wait{}", error.message(),
                           error == asio::error::no_descriptors
                               ? " until one of the " + std::to_string(descriptors_max()) +
                                     " file descriptors is free: allow evod more (ulimit -n, or systemd's LimitNOFILE)"
                               : "");
+            }
             pause.expires_after(accept_pause);
             co_await pause.async_wait(no_throw);
         }

@@ -32,16 +32,19 @@ Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t req
     const auto print = fingerprint(request);
     if (const auto found = key.commands.find(request_id); found != key.commands.end()) {
         Command& command = found->second;
-        if (command.request != print)
+        if (command.request != print) {
             return Verdict::Different;
-        if (command.answer)
+        }
+        if (command.answer) {
             waiter(command.answer);
-        else
+        } else {
             command.waiters.push_back(std::move(waiter));
+        }
         return Verdict::Known;
     }
-    if (request_id <= key.forgotten_up_to)
+    if (request_id <= key.forgotten_up_to) {
         return Verdict::TooOld;
+    }
     Command& command = key.commands[request_id];
     command.request = print;
     command.waiters.push_back(std::move(waiter));
@@ -53,37 +56,44 @@ Retries::Verdict Retries::begin(const std::string& client_key, std::uint64_t req
 
 void Retries::finish(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
     const auto found = keys_.find(client_key);
-    if (found == keys_.end())
+    if (found == keys_.end()) {
         return;
+    }
     Key& key = found->second;
     const auto command = key.commands.find(request_id);
-    if (command == key.commands.end())
+    if (command == key.commands.end()) {
         return;
+    }
     command->second.answer = answer;
     answer_bytes_ += answer->size();
     --key.pending_count;
-    for (const Waiter& waiter : std::exchange(command->second.waiters, {}))
+    for (const Waiter& waiter : std::exchange(command->second.waiters, {})) {
         waiter(answer);
+    }
     trim(key);
     trim_keys();
 }
 
 void Retries::restore(const std::string& client_key, std::uint64_t request_id, std::string_view request,
                       const SharedBytes& answer) {
-    if (begin(client_key, request_id, request, [](const SharedBytes&) {}) == Verdict::New)
+    if (begin(client_key, request_id, request, [](const SharedBytes&) {}) == Verdict::New) {
         finish(client_key, request_id, answer);
+    }
 }
 
 void Retries::forget(const std::string& client_key, std::uint64_t request_id, const SharedBytes& answer) {
     const auto found = keys_.find(client_key);
-    if (found == keys_.end())
+    if (found == keys_.end()) {
         return;
+    }
     auto command = found->second.commands.extract(request_id);
-    if (command.empty())
+    if (command.empty()) {
         return;
+    }
     --found->second.pending_count;
-    for (const Waiter& waiter : command.mapped().waiters)
+    for (const Waiter& waiter : command.mapped().waiters) {
         waiter(answer);
+    }
 }
 
 Retries::Key& Retries::touch(const std::string& client_key, std::uint64_t request_id) {
@@ -101,8 +111,9 @@ Retries::Key& Retries::touch(const std::string& client_key, std::uint64_t reques
     Key& key = keys_[client_key];
     key.use = used_once_.begin();
     last_used_ = &*key.use;
-    if (const auto evicted = evicted_.find(fingerprint(client_key)); evicted != evicted_.end())
+    if (const auto evicted = evicted_.find(fingerprint(client_key)); evicted != evicted_.end()) {
         key.forgotten_up_to = evicted->second;
+    }
     return key;
 }
 
@@ -128,11 +139,13 @@ void Retries::trim_keys() {
 void Retries::trim_keys(std::list<std::string>& used, const std::string& spared) {
     for (auto oldest = used.end(); too_much() && oldest != used.begin();) {
         const auto key = keys_.find(*--oldest);
-        if (&*oldest == &spared || key->second.pending_count > 0)
+        if (&*oldest == &spared || key->second.pending_count > 0) {
             continue;
+        }
         remember_evicted(key->first, key->second);
-        for (const auto& [id, command] : key->second.commands)
+        for (const auto& [id, command] : key->second.commands) {
             answer_bytes_ -= command.answer->size();
+        }
         keys_.erase(key);
         oldest = used.erase(oldest);
         key_forgotten_();
@@ -144,8 +157,9 @@ void Retries::remember_evicted(const std::string& client_key, const Key& key) {
         key.commands.empty() ? key.forgotten_up_to : std::max(key.forgotten_up_to, key.commands.rbegin()->first);
     const auto [entry, is_new] = evicted_.try_emplace(fingerprint(client_key), highest);
     entry->second = std::max(entry->second, highest);
-    if (!is_new)
+    if (!is_new) {
         return;
+    }
     evicted_in_order_.push_back(entry->first);
     if (evicted_in_order_.size() > bounds_.evicted_max) {
         evicted_.erase(evicted_in_order_.front());

@@ -96,8 +96,8 @@ class Retries {
     const Bounds bounds_;
     const std::function<void()> key_forgotten_;
     std::unordered_map<std::string, Key> keys_;
-    std::list<std::string> used_once_, used_again_; // keys, the last used first
-    const std::string* last_used_ = nullptr;        // in one of them
+    std::list<std::string> used_once_, used_again_;                          // keys, the last used first
+    const std::string* last_used_ = nullptr;                                 // in one of them
     std::unordered_map<base::StateHash, std::uint64_t, HashOfHash> evicted_; // hash of a key: its highest request_id
     std::deque<base::StateHash> evicted_in_order_;
     std::size_t answer_bytes_ = 0;

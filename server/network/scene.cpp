@@ -14,9 +14,10 @@ using codec::Column;
 /// From fixed point, as it was put there, in place: all at once, which vectors do.
 void to_steps(Column& positions, std::uint32_t position_bytes) {
     const codec::PositionInSteps in_steps{std::countr_zero(static_cast<unsigned>(physics::units_per_px)),
-                                         position_bytes};
-    for (std::uint32_t& position : positions)
+                                          position_bytes};
+    for (std::uint32_t& position : positions) {
         position = in_steps(static_cast<std::int32_t>(position));
+    }
 }
 
 /// Room for `count`, and for one more: what is to be left out is written there and written over.
@@ -48,7 +49,7 @@ codec::Entities items_of(const runtime::ItemsSnapshot& items, std::uint32_t posi
 }
 
 codec::Entities boxes_of(const runtime::BoxesSnapshot& boxes, std::size_t begin, std::size_t end,
-                        std::uint32_t position_bytes) {
+                         std::uint32_t position_bytes) {
     const auto part = [=](const auto& column) { return std::span{column}.subspan(begin, end - begin); };
     const auto positions = [&](const auto& column) {
         Column steps(part(column).begin(), part(column).end());

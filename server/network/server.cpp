@@ -28,10 +28,11 @@ namespace {
 /// "population_size (50, not 60), selection (roulette, not tournament)".
 std::string differences_of(const simulation::Parameters& there, const simulation::Parameters& wanted) {
     std::string text;
-    for (const simulation::ParameterDescription* parameter : simulation::parameters_that_differ(there, wanted))
+    for (const simulation::ParameterDescription* parameter : simulation::parameters_that_differ(there, wanted)) {
         text += (text.empty() ? "" : ", ") + std::string{parameter->name} + " (" +
                 simulation::to_text(parameter->get(there)) + ", not " + simulation::to_text(parameter->get(wanted)) +
                 ")";
+    }
     return text;
 }
 
@@ -40,17 +41,22 @@ std::string differences_of(const simulation::Parameters& there, const simulation
 base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     std::unique_ptr<Server> server{new Server{std::move(options)}};
     // From now on, also while worlds are brought back: they are obeyed once the server runs.
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         server->signals_.add(signal);
+    }
     // What was said on the command line, before a file is opened and a world brought back.
-    if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound)
+    if (auto sound = Listener::check(server->options_.bind_address, "--bind"); !sound) {
         return sound.error();
-    if (server->options_.http)
-        if (auto sound = Listener::check(server->options_.http->bind_address, "--http-bind"); !sound)
+    }
+    if (server->options_.http) {
+        if (auto sound = Listener::check(server->options_.http->bind_address, "--http-bind"); !sound) {
             return sound.error();
+        }
+    }
     auto tls = access::server_context(server->options_.tls);
-    if (!tls)
+    if (!tls) {
         return tls.error();
+    }
     server->tls_ = *std::move(tls);
     server->host_.tls = server->tls_.get();
     if (server->options_.replay) {
@@ -58,9 +64,11 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
                                                      *server->executor_);
         if (!replay) {
             base::Refusal refused = replay.error();
-            for (base::Violation& violation : refused.violations)
-                if (violation.field == "generation")
+            for (base::Violation& violation : refused.violations) {
+                if (violation.field == "generation") {
                     violation.field = "--generation";
+                }
+            }
             return refused;
         }
         server->replay_ = *std::move(replay);
@@ -73,15 +81,18 @@ base::Result<std::unique_ptr<Server>> Server::open(ServerOptions options) {
     const auto address = asio::ip::make_address(server->options_.bind_address, no_address);
     auto gate = access::Gate::open(server->options_.token_folder,
                                    server->options_.token_needed || (!no_address && !address.is_loopback()));
-    if (!gate)
+    if (!gate) {
         return gate.error();
+    }
     server->gate_ = *std::move(gate);
     auto listener = Listener::open(server->context_, server->options_.bind_address, server->options_.port);
-    if (!listener)
+    if (!listener) {
         return listener.error();
+    }
     server->listener_ = *std::move(listener);
-    if (auto opened = server->open_http(); !opened)
+    if (auto opened = server->open_http(); !opened) {
         return opened.error();
+    }
     std::signal(SIGPIPE, SIG_IGN); // whoever read the log may go; the server stays
     return server;
 }
@@ -117,23 +128,27 @@ Server::Server(ServerOptions options)
 }
 
 Server::~Server() {
-    if (stopping_.joinable())
+    if (stopping_.joinable()) {
         stopping_.join();
+    }
 }
 
 base::Result<void> Server::open_archive() {
     const std::string& path = options_.data_folder;
-    if (path.empty())
+    if (path.empty()) {
         return {};
+    }
     auto archive = storage::Archive::open(path, options_.run_files, *executor_);
-    if (!archive)
+    if (!archive) {
         return archive.error();
+    }
     archive_ = *std::move(archive);
     host_.storage = protocol::to_proto(simulation::Storage{});
     host_.durability =
         options_.run_files.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
-    if (!options_.first_world_asked)
+    if (!options_.first_world_asked) {
         return {};
+    }
     const simulation::CreateWorld& wanted = options_.first_world;
     const storage::RunIdentity* there = archive_->identity_of(wanted.name);
     const auto differs = [&](const std::string& in_what) {
@@ -144,37 +159,46 @@ base::Result<void> Server::open_archive() {
                                         "and --population, and reset or delete that world",
                              .violations = {}};
     };
-    if (there && !(there->parameters == wanted.parameters))
+    if (there && !(there->parameters == wanted.parameters)) {
         return differs("parameters: " + differences_of(there->parameters, wanted.parameters));
-    if (there && there->schedule != wanted.schedule)
+    }
+    if (there && there->schedule != wanted.schedule) {
         return differs("schedule of parameters");
-    if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value)
+    }
+    if (there && options_.first_seed_asked && there->seed.value != wanted.seed.value) {
         return differs("seed (" + std::to_string(there->seed.value) + ", not " + std::to_string(wanted.seed.value) +
                        ")");
-    if (there && wanted.first_population && !simulation::same(there->first_population, wanted.first_population))
+    }
+    if (there && wanted.first_population && !simulation::same(there->first_population, wanted.first_population)) {
         return differs("organisms");
+    }
     return {};
 }
 
 bool Server::creates_first_world() const {
-    if (options_.replay)
+    if (options_.replay) {
         return false;
-    if (!archive_)
+    }
+    if (!archive_) {
         return true;
+    }
     return options_.first_world_asked ? !archive_->identity_of(options_.first_world.name) : !archive_->holds_worlds();
 }
 
 base::Result<std::string> Server::world_to_begin() const {
     const std::string& first = options_.first_world.name;
-    if (creates_first_world() || options_.first_world_asked || !(options_.first_speed || options_.first_run))
+    if (creates_first_world() || options_.first_world_asked || !(options_.first_speed || options_.first_run)) {
         return first;
+    }
     const std::vector<std::string> names = archive_->world_names();
-    if (names.size() == 1)
+    if (names.size() == 1) {
         return names.front();
+    }
     std::string all;
     for (const std::string& name : names) {
-        if (name == first)
+        if (name == first) {
             return first;
+        }
         all += (all.empty() ? "" : ", ") + name;
     }
     return refusal(base::RefusalCode::FailedPrecondition,
@@ -183,10 +207,12 @@ base::Result<std::string> Server::world_to_begin() const {
 }
 
 std::optional<base::Seed> Server::first_seed() const {
-    if (creates_first_world())
+    if (creates_first_world()) {
         return options_.first_world.seed;
-    if (!archive_)
+    }
+    if (!archive_) {
         return std::nullopt;
+    }
     const storage::RunIdentity* there = archive_->identity_of(options_.first_world.name);
     return there ? std::optional{there->seed} : std::nullopt;
 }
@@ -210,16 +236,18 @@ void Server::begin_first_world() {
     }
     const std::string begun = *world_to_begin(); // open() has seen that there is one
     const std::size_t others = archive_ && !creates_first_world() ? archive_->world_names().size() - 1 : 0;
-    if ((options_.first_speed || options_.first_run) && others > 0)
+    if ((options_.first_speed || options_.first_run) && others > 0) {
         log::info({.world = begun}, "--speed and --start are for world \"{}\" alone; {} others go on as they were",
                   begun, others);
+    }
     if (options_.first_speed) {
         v1::Request request;
         request.mutable_set_speed()->set_world(begun);
-        if (*options_.first_speed)
+        if (*options_.first_speed) {
             request.mutable_set_speed()->mutable_speed()->set_real_time_factor(**options_.first_speed);
-        else
+        } else {
             request.mutable_set_speed()->mutable_speed()->set_max(true);
+        }
         dispatcher_.handle_own(std::move(request));
     }
     if (options_.first_run) {
@@ -236,9 +264,11 @@ bool Server::run() {
                       storage::Archive::answers_of_ended_bytes_max == retry_bytes_max);
         dispatcher_.restore(archive_->take_answers());
         worlds = archive_->take_laboratory();
-        for (const auto& entry : worlds.entries())
-            if (entry->control.leased)
+        for (const auto& entry : worlds.entries()) {
+            if (entry->control.leased) {
                 dispatcher_.lend_again(entry->name);
+            }
+        }
     }
     begin_first_world();
     simulation_ = std::make_unique<runtime::SimulationThread>(
@@ -260,20 +290,22 @@ bool Server::run() {
 
     wait_for_signal();
     look_around();
-    asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }),
-                   detached);
-    if (http_)
+    asio::co_spawn(context_, listener_->accept([this](tcp::socket socket) { accepted(std::move(socket)); }), detached);
+    if (http_) {
         http_->start();
+    }
     context_.run();
-    if (stopping_.joinable())
+    if (stopping_.joinable()) {
         stopping_.join();
+    }
     return all_written_;
 }
 
 void Server::wait_for_signal() {
     signals_.async_wait([this](boost::system::error_code error, int signal) {
-        if (error)
+        if (error) {
             return;
+        }
         const char* const name = signal == SIGINT ? "SIGINT" : signal == SIGTERM ? "SIGTERM" : "SIGHUP";
         if (signal == SIGHUP) {
             reread_certificate();
@@ -281,7 +313,8 @@ void Server::wait_for_signal() {
             log::info("{}: going away", name);
             go_away();
         } else {
-            log::warn("{} again: ends at once; worlds go on from what is on the disk when the server starts again", name);
+            log::warn("{} again: ends at once; worlds go on from what is on the disk when the server starts again",
+                      name);
             signals_.remove(signal); // what the signal does by itself is to end the process
             std::raise(signal);
         }
@@ -314,14 +347,16 @@ void Server::look_around() {
 void Server::look_again() {
     look_timer_.expires_after(look_every);
     look_timer_.async_wait([this](boost::system::error_code error) {
-        if (error)
+        if (error) {
             return;
+        }
         mind_tokens();
         // A look that comes late says nothing of the clients: it was this server that was busy.
         const auto now = clock_.now();
         const auto watched = std::min<runtime::Clock::duration>(now - std::exchange(looked_, now), 2 * look_every);
-        for (const auto& [number, session] : sessions_)
+        for (const auto& [number, session] : sessions_) {
             session->mind_progress(watched);
+        }
         give_memory_back(now);
         look_again();
     });
@@ -330,8 +365,9 @@ void Server::look_again() {
 void Server::give_memory_back(runtime::Clock::time_point now) {
     // What answers and sessions leave is scattered over the heap, and is not given back by itself.
     const std::uint64_t answered = host_.traffic.sent_control_bytes.value();
-    if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes))
+    if (now < trim_at_ || (ended_since_trim_ == 0 && answered - answered_at_trim_ < answered_to_trim_bytes)) {
         return;
+    }
     ::malloc_trim(0);
     trim_at_ = now + trim_every;
     ended_since_trim_ = 0;
@@ -339,28 +375,34 @@ void Server::give_memory_back(runtime::Clock::time_point now) {
 }
 
 void Server::mind_tokens() {
-    if (!gate_->refresh())
+    if (!gate_->refresh()) {
         return;
-    if (gate_->trouble())
+    }
+    if (gate_->trouble()) {
         log::error("{}; nobody new is let in until that is mended", gate_->trouble()->message);
+    }
     // Those whose end comes now go from the table: it must not be walked meanwhile.
     const std::vector<std::pair<std::uint64_t, SessionPtr>> sessions{sessions_.begin(), sessions_.end()};
-    for (const auto& [number, session] : sessions)
-        if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor()))
+    for (const auto& [number, session] : sessions) {
+        if (session->greeted() && !gate_->trouble() && !gate_->knows(session->visitor())) {
             session->fail(refusal(base::RefusalCode::Unauthenticated,
                                   "the token has been revoked: ask whoever runs the server for another",
                                   base::Reason::TokenRevoked));
+        }
+    }
 }
 
 void Server::relieve() {
     std::vector<std::pair<std::size_t, SessionPtr>> most;
-    for (const auto& [number, session] : sessions_)
+    for (const auto& [number, session] : sessions_) {
         most.emplace_back(session->held_bytes(), session);
+    }
     std::ranges::sort(most, std::greater{}, [](const auto& item) { return item.first; });
     std::size_t excess = buffers_.excess();
     for (const auto& [bytes, session] : most) {
-        if (excess == 0 || bytes == 0)
+        if (excess == 0 || bytes == 0) {
             break;
+        }
         session->make_room();
         excess -= std::min(excess, bytes);
     }
@@ -372,10 +414,11 @@ void Server::accepted(tcp::socket socket) {
     const auto session = std::make_shared<Session>(std::move(socket), host_, ++session_number_);
     ++connections_;
     host_.traffic.connections.add();
-    if (going_away_)
+    if (going_away_) {
         return session->start(refusal(base::RefusalCode::Unavailable,
                                       "the server is going away: connect again when it is back",
                                       base::Reason::ServerGoingAway));
+    }
     const auto is_neighbour = [&](const auto& other) {
         return other.second->neighbourhood() == session->neighbourhood();
     };
@@ -390,25 +433,27 @@ void Server::accepted(tcp::socket socket) {
         });
         const bool may_be_told = connections_ - sessions_.size() <= farewells_max;
         if (silent == sessions_.end()) {
-            if (may_be_told)
+            if (may_be_told) {
                 session->start(refusal(base::RefusalCode::ResourceExhausted,
                                        address_full ? "there are " + std::to_string(bounds.sessions_per_address_max) +
                                                           " sessions from this address already: end one of them first"
                                                     : "the server has " + std::to_string(bounds.sessions_max) +
                                                           " sessions already: try again when one has ended",
                                        base::Reason::SessionsMax));
-            else
+            } else {
                 --connections_; // it is closed without a word
+            }
             return;
         }
         const SessionPtr first = silent->second;
         sessions_.erase(silent);
-        if (may_be_told)
+        if (may_be_told) {
             first->fail(refusal(base::RefusalCode::ResourceExhausted,
                                 "the place was needed, and no hello had come: connect again, and send one at once",
                                 base::Reason::SessionsMax));
-        else
+        } else {
             first->close();
+        }
     }
     sessions_.emplace(session->number(), session);
     session->start();
@@ -416,31 +461,36 @@ void Server::accepted(tcp::socket socket) {
 
 void Server::deliver() {
     runtime::Outbox::Taken taken = outbox_.take();
-    if (taken.dropped_events > 0)
+    if (taken.dropped_events > 0) {
         limit_counters_.met(Limit::OutboxEvents, taken.dropped_events);
+    }
     streams_.deliver(std::move(taken));
     send_pictures();
 }
 
 void Server::send_pictures() {
-    if (sends_pictures_)
+    if (sends_pictures_) {
         return;
+    }
     sends_pictures_ = streams_.send_some(clock_.now());
-    if (sends_pictures_)
+    if (sends_pictures_) {
         asio::post(context_, [this] {
             sends_pictures_ = false;
             send_pictures();
         });
+    }
 }
 
 void Server::go_away() {
-    if (std::exchange(going_away_, true))
+    if (std::exchange(going_away_, true)) {
         return;
+    }
     look_timer_.cancel();
     listener_->close();
     pulse_.stop();
-    if (http_)
+    if (http_) {
         http_->close();
+    }
     dispatcher_.refuse_all();
     streams_.announce_end();
     // On a thread of its own, so that sessions are served meanwhile: what was admitted is still answered.

@@ -26,9 +26,9 @@ namespace evod::network {
 struct ServerOptions {
     std::string bind_address = "127.0.0.1";
     std::uint16_t port = codec::default_port; // 0: any that is free
-    std::size_t threads = 1;                 // of the worker pool
-    std::string data_folder;                 // where runs are kept; empty: nowhere
-    std::string token_folder;                // where the token file is, or will be; empty: nowhere
+    std::size_t threads = 1;                  // of the worker pool
+    std::string data_folder;                  // where runs are kept; empty: nowhere
+    std::string token_folder;                 // where the token file is, or will be; empty: nowhere
     SessionBounds session_bounds;
     bool token_needed = false; // on the loopback interface too; on others it always is
     access::TlsFiles tls;
@@ -135,7 +135,7 @@ class Server {
     runtime::Clock::time_point looked_, trim_at_;
     std::size_t ended_since_trim_ = 0;   // sessions
     std::uint64_t answered_at_trim_ = 0; // bytes
-    std::size_t connections_ = 0;      // sessions, and those that are being told they have no place
+    std::size_t connections_ = 0;        // sessions, and those that are being told they have no place
     SessionHost host_{limit_counters_, buffers_};
     Streams streams_;
     bool sends_pictures_ = false; // a call is posted

@@ -62,8 +62,9 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
         events += session->events.size();
     }
     auto sessions = add_gauge(to, "evod_sessions", "Connected clients; none: those that have not said hello yet");
-    for (const auto& [role, count] : by_role)
+    for (const auto& [role, count] : by_role) {
         sessions.add(number(count), {{"role", role}});
+    }
     add_gauge(to, "evod_sessions_max", "So many may be connected; more are refused").add(number(sessions_max));
     add_gauge(to, "evod_subscriptions", "Subscriptions of all clients")
         .add(number(pictures), {{"to", "pictures"}})
@@ -89,14 +90,16 @@ void add_traffic(v1::Metrics& to, const metrics::Traffic& traffic) {
 
 void add_limits(v1::Metrics& to, const LimitCounters& counters) {
     auto reached = add_counter(to, "evod_limit_reached_total", "How often each limit was met");
-    for (const LimitRow& row : limit_table())
+    for (const LimitRow& row : limit_table()) {
         reached.add(number(counters.count(row.limit)), {{"limit", std::string{row.name}}});
+    }
 }
 
 void add_storage(v1::Metrics& to, storage::StorageThread& thread, const v1::Storage& storage) {
     auto state = add_gauge(to, "evod_storage_state", "How it stands with the disk: 1 of the state that holds");
-    for (const auto& [value, name] : storage_states)
+    for (const auto& [value, name] : storage_states) {
         state.add(storage.state() == value, {{"state", name}});
+    }
     const auto since = thread.waiting_since();
     const std::chrono::duration<double> lag =
         since ? std::chrono::steady_clock::now() - *since : std::chrono::steady_clock::duration{0};
@@ -130,8 +133,9 @@ v1::Metrics Server::metrics() {
         .add(number(client_buffer_bytes_max));
     add_traffic(told, host_.traffic);
     add_limits(told, limit_counters_);
-    if (archive_ && archive_->thread() != nullptr && host_.storage)
+    if (archive_ && archive_->thread() != nullptr && host_.storage) {
         add_storage(told, *archive_->thread(), *host_.storage);
+    }
 
     const metrics::Process process = metrics::look_at_process();
     add_gauge(told, "process_start_time_seconds", "When the server started, in seconds since 1970")
@@ -140,12 +144,14 @@ v1::Metrics Server::metrics() {
     auto threads = add_counter(told, "evod_thread_cpu_seconds_total",
                                "Processor time by thread; the rest is that of the threads that simulate");
     const auto add_thread = [&](const char* name, pthread_t thread) {
-        if (const auto cpu_s = metrics::cpu_s_of(thread))
+        if (const auto cpu_s = metrics::cpu_s_of(thread)) {
             threads.add(*cpu_s, {{"thread", name}});
+        }
     };
     add_thread("network", pthread_self());
-    if (simulation_ && !going_away_)
+    if (simulation_ && !going_away_) {
         add_thread("simulation", simulation_->handle());
+    }
     if (archive_ && archive_->thread() != nullptr) {
         add_thread("storage", archive_->thread()->handle());
         add_thread("packing", archive_->thread()->packing_handle());
@@ -163,19 +169,23 @@ asio::awaitable<Http::Page> Server::health() {
                           .text = protocol::quotable(why, 1000) + '\n'};
     };
     const bool answers = co_await pulse_.beats(simulation_patience);
-    if (going_away_)
+    if (going_away_) {
         co_return ill("the server is going away");
-    if (!answers)
+    }
+    if (!answers) {
         co_return ill("the simulation has not answered for " + std::to_string(simulation_patience.count()) + " s");
+    }
     const auto state = host_.storage ? host_.storage->state() : v1::STORAGE_STATE_KEEPS_UP;
-    if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED)
+    if (state == v1::STORAGE_STATE_FAILING || state == v1::STORAGE_STATE_STALLED) {
         co_return ill("runs cannot be written down: " + host_.storage->reason());
+    }
     co_return Http::Page{.text = "ok\n"};
 }
 
 base::Result<void> Server::open_http() {
-    if (!options_.http)
+    if (!options_.http) {
         return {};
+    }
     Http::Pages pages;
     pages["/metrics"] = [this]() -> asio::awaitable<Http::Page> {
         co_return Http::Page{.text = metrics::to_prometheus(metrics()), .type = metrics::prometheus_content_type};
@@ -183,8 +193,9 @@ base::Result<void> Server::open_http() {
     pages["/healthz"] = [this] { return health(); };
     auto http =
         Http::open(context_, options_.http->bind_address, options_.http->port, std::move(pages), limit_counters_);
-    if (!http)
+    if (!http) {
         return http.error();
+    }
     http_ = *std::move(http);
     return {};
 }

@@ -42,11 +42,13 @@ std::string to_text(const tcp::endpoint& endpoint) {
 
 /// As far as an address tells people apart: of IPv6, whoever has one has a whole /64.
 std::string neighbourhood_of(const asio::ip::address& address) {
-    if (!address.is_v6())
+    if (!address.is_v6()) {
         return address.to_string();
+    }
     auto bytes = address.to_v6().to_bytes();
-    if (address.to_v6().is_v4_mapped())
+    if (address.to_v6().is_v4_mapped()) {
         return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
+    }
     std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
     return asio::ip::address_v6{bytes}.to_string();
 }
@@ -66,8 +68,9 @@ v1::Role to_proto(access::Role role) {
 } // namespace
 
 void log_refusal(std::uint64_t session, const std::string& by, const v1::Response& response) {
-    if (response.status().code() == v1::CODE_UNSPECIFIED)
+    if (response.status().code() == v1::CODE_UNSPECIFIED) {
         return;
+    }
     const char* code = name_of(static_cast<base::RefusalCode>(response.status().code()));
     log::debug({.session = session, .client = by, .code = code}, "session {}: {} is refused request {}: {}: {}",
                session, by, response.request_id(), code, response.status().message());
@@ -99,15 +102,17 @@ SharedBytes encode_event(v1::Event event) {
 
 void SnapshotSubscription::set_view(const v1::View& wanted) {
     view = wanted;
-    if (view->detail() == v1::DETAIL_UNSPECIFIED)
+    if (view->detail() == v1::DETAIL_UNSPECIFIED) {
         view->set_detail(v1::DETAIL_FULL);
+    }
     const auto bytes_per_s = static_cast<double>(view->bytes_per_s_max());
-    if (!view->has_bytes_per_s_max())
+    if (!view->has_bytes_per_s_max()) {
         budget.reset();
-    else if (budget)
+    } else if (budget) {
         budget->change(bytes_per_s, view->detail());
-    else
+    } else {
         budget.emplace(bytes_per_s, view->detail());
+    }
 }
 
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
@@ -157,8 +162,9 @@ void Session::start(const std::optional<base::Refusal>& refused) {
                                "no hello came within " + std::to_string(hello_timeout.count()) +
                                    " s: connect again, and send one first",
                                base::Reason::HelloMissing));
-            if (!self->begun_)
+            if (!self->begun_) {
                 self->close(); // TLS has not begun: it cannot be told
+            }
         }
     });
 }
@@ -182,13 +188,14 @@ std::string Session::by() const {
 
 asio::awaitable<void> Session::read() {
     std::array<std::byte, 16384> bytes;
-    if (const auto error = co_await line_.begin(); error == Line::not_tls())
+    if (const auto error = co_await line_.begin(); error == Line::not_tls()) {
         fail(refusal(base::RefusalCode::FailedPrecondition,
                      "this server speaks TLS only: evoctl and evoview take --ca FILE or --tls",
                      base::Reason::TlsRequired));
-    else if (error) {
-        if (!ended_) // otherwise whoever ended it has said why
+    } else if (error) {
+        if (!ended_) { // otherwise whoever ended it has said why
             log_closed({}, "TLS: " + error.message());
+        }
         close();
     }
     begun_ = true;
@@ -203,8 +210,9 @@ asio::awaitable<void> Session::read() {
             end();
             co_return;
         }
-        if (error || ended_)
+        if (error || ended_) {
             break;
+        }
         host_.traffic.received_bytes.add(count);
         reader_.feed({bytes.data(), count});
         reader_bytes_.set(reader_.capacity_bytes());
@@ -212,20 +220,24 @@ asio::awaitable<void> Session::read() {
         while (!finishing_ && !ended_) {
             const auto frame = reader_.next();
             if (!frame) {
-                if (frame.error().beyond == codec::Beyond::FrameBytes)
+                if (frame.error().beyond == codec::Beyond::FrameBytes) {
                     host_.limit_counters.met(greeted_ ? Limit::ControlFrameBytes : Limit::HelloFrameBytes);
+                }
                 co_await fail_when_answered(
                     refusal(base::RefusalCode::InvalidArgument, frame.error().what, base::Reason::FrameInvalid));
                 break;
             }
-            if (!*frame)
+            if (!*frame) {
                 break;
+            }
             one_came = true;
             const double cost = 1 + std::floor(static_cast<double>((*frame)->body.size()) / bytes_per_turn);
-            if (!turns_to_send_.take(cost, host_.clock->now()))
+            if (!turns_to_send_.take(cost, host_.clock->now())) {
                 co_await wait_for_turn(cost);
-            if (finishing_ || ended_)
+            }
+            if (finishing_ || ended_) {
                 break;
+            }
             on_frame(**frame);
             // Other sessions have their turn before the next frame.
             co_await asio::post(line_.socket().get_executor(), no_throw);
@@ -234,10 +246,11 @@ asio::awaitable<void> Session::read() {
         reader_.trim();
         reader_bytes_.set(ended_ ? 0 : reader_.capacity_bytes());
     }
-    if (finishing_ && !ended_)
+    if (finishing_ && !ended_) {
         co_await discard_input();
-    else
+    } else {
         close();
+    }
     end();
 }
 
@@ -245,11 +258,13 @@ void Session::mind_frame(bool one_came) {
     const bool within = reader_.buffered_bytes() > 0 && !finishing_ && !ended_;
     const bool goes_on = within && within_frame_ && !one_came;
     within_frame_ = within;
-    if (goes_on)
+    if (goes_on) {
         return;
+    }
     frame_timer_.cancel();
-    if (!within)
+    if (!within) {
         return;
+    }
     frame_timer_.expires_after(frame_timeout);
     frame_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
         if (const auto self = weak.lock(); self && !error) {
@@ -291,28 +306,33 @@ asio::awaitable<void> Session::discard_input() {
     std::array<std::byte, 16384> bytes;
     for (;;) {
         const auto [error, count] = co_await line_.read_some(asio::buffer(bytes));
-        if (error)
+        if (error) {
             break;
+        }
     }
     close();
 }
 
 void Session::on_frame(const codec::Frame& frame) {
     auto message = codec::parse_body<v1::ClientMessage>(frame.body);
-    if (!message && message.error().beyond == codec::Beyond::MessageDepth)
+    if (!message && message.error().beyond == codec::Beyond::MessageDepth) {
         host_.limit_counters.met(Limit::MessageDepth);
+    }
     if (!greeted_) {
-        if (!message)
+        if (!message) {
             return fail(
                 refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable));
-        if (!message->has_hello())
+        }
+        if (!message->has_hello()) {
             return fail(refusal(base::RefusalCode::FailedPrecondition, "the first message must be a hello",
                                 base::Reason::HelloMissing));
+        }
         return on_hello(message->hello());
     }
-    if (!message)
+    if (!message) {
         return send_unasked(protocol::refusing(
             0, refusal(base::RefusalCode::InvalidArgument, message.error().what, base::Reason::MessageUnreadable)));
+    }
     switch (message->kind_case()) {
     case v1::ClientMessage::kRequest:
         host_.traffic.requests.add();
@@ -338,39 +358,46 @@ void Session::on_frame(const codec::Frame& frame) {
 void Session::on_hello(const v1::Hello& hello) {
     std::vector<base::Violation> violations;
     const auto check_length = [&](const char* field, const std::string& text) {
-        if (text.size() > name_bytes_max)
+        if (text.size() > name_bytes_max) {
             violations.push_back({field, "at most " + std::to_string(name_bytes_max) + " bytes",
                                   std::to_string(text.size()) + " bytes"});
+        }
     };
     check_length("hello.client_name", hello.client_name());
     check_length("hello.client_version", hello.client_version());
-    if (hello.frame_bytes_max() != 0 && hello.frame_bytes_max() < client_frame_bytes_min)
+    if (hello.frame_bytes_max() != 0 && hello.frame_bytes_max() < client_frame_bytes_min) {
         violations.push_back({"hello.frame_bytes_max", "0, or at least " + std::to_string(client_frame_bytes_min),
                               std::to_string(hello.frame_bytes_max())});
-    if (!violations.empty())
+    }
+    if (!violations.empty()) {
         return fail(protocol::invalid(std::move(violations)));
+    }
     const std::uint32_t lowest = hello.protocol_version();
     const std::uint32_t highest = std::max(lowest, hello.protocol_version_max());
-    if (codec::protocol_version < lowest || codec::protocol_version > highest)
+    if (codec::protocol_version < lowest || codec::protocol_version > highest) {
         return fail({.code = base::RefusalCode::FailedPrecondition,
                      .message = "this server speaks another version of the protocol: use a client of that version",
                      .violations = {{"hello.protocol_version", std::to_string(codec::protocol_version),
                                      highest == lowest ? std::to_string(lowest)
                                                        : std::to_string(lowest) + " to " + std::to_string(highest)}},
                      .reason = base::Reason::ProtocolVersion});
+    }
     auto visitor = host_.admit(hello.token(), neighbourhood_);
-    if (!visitor)
+    if (!visitor) {
         return fail(visitor.error());
+    }
     visitor_ = *std::move(visitor);
     greeted_ = true;
-    if (hello.frame_bytes_max() != 0)
+    if (hello.frame_bytes_max() != 0) {
         frame_bytes_max_ = hello.frame_bytes_max();
+    }
     hello_timer_.cancel();
     reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
     client_ = hello.client_name().empty() ? "unnamed" : protocol::quotable(hello.client_name());
     // In by(), a colon and a space end the user's name and nothing else.
-    for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": "))
+    for (auto colon = client_.find(": "); colon != std::string::npos; colon = client_.find(": ")) {
         client_[colon] = ' ';
+    }
     log_coming_or_going("connected as " + std::string{access::name_of(visitor_.role)} + ", version " +
                         (hello.client_version().empty() ? "unknown" : protocol::quotable(hello.client_version())));
 
@@ -380,12 +407,14 @@ void Session::on_hello(const v1::Hello& hello) {
     welcome.set_server_version(EVOD_VERSION);
     welcome.set_instance_id(host_.instance_id);
     for (const char* feature :
-         {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view", "planned_changes"})
+         {"codec:columns", "codec:delta", "compression:zstd", "acknowledgements", "view", "planned_changes"}) {
         welcome.add_features(feature);
+    }
     *welcome.mutable_limits() = limits();
     welcome.set_durability(host_.durability);
-    if (host_.storage)
+    if (host_.storage) {
         *welcome.mutable_storage() = *host_.storage;
+    }
     welcome.set_role(to_proto(visitor_.role));
     welcome.set_user(visitor_.name);
     enqueue(encode_control(message), Kind::Unasked);
@@ -394,9 +423,10 @@ void Session::on_hello(const v1::Hello& hello) {
 void Session::log_coming_or_going(const std::string& what) const {
     // On the server's own machine each call of evoctl opens and closes a session.
     const auto level = peer_.address().is_loopback() ? log::Level::Debug : log::Level::Info;
-    if (log::wanted(level))
+    if (log::wanted(level)) {
         log::write(level, {.session = number_, .client = by()},
                    "session " + std::to_string(number_) + ": " + by() + " " + what);
+    }
 }
 
 void Session::log_closed(std::string_view code, const std::string& why) {
@@ -405,22 +435,25 @@ void Session::log_closed(std::string_view code, const std::string& why) {
     if (!greeted_) { // strangers must not fill the disk
         SessionHost::StrangersLog& strangers = host_.strangers_log;
         const auto now = host_.clock->now();
-        if (!strangers.lines)
+        if (!strangers.lines) {
             strangers.lines.emplace(stranger_lines_per_s, stranger_lines_burst, now);
+        }
         if (!strangers.lines->take(1, now)) {
             ++strangers.left_out;
             return;
         }
-        if (strangers.left_out > 0)
+        if (strangers.left_out > 0) {
             left_out = "; " + std::to_string(std::exchange(strangers.left_out, 0)) + " others before it are not logged";
+        }
     }
     log::info({.session = number_, .client = who, .code = std::string{code}}, "session {}: {} is closed: {}{}", number_,
               who, why, left_out);
 }
 
 void Session::fail(const base::Refusal& refused) {
-    if (finishing_ || ended_)
+    if (finishing_ || ended_) {
         return;
+    }
     log_closed(name_of(refused.code), refused.message);
     enqueue(encode_goodbye(refused), Kind::Unasked);
     finish();
@@ -444,8 +477,9 @@ void Session::hold_back(v1::Request request) {
 }
 
 std::optional<v1::Request> Session::take_held_back() {
-    if (held_back_.empty())
+    if (held_back_.empty()) {
         return std::nullopt;
+    }
     HeldBack next = std::move(held_back_.front());
     held_back_.pop_front();
     held_back_bytes_.set(held_back_bytes_.bytes() - next.bytes);
@@ -453,14 +487,16 @@ std::optional<v1::Request> Session::take_held_back() {
 }
 
 void Session::expect(std::ptrdiff_t bytes) {
-    if (!ended_)
+    if (!ended_) {
         expected_bytes_.set(expected_bytes_.bytes() + static_cast<std::size_t>(bytes));
+    }
 }
 
 void Session::answer(SharedBytes frame) {
     turns_to_send_.charge(static_cast<double>(frame->size() / answer_bytes_per_turn));
-    if (takes(frame->size()))
+    if (takes(frame->size())) {
         return enqueue(std::move(frame), Kind::Answer);
+    }
     v1::ServerMessage too_large;
     too_large.ParseFromString(frame->substr(codec::header_bytes));
     enqueue(encode_response(protocol::refusing(
@@ -478,15 +514,17 @@ void Session::answer(v1::Response response) {
 }
 
 void Session::send_unasked(const v1::Response& response) {
-    if (greeted_)
+    if (greeted_) {
         log_refusal(number_, by(), response);
+    }
     enqueue(encode_response(response), Kind::Unasked);
 }
 
 void Session::event(const SharedBytes& frame) {
     // Once some are dropped the rest are too until that has been told, so that the gap is where it is said to be.
-    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size()))
+    if (dropped_events_ == 0 && event_bytes_ + frame->size() <= queued_event_bytes_max && takes(frame->size())) {
         return enqueue(frame, Kind::Event);
+    }
     host_.limit_counters.met(Limit::QueuedEventBytes);
     count_dropped_events(1);
 }
@@ -498,41 +536,47 @@ void Session::count_dropped_events(std::uint64_t count) {
 }
 
 void Session::count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count) {
-    if (count == 0)
+    if (count == 0) {
         return;
+    }
     of.dropped_count += count;
     host_.traffic.pictures_dropped.add(count);
 }
 
 void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture) {
     const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end() || finishing_ || ended_)
+    if (subscription == snapshots.end() || finishing_ || ended_) {
         return;
+    }
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     const bool waited = static_cast<bool>(of.waiting), was_shown = of.shown.has_value();
-    if (waited && was_shown)
+    if (waited && was_shown) {
         of.not_before = {};
-    else if (waited)
+    } else if (waited) {
         count_dropped_pictures(subscription->second, 1);
+    }
     of.shown.reset();
     of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
     of.waiting = std::move(picture);
-    if (!waited || was_shown)
+    if (!waited || was_shown) {
         give_turn(subscription_id, island, of);
+    }
 }
 
 void Session::send_waiting() {
     // Without waking the writer: with many viewers that would cost as much as all the rest.
-    if (idle_ && may_send_pictures())
+    if (idle_ && may_send_pictures()) {
         send_pictures();
-    else
+    } else {
         wake_writer();
+    }
 }
 
 void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
     const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end())
+    if (subscription == snapshots.end()) {
         return;
+    }
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.last_sent = 0;
     of.tiles_sent.forget();
@@ -541,30 +585,36 @@ void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, Snap
 
 void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
     const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end())
+    if (subscription == snapshots.end()) {
         return;
+    }
     SnapshotSubscription::Island& of = subscription->second.islands[island];
     of.not_before = {};
     of.shown.reset();
-    if (of.waiting)
+    if (of.waiting) {
         give_turn(subscription_id, island, of);
-    else
+    } else {
         picture(subscription_id, island, std::move(newest));
+    }
     wake_writer(); // and no more: the answer to what asked for this goes first
 }
 
 void Session::on_acknowledgement(const v1::AcknowledgeSnapshot& acknowledged) {
     const auto subscription = snapshots.find(acknowledged.subscription_id());
-    if (subscription == snapshots.end())
+    if (subscription == snapshots.end()) {
         return; // unsubscribed while it was on its way
+    }
     const auto island = subscription->second.islands.find(acknowledged.island());
-    if (island == subscription->second.islands.end())
+    if (island == subscription->second.islands.end()) {
         return;
+    }
     auto& unacknowledged = island->second.unacknowledged;
-    while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence())
+    while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence()) {
         unacknowledged.pop_front();
-    if (island->second.waiting && island->second.turn == 0)
+    }
+    if (island->second.waiting && island->second.turn == 0) {
         give_turn(acknowledged.subscription_id(), acknowledged.island(), island->second);
+    }
     wake_writer();
 }
 
@@ -584,12 +634,14 @@ bool Session::next_picture() {
         const Turn turn = turns_.front();
         turns_.pop_front();
         const auto found = snapshots.find(turn.subscription_id);
-        if (found == snapshots.end())
+        if (found == snapshots.end()) {
             continue; // unsubscribed
+        }
         SnapshotSubscription& subscription = found->second;
         const auto of = subscription.islands.find(turn.island);
-        if (of == subscription.islands.end() || of->second.turn != turn.number || !of->second.waiting)
+        if (of == subscription.islands.end() || of->second.turn != turn.number || !of->second.waiting) {
             continue;
+        }
         SnapshotSubscription::Island& island = of->second;
         if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max) {
             island.turn = 0; // until an acknowledgement comes
@@ -603,8 +655,9 @@ bool Session::next_picture() {
             leave_out(subscription, island);
             continue;
         }
-        if (island.waiting)
+        if (island.waiting) {
             give_turn(turn.subscription_id, turn.island, island);
+        }
         return true;
     }
     next_budget_ = postponed_.empty() ? runtime::Clock::time_point::max() : postponed_.begin()->first;
@@ -613,8 +666,9 @@ bool Session::next_picture() {
 
 void Session::leave_out(SnapshotSubscription& subscription, SnapshotSubscription::Island& island) {
     count_dropped_pictures(subscription, 1);
-    if (subscription.unacknowledged_max)
+    if (subscription.unacknowledged_max) {
         island.unacknowledged.pop_back();
+    }
     island.waiting = {};
     island.columns = {};
     island.shown.reset();
@@ -635,7 +689,8 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
     } else {
         const v1::View& view = *subscription.view;
         const codec::TileLayout& layout = picture.tiled->layout();
-        const codec::TileRange seen = view.has_region() ? codec::tiles_of(view.region(), layout) : codec::tiles_of(layout);
+        const codec::TileRange seen =
+            view.has_region() ? codec::tiles_of(view.region(), layout) : codec::tiles_of(layout);
         const auto add_parts = [&](v1::Detail detail) {
             outgoing_.parts.clear();
             island.tiles_sent.add_parts(*picture.tiled, seen, detail, subscription.compression, outgoing_.parts);
@@ -643,8 +698,9 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
         v1::Detail detail = view.detail();
         if (subscription.budget) {
             const auto now = host_.clock->now();
-            if (now < island.not_before)
+            if (now < island.not_before) {
                 return false;
+            }
             const auto cost = [&](v1::Detail tried) {
                 add_parts(tried);
                 return codec::header_bytes + outgoing_.body_bytes();
@@ -652,20 +708,23 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
             const Budget::Choice choice = island.shown ? subscription.budget->look_closer(now, *island.shown, cost)
                                                        : subscription.budget->choose(now, cost);
             island.not_before = choice.again;
-            if (!choice.detail)
+            if (!choice.detail) {
                 return false;
+            }
             detail = *choice.detail;
         } else {
             add_parts(detail);
         }
         island.tiles_sent.sent(*picture.tiled, seen, detail);
         island.shown.reset();
-        if (detail != view.detail())
+        if (detail != view.detail()) {
             island.shown = detail;
+        }
     }
     island.last_sent = picture.sequence;
-    if (subscription.unacknowledged_max)
+    if (subscription.unacknowledged_max) {
         island.unacknowledged.push_back(picture.sequence);
+    }
     if (!island.shown) {
         island.waiting = {};
         island.columns = {};
@@ -677,8 +736,9 @@ void Session::set_tail(Outgoing& of, std::uint32_t subscription_id, std::uint64_
     using google::protobuf::internal::WireFormatLite;
     std::uint8_t* end = WireFormatLite::WriteUInt32ToArray(v1::SnapshotFrame::kSubscriptionIdFieldNumber,
                                                            subscription_id, of.tail_room.data());
-    if (dropped_count > 0)
+    if (dropped_count > 0) {
         end = WireFormatLite::WriteUInt64ToArray(v1::SnapshotFrame::kDroppedCountFieldNumber, dropped_count, end);
+    }
     of.tail_bytes = static_cast<std::size_t>(end - of.tail_room.data());
 }
 
@@ -694,11 +754,13 @@ bool Session::may_send_pictures() const {
 
 void Session::send_pictures() {
     std::size_t sent = 0;
-    for (; sent < pictures_at_once && may_send_pictures() && next_picture(); ++sent)
+    for (; sent < pictures_at_once && may_send_pictures() && next_picture(); ++sent) {
         send_outgoing();
+    }
     outgoing_.picture = {}; // nobody counts what it holds
-    if (sent == pictures_at_once || next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures())
+    if (sent == pictures_at_once || next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures()) {
         wake_writer();
+    }
 }
 
 void Session::send_outgoing() {
@@ -713,22 +775,26 @@ void Session::send_outgoing() {
     std::size_t buffer_count = 0;
     if (together) {
         host_.frame.assign(reinterpret_cast<const char*>(header.data()), header.size());
-        for (const SharedBytes* part : parts)
+        for (const SharedBytes* part : parts) {
             host_.frame += **part;
+        }
         host_.frame.append(tail_begin, outgoing_.tail_bytes);
         buffers[buffer_count++] = asio::buffer(host_.frame);
     } else {
         buffers[buffer_count++] = asio::buffer(header);
-        for (const SharedBytes* part : parts)
+        for (const SharedBytes* part : parts) {
             buffers[buffer_count++] = asio::buffer(**part);
+        }
         buffers[buffer_count++] = asio::buffer(tail_begin, outgoing_.tail_bytes);
     }
     const auto [error, count] = line_.write_now(std::span{buffers}.first(buffer_count));
-    if (error)
+    if (error) {
         return close();
+    }
     host_.traffic.sent_stream_bytes.add(count);
-    if (count == header.size() + body_bytes)
+    if (count == header.size() + body_bytes) {
         return host_.traffic.pictures_sent.add();
+    }
     // Parts are held as what they are, shared by all who are sent them.
     rest_.buffers.clear();
     if (together) {
@@ -754,8 +820,9 @@ void Session::send_outgoing() {
 }
 
 void Session::enqueue(SharedBytes frame, Kind kind) {
-    if (finishing_ || ended_)
+    if (finishing_ || ended_) {
         return;
+    }
     (kind == Kind::Event ? event_bytes_ : response_bytes_) += frame->size();
     queue_.push_back({{host_.buffers, std::move(frame)}, kind});
     if (response_bytes_ > queued_response_bytes_max) {
@@ -773,8 +840,9 @@ void Session::written(const Queued& queued) {
 }
 
 void Session::wake_writer() {
-    if (std::exchange(idle_, false))
+    if (std::exchange(idle_, false)) {
         writer_signal_.cancel();
+    }
 }
 
 asio::awaitable<void> Session::wait_for_work(runtime::Clock::time_point until) {
@@ -795,8 +863,9 @@ asio::awaitable<void> Session::write() {
         } else if (!sending_.empty()) {
             const auto [error, count] = co_await line_.write(rest_.buffers);
             host_.traffic.sent_stream_bytes.add(count);
-            if (error)
+            if (error) {
                 break;
+            }
             sending_.clear(); // nobody counts any more what it held
             rest_ = {};
             host_.traffic.pictures_sent.add();
@@ -811,10 +880,12 @@ asio::awaitable<void> Session::write() {
             }
             const auto [error, count] = co_await line_.write(buffers);
             host_.traffic.sent_control_bytes.add(count);
-            if (error)
+            if (error) {
                 break;
-            for (const Queued& sent : sending_)
+            }
+            for (const Queued& sent : sending_) {
                 written(sent);
+            }
             sending_.clear();
         } else if (input_over_ && !finishing_) {
             if (in_flight_ > 0) {
@@ -842,10 +913,11 @@ asio::awaitable<void> Session::write() {
             co_await wait_for_work(next_budget_);
         }
     }
-    if (finishing_ && !ended_)
+    if (finishing_ && !ended_) {
         co_await line_.finish();
-    else
+    } else {
         close();
+    }
     sending_.clear();
     end();
 }
@@ -868,13 +940,17 @@ void Session::mind_progress(runtime::Clock::duration watched) {
 
 std::size_t Session::held_bytes() const {
     std::size_t bytes = reader_bytes_.bytes() + expected_bytes_.bytes() + held_back_bytes_.bytes();
-    for (const Queued& queued : queue_)
+    for (const Queued& queued : queue_) {
         bytes += queued.bytes.share();
-    for (const Queued& queued : sending_)
+    }
+    for (const Queued& queued : sending_) {
         bytes += queued.bytes.share();
-    for (const auto& [id, subscription] : snapshots)
-        for (const auto& [index, island] : subscription.islands)
+    }
+    for (const auto& [id, subscription] : snapshots) {
+        for (const auto& [index, island] : subscription.islands) {
             bytes += island.columns.share();
+        }
+    }
     return bytes;
 }
 
@@ -887,34 +963,39 @@ void Session::make_room() {
 }
 
 void Session::finish() {
-    if (finishing_ || ended_)
+    if (finishing_ || ended_) {
         return;
+    }
     finishing_ = true;
     hello_timer_.cancel();
     turn_timer_.cancel();
     farewell_timer_.expires_after(farewell_timeout);
     farewell_timer_.async_wait([weak = weak_from_this()](boost::system::error_code error) {
-        if (const auto self = weak.lock(); self && !error)
+        if (const auto self = weak.lock(); self && !error) {
             self->close();
+        }
     });
     wake_writer();
 }
 
 void Session::close() {
-    if (std::exchange(ended_, true))
+    if (std::exchange(ended_, true)) {
         return;
-    if (sending_.empty())
+    }
+    if (sending_.empty()) {
         line_.close();
-    else
+    } else {
         line_.abort();
+    }
     hello_timer_.cancel();
     frame_timer_.cancel();
     turn_timer_.cancel();
     farewell_timer_.cancel();
     // What is being sent goes when the line has let go of it.
     queue_.clear();
-    for (auto& [id, subscription] : snapshots)
+    for (auto& [id, subscription] : snapshots) {
         subscription.islands.clear();
+    }
     turns_.clear();
     postponed_.clear();
     reader_bytes_.set(0);
@@ -925,10 +1006,12 @@ void Session::close() {
 }
 
 void Session::end() {
-    if (--coroutines_ > 0)
+    if (--coroutines_ > 0) {
         return;
-    if (greeted_)
+    }
+    if (greeted_) {
         log_coming_or_going("disconnected");
+    }
     host_.ended(*this);
 }
 

@@ -260,9 +260,9 @@ class Session : public std::enable_shared_from_this<Session> {
     } rest_;                                           // of a picture that the line did not take at once
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
     Line::Progress progress_;
-    runtime::Clock::duration stalled_{};    // seen to take nothing, though something waited
-    std::size_t in_flight_ = 0;             // requests whose answer is not yet being written
-    std::uint64_t dropped_events_ = 0;      // not yet told
+    runtime::Clock::duration stalled_{}; // seen to take nothing, though something waited
+    std::size_t in_flight_ = 0;          // requests whose answer is not yet being written
+    std::uint64_t dropped_events_ = 0;   // not yet told
     // Of the pictures that wait in `snapshots`: each has one turn, the last that it was given. One that waits for an
     // acknowledgement has none until that comes; one that its budget does not allow yet stands in postponed_.
     struct Turn {

@@ -52,13 +52,15 @@ std::uint32_t Streams::subscribe(Session& session, SnapshotSubscription subscrip
     each_newest(subscription, [&](std::uint32_t, const SnapshotSubscription::Waiting&) { joins = true; });
     if (!joins) {
         subscription.newcomer = ++newcomers_;
-        if (subscription.codec == v1::CODEC_DELTA)
+        if (subscription.codec == v1::CODEC_DELTA) {
             groups_[group_of(subscription)].next_picture = {};
+        }
     }
     session.snapshots.emplace(id, std::move(subscription));
     update_demand();
-    if (joins)
+    if (joins) {
         send_keyframes(session, id);
+    }
     return id;
 }
 
@@ -77,8 +79,9 @@ bool Streams::unsubscribe(Session& session, std::uint32_t subscription_id) {
 
 bool Streams::send_keyframes(Session& session, std::uint32_t subscription_id) {
     const auto found = session.snapshots.find(subscription_id);
-    if (found == session.snapshots.end())
+    if (found == session.snapshots.end()) {
         return false;
+    }
     each_newest(found->second, [&](std::uint32_t island, SnapshotSubscription::Waiting newest) {
         session.keyframe(subscription_id, island, std::move(newest));
     });
@@ -94,34 +97,45 @@ void Streams::set_view(Session& session, std::uint32_t subscription_id, const v1
 }
 
 void Streams::forget(const Session& session) {
-    if (!session.snapshots.empty() || !session.events.empty())
+    if (!session.snapshots.empty() || !session.events.empty()) {
         update_demand();
+    }
 }
 
 void Streams::forget_world(const std::string& world) {
-    for (auto& [name, group] : groups_)
-        if (name.world == world)
+    for (auto& [name, group] : groups_) {
+        if (name.world == world) {
             group.forget_pictures();
-    for (const auto& [number, session] : sessions_)
-        for (auto& [id, subscription] : session->snapshots)
-            if (subscription.world == world)
+        }
+    }
+    for (const auto& [number, session] : sessions_) {
+        for (auto& [id, subscription] : session->snapshots) {
+            if (subscription.world == world) {
                 subscription.islands.clear();
+            }
+        }
+    }
     std::erase_if(in_progress_, [&](const InProgress& of) { return of.picture.snapshot->world == world; });
 }
 
 template <class Do>
 void Streams::each_newest(const SnapshotSubscription& subscription, const Do& what) const {
     const auto group = groups_.find(group_of(subscription));
-    if (group == groups_.end() || subscription.codec != v1::CODEC_DELTA)
+    if (group == groups_.end() || subscription.codec != v1::CODEC_DELTA) {
         return;
+    }
     const auto wanted = [&](std::uint32_t island) { return !subscription.island || *subscription.island == island; };
-    for (const auto& [island, chain] : group->second.chains)
-        if (wanted(island))
+    for (const auto& [island, chain] : group->second.chains) {
+        if (wanted(island)) {
             what(island,
                  SnapshotSubscription::Waiting{.sequence = chain.latest()->sequence(), .chained = chain.latest()});
-    for (const auto& [island, tiled] : group->second.tiled)
-        if (wanted(island))
+        }
+    }
+    for (const auto& [island, tiled] : group->second.tiled) {
+        if (wanted(island)) {
             what(island, SnapshotSubscription::Waiting{.sequence = tiled->sequence(), .tiled = tiled});
+        }
+    }
 }
 
 Streams::GroupName Streams::group_of(const SnapshotSubscription& subscription) {
@@ -138,14 +152,17 @@ void Streams::update_demand() {
             runtime::Watch& watch = watches[subscription.world];
             watch.rate_hz = std::max(watch.rate_hz, subscription.rate_hz);
             watch.newcomers = std::max(watch.newcomers, subscription.newcomer);
-            if (subscription.island)
+            if (subscription.island) {
                 watch.islands.push_back(*subscription.island);
-            else
+            } else {
                 watch.all_islands = true;
-            if (subscription.codec != v1::CODEC_DELTA)
+            }
+            if (subscription.codec != v1::CODEC_DELTA) {
                 continue;
-            if (auto group = groups_.extract(group_of(subscription)))
+            }
+            if (auto group = groups_.extract(group_of(subscription))) {
                 groups.insert(std::move(group));
+            }
         }
     }
     groups_ = std::move(groups);
@@ -172,11 +189,13 @@ class Pace {
     /// Whether this picture is for them; then the next is due a while later.
     bool takes(const runtime::Outbox::Picture& picture, runtime::Clock::time_point now) {
         // A tenth early rather than a whole picture late.
-        if (!picture.after_change && now + between_ / 10 < next_)
+        if (!picture.after_change && now + between_ / 10 < next_) {
             return false;
+        }
         next_ += between_;
-        if (picture.after_change || next_ <= now)
+        if (picture.after_change || next_ <= now) {
             next_ = now + between_;
+        }
         return true;
     }
 
@@ -213,13 +232,15 @@ class EncodedIsland {
         return columns_;
     }
     const std::shared_ptr<const codec::QuantisedSnapshot>& scene() {
-        if (!scene_)
+        if (!scene_) {
             scene_ = std::make_shared<const codec::QuantisedSnapshot>(scene_of(island_));
+        }
         return scene_;
     }
     const std::shared_ptr<IslandTiles>& tiles() {
-        if (!tiles_)
+        if (!tiles_) {
             tiles_ = std::make_shared<IslandTiles>(*about(), scene(), compressor_);
+        }
         return tiles_;
     }
 
@@ -243,12 +264,16 @@ struct Streams::Viewer {
 };
 
 void Streams::deliver(runtime::Outbox::Taken taken) {
-    for (runtime::Delivery& delivery : taken.deliveries)
+    for (runtime::Delivery& delivery : taken.deliveries) {
         std::exchange(delivery, nullptr)(); // what it held is not needed beside what it has made of it
-    if (taken.dropped_events > 0)
-        for (const auto& [number, session] : sessions_)
-            if (!session->events.empty())
+    }
+    if (taken.dropped_events > 0) {
+        for (const auto& [number, session] : sessions_) {
+            if (!session->events.empty()) {
                 session->count_dropped_events(taken.dropped_events);
+            }
+        }
+    }
     for (runtime::Outbox::Picture& picture : taken.pictures) {
         const auto of = std::ranges::find_if(in_progress_, [&](const InProgress& other) {
             return other.picture.snapshot->world == picture.snapshot->world;
@@ -270,13 +295,15 @@ bool Streams::send_some(runtime::Clock::time_point now) {
     while (steps_left > 0 && !in_progress_.empty()) {
         InProgress of = std::move(in_progress_.front());
         in_progress_.pop_front();
-        if (!of.begun)
+        if (!of.begun) {
             begin(of, now);
+        }
         advance(of, steps_left);
-        if (of.next_island < of.picture.snapshot->islands.size())
+        if (of.next_island < of.picture.snapshot->islands.size()) {
             in_progress_.push_back(std::move(of));
-        else if (of.next)
+        } else if (of.next) {
             in_progress_.push_back({.picture = std::move(*of.next)});
+        }
     }
     return !in_progress_.empty();
 }
@@ -286,43 +313,52 @@ void Streams::begin(InProgress& of, runtime::Clock::time_point now) {
     of.begun = true;
     of.began = now;
     for (auto& [name, group] : groups_) {
-        if (name.world != snapshot.world || !Pace{name.rate_hz, group.next_picture}.takes(of.picture, now))
+        if (name.world != snapshot.world || !Pace{name.rate_hz, group.next_picture}.takes(of.picture, now)) {
             continue;
+        }
         of.groups.insert(name);
-        if (std::exchange(group.run_id, snapshot.run_id) != snapshot.run_id)
+        if (std::exchange(group.run_id, snapshot.run_id) != snapshot.run_id) {
             group.forget_pictures(); // a run before, which may have had more islands
+        }
     }
-    for (const auto& [number, session] : sessions_)
+    for (const auto& [number, session] : sessions_) {
         for (auto& [id, subscription] : session->snapshots) {
-            if (subscription.world != snapshot.world)
+            if (subscription.world != snapshot.world) {
                 continue;
+            }
             if (subscription.codec == v1::CODEC_DELTA) {
-                if (!of.groups.contains(group_of(subscription)))
+                if (!of.groups.contains(group_of(subscription))) {
                     continue;
+                }
             } else {
-                if (!Pace{subscription.rate_hz, subscription.next_picture}.takes(of.picture, now))
+                if (!Pace{subscription.rate_hz, subscription.next_picture}.takes(of.picture, now)) {
                     continue;
+                }
                 of.subscriptions.emplace(number, id);
             }
             session->count_dropped_pictures(subscription, of.picture.replaced_count);
             subscription.islands.erase(subscription.islands.lower_bound(snapshot.island_count),
                                        subscription.islands.end());
         }
+    }
 }
 
 std::vector<Streams::Viewer> Streams::viewers_of(const InProgress& of) {
     std::vector<Viewer> viewers;
-    for (const auto& [number, session] : sessions_)
+    for (const auto& [number, session] : sessions_) {
         for (const auto& [id, subscription] : session->snapshots) {
-            if (subscription.world != of.picture.snapshot->world)
+            if (subscription.world != of.picture.snapshot->world) {
                 continue;
+            }
             if (subscription.codec != v1::CODEC_DELTA) {
-                if (of.subscriptions.contains({number, id}))
+                if (of.subscriptions.contains({number, id})) {
                     viewers.push_back({session, id, &subscription, nullptr});
+                }
             } else if (const GroupName name = group_of(subscription); of.groups.contains(name)) {
                 viewers.push_back({session, id, &subscription, &groups_.at(name)});
             }
         }
+    }
     return viewers;
 }
 
@@ -334,13 +370,15 @@ SnapshotSubscription::Waiting Streams::encode_for(const Viewer& viewer, EncodedI
         waiting.columns = island.columns();
     } else if (subscription.view) {
         TiledPicturePtr& newest = viewer.group->tiled[island.number()];
-        if (!newest || newest->sequence() != waiting.sequence) // otherwise it was made for another of the group
+        if (!newest || newest->sequence() != waiting.sequence) { // otherwise it was made for another of the group
             newest = std::make_shared<TiledPicture>(island.tiles(), newest, of.began, between);
+        }
         waiting.tiled = newest;
     } else {
         Chain& chain = viewer.group->chains[island.number()];
-        if (!chain.latest() || chain.latest()->sequence() != waiting.sequence)
+        if (!chain.latest() || chain.latest()->sequence() != waiting.sequence) {
             chain.add(island.about(), island.scene(), compressor_, of.began, between);
+        }
         waiting.chained = chain.latest();
     }
     return waiting;
@@ -349,23 +387,27 @@ SnapshotSubscription::Waiting Streams::encode_for(const Viewer& viewer, EncodedI
 void Streams::advance(InProgress& of, std::size_t& steps_left) {
     const runtime::Snapshot& snapshot = *of.picture.snapshot;
     std::vector<Viewer> viewers = viewers_of(of);
-    if (viewers.empty())
+    if (viewers.empty()) {
         of.next_island = snapshot.islands.size();
+    }
     for (; steps_left > 0 && of.next_island < snapshot.islands.size(); ++of.next_island) {
         EncodedIsland island{snapshot, snapshot.islands[of.next_island], sequence_, compressor_};
         std::size_t steps = 1;
         for (Viewer& viewer : viewers) {
-            if (viewer.subscription->island && *viewer.subscription->island != island.number())
+            if (viewer.subscription->island && *viewer.subscription->island != island.number()) {
                 continue;
+            }
             viewer.session->picture(viewer.subscription_id, island.number(), encode_for(viewer, island, of));
             viewer.has_some = true;
             ++steps;
         }
         steps_left -= std::min(steps_left, steps);
     }
-    for (const Viewer& viewer : viewers)
-        if (viewer.has_some)
+    for (const Viewer& viewer : viewers) {
+        if (viewer.has_some) {
             viewer.session->send_waiting();
+        }
+    }
 }
 
 void Streams::tell(v1::Event event) {
@@ -377,14 +419,16 @@ void Streams::tell(v1::Event event) {
             return item.second.world ? world.empty() || *item.second.world == world
                                      : simulation::is_world_name(world) || world.empty();
         });
-        if (!wanted)
+        if (!wanted) {
             continue;
+        }
         const bool views = session->visitor().role < access::Role::Controller;
         SharedBytes& form = views ? of_viewers : frame;
         if (!form) {
             v1::Event told = event;
-            if (views)
+            if (views) {
                 protocol::keep_users_only(told);
+            }
             form = encode_event(std::move(told));
         }
         session->event(form);
@@ -394,10 +438,12 @@ void Streams::tell(v1::Event event) {
 std::function<void(const simulation::Laboratory&, std::vector<simulation::Event>)>
 Streams::outlet(runtime::Outbox& outbox) {
     return [this, &outbox](const simulation::Laboratory& laboratory, const std::vector<simulation::Event>& events) {
-        if (!demand_.events_wanted())
+        if (!demand_.events_wanted()) {
             return;
-        for (const simulation::Event& event : events)
+        }
+        for (const simulation::Event& event : events) {
             outbox.event([this, told = protocol::to_proto(event, laboratory)]() mutable { tell(std::move(told)); });
+        }
     };
 }
 
@@ -405,14 +451,17 @@ void Streams::announce_end() {
     v1::Event event;
     event.mutable_server_going_away();
     const SharedBytes frame = encode_event(std::move(event));
-    for (const auto& [number, session] : sessions_)
-        if (session->greeted())
+    for (const auto& [number, session] : sessions_) {
+        if (session->greeted()) {
             session->event(frame);
+        }
+    }
 }
 
 void Streams::end_sessions() {
-    for (const auto& [number, session] : sessions_)
+    for (const auto& [number, session] : sessions_) {
         session->finish();
+    }
 }
 
 } // namespace evod::network

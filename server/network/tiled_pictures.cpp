@@ -15,8 +15,9 @@ IslandTiles::IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::Q
 }
 
 const SharedBytes& IslandTiles::about_bytes() {
-    if (!about_bytes_)
+    if (!about_bytes_) {
         about_bytes_ = std::make_shared<const std::string>(about_.SerializeAsString());
+    }
     return about_bytes_;
 }
 
@@ -38,8 +39,9 @@ SharedBytes IslandTiles::encode(v1::SnapshotTile tile, std::string_view body, co
 }
 
 const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1::Compression compression) {
-    if (coarse_.empty())
+    if (coarse_.empty()) {
         coarse_.resize(scene_.layout().count());
+    }
     const bool dots = detail == v1::DETAIL_DOTS;
     SharedBytes& bytes = coarse_[tile][(dots ? 0 : 2) + (compression == v1::COMPRESSION_ZSTD ? 1 : 0)];
     if (!bytes) {
@@ -59,26 +61,30 @@ TiledPicture::TiledPicture(std::shared_ptr<IslandTiles> island, const std::share
     organisms_.y.resize(counts[0]);
     crates_.x.resize(counts[3]);
     crates_.y.resize(counts[3]);
-    if (!before)
+    if (!before) {
         return;
+    }
     before->before_ = nullptr; // nobody is sent that one any more
     const auto ticks = ticks_between(before->island_->about(), island_->about());
-    if (!ticks || before->layout() != layout())
+    if (!ticks || before->layout() != layout()) {
         return;
+    }
     before_ = before;
     ticks_ = *ticks;
 }
 
 const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression,
                                       std::uint64_t sent) {
-    if (detail != v1::DETAIL_FULL)
+    if (detail != v1::DETAIL_FULL) {
         return island_->coarse(tile, detail, compression);
+    }
     Tile& of = full(tile);
     const bool has_base = sent != 0 && sent == of.base_sequence;
     const Form form = sent == sequence() ? Form::Again : has_base ? Form::Delta : Form::Keyframe;
     SharedBytes& bytes = of.forms[static_cast<std::size_t>(form)][compression == v1::COMPRESSION_ZSTD ? 1 : 0];
-    if (bytes)
+    if (bytes) {
         return bytes;
+    }
     v1::SnapshotTile picture;
     picture.set_tile(tile);
     picture.set_detail(detail);
@@ -88,15 +94,17 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
         return bytes = island_->encode(std::move(picture), body, seams, compression);
     }
     picture.set_base_sequence(sent);
-    if (form == Form::Delta)
+    if (form == Form::Delta) {
         return bytes = island_->encode(std::move(picture), of.delta, of.delta_seams, compression);
+    }
     const codec::BaselineView here = baseline(tile);
     return bytes = island_->encode(std::move(picture), codec::encode_delta(here, here.scene, 0), {}, compression);
 }
 
 TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
-    if (tiles_[tile])
+    if (tiles_[tile]) {
         return *tiles_[tile];
+    }
     Tile& of = *(tiles_[tile] = std::make_unique<Tile>());
     of.keyframe_made = now_;
     if (before_ && before_->tiles_[tile]) {
@@ -104,7 +112,7 @@ TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
         const codec::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
         const auto part = [&](Displacements& all, std::size_t k) {
             return codec::AdvancedColumns::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
-                                                std::span{all.y}.subspan(begin[k], count[k])};
+                                                         std::span{all.y}.subspan(begin[k], count[k])};
         };
         const codec::QuantisedView scene = island_->scene().full(tile);
         const codec::AdvancedColumns to{.organisms = part(organisms_, 0), .crates = part(crates_, 3)};
@@ -124,7 +132,7 @@ codec::BaselineView TiledPicture::baseline(std::uint32_t tile) const {
     const codec::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
     const auto part = [&](const Displacements& all, std::size_t k) {
         return codec::BaselineView::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
-                                                std::span{all.y}.subspan(begin[k], count[k])};
+                                                  std::span{all.y}.subspan(begin[k], count[k])};
     };
     codec::BaselineView baseline;
     baseline.scene = island_->scene().full(tile);

@@ -27,7 +27,8 @@ class IslandTiles {
   public:
     /// about       all of the frame but its tiles.
     /// compressor  there as long as tiles are asked for.
-    IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor);
+    IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                codec::Compressor& compressor);
 
     const v1::SnapshotFrame& about() const { return about_; }
     codec::SnapshotTiles& scene() { return scene_; }

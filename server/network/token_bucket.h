@@ -23,8 +23,9 @@ class TokenBucket {
     bool take(double tokens, Clock::time_point now) {
         tokens_ = std::min(burst_, tokens_ + per_s_ * std::chrono::duration<double>{now - filled_}.count());
         filled_ = now;
-        if (tokens_ < std::min(tokens, burst_))
+        if (tokens_ < std::min(tokens, burst_)) {
             return false;
+        }
         tokens_ -= tokens;
         return true;
     }

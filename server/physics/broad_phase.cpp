@@ -12,9 +12,11 @@ constexpr std::size_t cells_per_block = 1024;
 
 float greatest_radius(const Circles& circles) {
     float greatest[lanes_max] = {}; // several, so that no comparison waits for the one before
-    for (std::size_t i = 0; i < circles.radius.size(); i += lanes_max)
-        for (std::size_t lane = 0; lane < lanes_max; ++lane)
+    for (std::size_t i = 0; i < circles.radius.size(); i += lanes_max) {
+        for (std::size_t lane = 0; lane < lanes_max; ++lane) {
             greatest[lane] = std::max(greatest[lane], circles.radius[i + lane]);
+        }
+    }
     return *std::max_element(greatest, greatest + lanes_max);
 }
 
@@ -39,54 +41,64 @@ template <bool side_by_side>
 void Strips::count_and_place(const Circles& circles, base::Executor& executor) {
     const std::size_t grain = side_by_side ? 4 * circles_per_block : circles.size();
     executor.parallel_for(circles.size(), grain, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
-            if (!circles.is_void(i))
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (!circles.is_void(i)) {
                 base::fetch_add<side_by_side>(first_[cell_of(circles, i)], 1u);
+            }
+        }
     });
     std::uint32_t end = 0;
-    for (std::uint32_t& first : first_)
+    for (std::uint32_t& first : first_) {
         first = end += first;
+    }
     order_.resize(end);
     executor.parallel_for(circles.size(), grain, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
-            if (!circles.is_void(i))
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (!circles.is_void(i)) {
                 order_[base::fetch_add<side_by_side>(first_[cell_of(circles, i)], ~0u) - 1] =
                     static_cast<std::uint32_t>(i);
+            }
+        }
     });
 }
 
 void Strips::sort(const Circles& circles, const Area& area, float reach_px, base::Executor& executor) {
     choose_cells(circles.size(), area, reach_px);
     first_.assign(std::size_t{strips_} * columns_ + 1, 0);
-    if (executor.thread_count() > 1 && circles.size() > 128 * circles_per_block)
+    if (executor.thread_count() > 1 && circles.size() > 128 * circles_per_block) {
         count_and_place<true>(circles, executor);
-    else
+    } else {
         count_and_place<false>(circles, executor);
+    }
 
     // Each cell for itself, which also undoes the order in which threads came.
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
         return circles.x[a] != circles.x[b] ? circles.x[a] < circles.x[b] : circles.id[a] < circles.id[b];
     };
     executor.parallel_for(first_.size() - 1, cells_per_block, [&](base::Range range) {
-        for (std::size_t cell = range.begin; cell < range.end; ++cell)
-            if (first_[cell + 1] - first_[cell] > 1)
+        for (std::size_t cell = range.begin; cell < range.end; ++cell) {
+            if (first_[cell + 1] - first_[cell] > 1) {
                 std::sort(order_.begin() + first_[cell], order_.begin() + first_[cell + 1], before);
+            }
+        }
     });
 }
 
 void Strips::follow_reordering() {
-    for (std::uint32_t k = 0; k < order_.size(); ++k)
+    for (std::uint32_t k = 0; k < order_.size(); ++k) {
         order_[k] = k;
+    }
 }
 
 std::uint32_t Strips::strip_of_place(std::size_t k) const {
     std::uint32_t low = 0, high = strips_ - 1;
     while (low < high) {
         const std::uint32_t middle = low + (high - low) / 2;
-        if (strip(middle).end <= k)
+        if (strip(middle).end <= k) {
             low = middle + 1;
-        else
+        } else {
             high = middle;
+        }
     }
     return low;
 }
@@ -95,12 +107,14 @@ bool NearPairs::worn(const Circles& circles, const Boxes& boxes) const {
     // A little less than half the skin: distances are rounded.
     const float allowed = skin_px_ / 2 - 0.01f;
     if (circles.size() != circle_count_ || boxes.size() != box_anchor_x_.size() || allowed <= 0 ||
-        strayed_square_ > allowed * allowed)
+        strayed_square_ > allowed * allowed) {
         return true;
+    }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const float dx = distance_px(box_anchor_x_[i], boxes.x[i]), dy = distance_px(box_anchor_y_[i], boxes.y[i]);
-        if (dx * dx + dy * dy > allowed * allowed)
+        if (dx * dx + dy * dy > allowed * allowed) {
             return true;
+        }
     }
     return false;
 }
@@ -155,8 +169,9 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
     const auto window_max = static_cast<Coordinate>((2 * radius_max_ + skin_px_) * units_per_px) + 1;
     std::uint32_t crowded = 0;
     resize_lists(pairs_of_block_, block_count(circles.size()), circles_per_block * 3 / 4);
-    for (std::size_t block = block_count(order.size()); block < pairs_of_block_.size(); ++block)
+    for (std::size_t block = block_count(order.size()); block < pairs_of_block_.size(); ++block) {
         pairs_of_block_[block].clear();
+    }
     executor.parallel_for(order.size(), circles_per_block * blocks_per_piece(order.size()), [&](base::Range range) {
         for (std::size_t begin = range.begin; begin < range.end; begin += circles_per_block) {
             std::vector<Pair>& pairs = pairs_of_block_[begin / circles_per_block];
@@ -166,8 +181,9 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
             std::size_t strip_end = strips_.strip(strip).end;
             std::size_t below = 0, below_end = 0; // of the next strip: from what is not too far left, to its end
             const auto enter_strip = [&](std::size_t k) {
-                while (k >= strip_end)
+                while (k >= strip_end) {
                     strip_end = strips_.strip(++strip).end;
+                }
                 const bool last = strip + 1 == strips_.strip_count();
                 const std::int64_t left = std::int64_t{circles.x[order[k]]} - window_max;
                 below = last ? 0 : strips_.place_of(strip + 1, left);
@@ -175,8 +191,9 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
             };
             enter_strip(begin);
             for (std::size_t k = begin; k < end; ++k) {
-                if (k >= strip_end)
+                if (k >= strip_end) {
                     enter_strip(k);
+                }
                 const std::uint32_t i = order[k];
                 const Coordinate x = circles.x[i], y = circles.y[i];
                 const float own_reach = circles.radius[i] + skin_px_;
@@ -184,15 +201,19 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
                 const auto test = [&](std::uint32_t j) {
                     const float dx = distance_px(x, circles.x[j]), dy = distance_px(y, circles.y[j]);
                     const float reach = own_reach + circles.radius[j];
-                    if (dx * dx + dy * dy <= reach * reach)
+                    if (dx * dx + dy * dy <= reach * reach) {
                         pairs.push_back({i, j});
+                    }
                 };
-                for (std::size_t m = k + 1; m < strip_end && circles.x[order[m]] - x <= window; ++m)
+                for (std::size_t m = k + 1; m < strip_end && circles.x[order[m]] - x <= window; ++m) {
                     test(order[m]);
-                while (below < below_end && circles.x[order[below]] < x - window_max)
+                }
+                while (below < below_end && circles.x[order[below]] < x - window_max) {
                     ++below;
-                for (std::size_t m = below; m < below_end && circles.x[order[m]] - x <= window; ++m)
+                }
+                for (std::size_t m = below; m < below_end && circles.x[order[m]] - x <= window; ++m) {
                     test(order[m]);
+                }
                 if (thick && pairs.size() > pairs_max) {
                     base::put<true>(crowded, 1u);
                     return;
@@ -221,19 +242,22 @@ void NearPairs::list_box_pairs(const Circles& circles, const Boxes& boxes) {
                 const std::uint32_t circle = strips_.order()[k];
                 if (box_circle(distance_px(boxes.x[box], circles.x[circle]),
                                distance_px(boxes.y[box], circles.y[circle]), shape, circles.radius[circle] + skin_px_)
-                        .touching)
+                        .touching) {
                     circle_box_pairs_.push_back({circle, box});
+                }
             }
         });
     }
 
     // Sweep along x: a box can only come to touch those that begin before it ends.
-    if (boxes.size() < 2)
+    if (boxes.size() < 2) {
         return;
+    }
     const auto left = [&](std::uint32_t i) { return distance_px(0, boxes.x[i]) - boxes.half_width[i]; };
     boxes_by_left_.resize(boxes.size());
-    for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
         boxes_by_left_[i] = i;
+    }
     std::sort(boxes_by_left_.begin(), boxes_by_left_.end(),
               [&](std::uint32_t a, std::uint32_t b) { return left(a) != left(b) ? left(a) < left(b) : a < b; });
     for (std::size_t i = 0; i < boxes_by_left_.size(); ++i) {
@@ -246,8 +270,9 @@ void NearPairs::list_box_pairs(const Circles& circles, const Boxes& boxes) {
                 box_box(distance_px(boxes.x[a], boxes.x[b]), distance_px(boxes.y[a], boxes.y[b]),
                         {boxes.half_width[a] + skin_px_, boxes.half_height[a] + skin_px_},
                         {boxes.half_width[b], boxes.half_height[b]})
-                    .touching)
+                    .touching) {
                 box_pairs_.push_back({std::min(a, b), std::max(a, b)});
+            }
         }
     }
 }

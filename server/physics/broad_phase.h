@@ -48,8 +48,9 @@ template <class T>
 void resize_lists(std::vector<std::vector<T>>& list_of_block, std::size_t blocks, std::size_t usually_enough) {
     const std::size_t before = list_of_block.size();
     list_of_block.resize(blocks);
-    for (std::size_t block = before; block < blocks; ++block)
+    for (std::size_t block = before; block < blocks; ++block) {
         list_of_block[block].reserve(usually_enough);
+    }
 }
 
 /// The circles that are not void, strip by strip, each strip in order of (x, id).
@@ -87,8 +88,9 @@ class Strips {
         const std::uint32_t first_column = index_at(left, column_scale_, columns_);
         const std::uint32_t end_column = index_at(right, column_scale_, columns_) + 1;
         const std::uint32_t last = strip_at(bottom) * columns_;
-        for (std::uint32_t row = strip_at(top) * columns_; row <= last; row += columns_)
+        for (std::uint32_t row = strip_at(top) * columns_; row <= last; row += columns_) {
             visit(Stretch{row + first_column, row + end_column});
+        }
     }
     /// Where in order() the circles of a stretch stand.
     base::Range places(Stretch stretch) const { return {first_[stretch.first_cell], first_[stretch.end_cell]}; }

@@ -39,8 +39,9 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
     const float nx = overlap.normal_x, ny = overlap.normal_y;
     // What cannot move is not written to: several contacts with it may be resolved at once.
     const auto move = [&](Body body, float way) {
-        if (body.bodies.inverse_mass[body.index] == 0)
+        if (body.bodies.inverse_mass[body.index] == 0) {
             return;
+        }
         body.bodies.x[body.index] += to_units(nx * way);
         body.bodies.y[body.index] += to_units(ny * way);
     };
@@ -53,12 +54,14 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
     const auto [ax, ay] = velocity_of(a);
     const auto [bx, by] = velocity_of(b);
     const float approach = (bx - ax) * nx + (by - ay) * ny;
-    if (approach >= 0)
+    if (approach >= 0) {
         return;
+    }
     const float impulse = -(1 + restitution) * approach / total;
     const auto push = [&](Body body, float mass, float way) {
-        if (mass == 0)
+        if (mass == 0) {
             return;
+        }
         body.bodies.velocity_x[body.index] += way * (impulse * mass * nx);
         body.bodies.velocity_y[body.index] += way * (impulse * mass * ny);
     };
@@ -96,40 +99,48 @@ void Contacts::find_among_circles(const Circles& circles, const NearPairs& near,
     for (const auto [a, b] : near.circle_pairs(block)) {
         const float dx = distance_px(x[a], x[b]), dy = distance_px(y[a], y[b]);
         const float reach = radius[a] + radius[b];
-        if (dx * dx + dy * dy <= reach * reach && reach > 0) // 0: both are void
+        if (dx * dx + dy * dy <= reach * reach && reach > 0) { // 0: both are void
             found.push_back({a, b});
+        }
     }
 }
 
 void Contacts::find_with_boxes(const Circles& circles, const Boxes& boxes, const NearPairs& near) {
-    for (const auto [circle, box] : near.circle_box_pairs())
-        if (overlap_of(boxes, box, circles, circle).touching)
+    for (const auto [circle, box] : near.circle_box_pairs()) {
+        if (overlap_of(boxes, box, circles, circle).touching) {
             found_with_boxes_.push_back({circle, box | box_bit});
-    for (const auto [a, b] : near.box_pairs())
-        if (overlap_of(boxes, a, b).touching)
+        }
+    }
+    for (const auto [a, b] : near.box_pairs()) {
+        if (overlap_of(boxes, a, b).touching) {
             found_with_boxes_.push_back({a | box_bit, b | box_bit});
+        }
+    }
 }
 
 void Contacts::find(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
     NearPairs near;
     near.renew(circles, boxes, area, executor);
     begin(circles, boxes);
-    for (std::size_t block = 0; block < found_in_block_.size(); ++block)
+    for (std::size_t block = 0; block < found_in_block_.size(); ++block) {
         find_among_circles(circles, near, block);
+    }
     find_with_boxes(circles, boxes, near);
 }
 
 std::size_t Contacts::size() const {
     std::size_t size = found_with_boxes_.size();
-    for (const std::vector<Contact>& found : found_in_block_)
+    for (const std::vector<Contact>& found : found_in_block_) {
         size += found.size();
+    }
     return size;
 }
 
 void Contacts::resolve(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor) {
     left_.assign(found_with_boxes_.begin(), found_with_boxes_.end());
-    for (const std::vector<Contact>& found : found_in_block_)
+    for (const std::vector<Contact>& found : found_in_block_) {
         left_.insert(left_.end(), found.begin(), found.end());
+    }
     // A long chain, or a body with many contacts, gives up one contact a round: what is left then is put in order at
     // once.
     const auto resolve_rounds = [&](std::size_t enough, auto resolve_one_round) {
@@ -142,8 +153,9 @@ void Contacts::resolve(Circles& circles, Boxes& boxes, float restitution, base::
             }
         }
     };
-    if (executor.thread_count() > 1)
+    if (executor.thread_count() > 1) {
         resolve_rounds(contacts_per_piece, [&] { resolve_round<true>(circles, boxes, restitution, executor); });
+    }
     resolve_rounds(0, [&] { resolve_round<false>(circles, boxes, restitution, executor); });
 }
 
@@ -154,8 +166,9 @@ void Contacts::resolve_in_order(Circles& circles, Boxes& boxes, float restitutio
     };
     std::sort(left_.begin(), left_.end(),
               [&](const Contact& a, const Contact& b) { return identities(a) < identities(b); });
-    for (const Contact& contact : left_)
+    for (const Contact& contact : left_) {
         resolve_one(circles, boxes, contact, restitution);
+    }
     left_.clear();
 }
 
@@ -172,17 +185,20 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
     executor.parallel_for(left_.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const std::uint32_t a = left_[i].a, b = left_[i].b;
-            if (waits(a))
+            if (waits(a)) {
                 base::fetch_min<side_by_side>(first_of(a), identity(b));
-            if (waits(b))
+            }
+            if (waits(b)) {
                 base::fetch_min<side_by_side>(first_of(b), identity(a));
+            }
         }
     });
     executor.parallel_for(left_.size(), grain, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
             const std::uint32_t a = left_[i].a, b = left_[i].b;
-            if ((waits(a) && first_of(a) != identity(b)) || (waits(b) && first_of(b) != identity(a)))
+            if ((waits(a) && first_of(a) != identity(b)) || (waits(b) && first_of(b) != identity(a))) {
                 continue;
+            }
             resolve_one(circles, boxes, left_[i], restitution);
             left_[i].resolved = true;
         }
@@ -200,16 +216,20 @@ void Contacts::resolve_one(Circles& circles, Boxes& boxes, const Contact& contac
     std::size_t a = contact.a & ~box_bit, b = contact.b & ~box_bit;
     if (!(contact.b & box_bit)) {
         // From the lower id to the higher: circles at the same place part along that way.
-        if (circles.id[a] > circles.id[b])
+        if (circles.id[a] > circles.id[b]) {
             std::swap(a, b);
-        if (const Overlap overlap = overlap_of(circles, a, b); overlap.touching)
+        }
+        if (const Overlap overlap = overlap_of(circles, a, b); overlap.touching) {
             resolve_contact({circles, a}, {circles, b}, overlap, restitution);
+        }
     } else if (!(contact.a & box_bit)) {
-        if (const Overlap overlap = overlap_of(boxes, b, circles, a); overlap.touching)
+        if (const Overlap overlap = overlap_of(boxes, b, circles, a); overlap.touching) {
             resolve_contact({boxes, b}, {circles, a}, overlap, restitution);
+        }
     } else {
-        if (const Overlap overlap = overlap_of(boxes, a, b); overlap.touching)
+        if (const Overlap overlap = overlap_of(boxes, a, b); overlap.touching) {
             resolve_contact({boxes, a}, {boxes, b}, overlap, restitution);
+        }
     }
 }
 

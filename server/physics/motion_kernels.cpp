@@ -72,8 +72,9 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
             moving_x += load<Floats>(columns.drift_x + i);
             moving_y += load<Floats>(columns.drift_y + i);
             const Floats square = moving_x * moving_x + moving_y * moving_y;
-            if (const Integers over = square > limit_square; bits_of(over) != 0)
+            if (const Integers over = square > limit_square; bits_of(over) != 0) {
                 limit(moving_x, moving_y, square, over, rules.max_speed);
+            }
         }
         const Floats square = vx * vx + vy * vy;
         if (const Integers over = square > limit_square; bits_of(over) != 0) {
@@ -86,8 +87,9 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
         }
         const Floats way_x = moving_x * rules.tick_s, way_y = moving_y * rules.tick_s;
         const Floats radius = load<Floats>(columns.radius + i);
-        if (const unsigned too_fast = bits_of(way_x * way_x + way_y * way_y > radius * radius); too_fast != 0)
+        if (const unsigned too_fast = bits_of(way_x * way_x + way_y * way_y > radius * radius); too_fast != 0) {
             counts.too_fast += static_cast<unsigned>(__builtin_popcount(too_fast));
+        }
 
         const Integers old_x = load<Integers>(columns.x + i);
         const Integers movable = old_x != elsewhere;
@@ -105,8 +107,9 @@ MoveCounts move(const MotionColumns& columns, std::size_t begin, std::size_t end
         const Floats away_y = to_floats(y.position - load<Integers>(columns.anchor_y + i)) * px_per_unit;
         strayed = greater(strayed, away_x * away_x + away_y * away_y);
     }
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
         counts.strayed_square = strayed[lane] > counts.strayed_square ? strayed[lane] : counts.strayed_square;
+    }
     return counts;
 }
 

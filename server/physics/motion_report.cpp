@@ -18,8 +18,9 @@ double rounded_for_sums(double x) {
 template <class ExtentOf>
 void add_motion(MotionReport& report, const Bodies& bodies, std::size_t count, double tick_s, ExtentOf&& extent_of) {
     for (std::size_t i = 0; i < count; ++i) {
-        if (bodies.inverse_mass[i] == 0)
+        if (bodies.inverse_mass[i] == 0) {
             continue; // void ones too
+        }
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
         const auto vx = static_cast<double>(bodies.velocity_x[i]), vy = static_cast<double>(bodies.velocity_y[i]);
         const double square = vx * vx + vy * vy, speed = std::sqrt(square);
@@ -54,40 +55,51 @@ MotionReport report(const Circles& circles, const Boxes& boxes, const Area& area
     add_motion(report, circles, circles.size(), tick_s, radius);
     add_motion(report, boxes, boxes.size(), tick_s, half_side);
 
-    for (std::size_t i = 0; i < circles.size(); ++i)
-        if (circles.inverse_mass[i] > 0)
+    for (std::size_t i = 0; i < circles.size(); ++i) {
+        if (circles.inverse_mass[i] > 0) {
             add_overlap(report,
                         std::max(beyond(circles.x[i], circles.radius[i], area.width),
                                  beyond(circles.y[i], circles.radius[i], area.height)),
                         radius(i));
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-        if (boxes.inverse_mass[i] > 0)
+        }
+    }
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (boxes.inverse_mass[i] > 0) {
             add_overlap(report,
                         std::max(beyond(boxes.x[i], boxes.half_width[i], area.width),
                                  beyond(boxes.y[i], boxes.half_height[i], area.height)),
                         half_side(i));
+        }
+    }
 
     const auto add_pair = [&](const Overlap& overlap, double smaller_extent) {
-        if (!overlap.touching)
+        if (!overlap.touching) {
             return;
+        }
         ++report.touching_count;
         add_overlap(report, static_cast<double>(overlap.depth), smaller_extent);
     };
     const auto shape = [&](std::size_t box) { return BoxShape{boxes.half_width[box], boxes.half_height[box]}; };
-    for (std::size_t block = 0; block < block_count(circles.size()); ++block)
-        for (const auto [a, b] : near.circle_pairs(block))
-            if (!circles.is_void(a) && !circles.is_void(b))
+    for (std::size_t block = 0; block < block_count(circles.size()); ++block) {
+        for (const auto [a, b] : near.circle_pairs(block)) {
+            if (!circles.is_void(a) && !circles.is_void(b)) {
                 add_pair(circle_circle(distance_px(circles.x[a], circles.x[b]), distance_px(circles.y[a], circles.y[b]),
                                        circles.radius[a], circles.radius[b]),
                          std::min(radius(a), radius(b)));
-    for (const auto [circle, box] : near.circle_box_pairs())
-        if (!circles.is_void(circle))
+            }
+        }
+    }
+    for (const auto [circle, box] : near.circle_box_pairs()) {
+        if (!circles.is_void(circle)) {
             add_pair(box_circle(distance_px(boxes.x[box], circles.x[circle]),
                                 distance_px(boxes.y[box], circles.y[circle]), shape(box), circles.radius[circle]),
                      std::min(radius(circle), half_side(box)));
-    for (const auto [a, b] : near.box_pairs())
+        }
+    }
+    for (const auto [a, b] : near.box_pairs()) {
         add_pair(box_box(distance_px(boxes.x[a], boxes.x[b]), distance_px(boxes.y[a], boxes.y[b]), shape(a), shape(b)),
                  std::min(half_side(a), half_side(b)));
+    }
     return report;
 }
 
@@ -95,8 +107,9 @@ MotionReport report(const Circles& circles, const Boxes& boxes, const Area& area
 
 MotionReport report_motion(const Circles& circles, const Boxes& boxes, const Area& area, double tick_s,
                            const NearPairs& near) {
-    if (!near.worn(circles, boxes))
+    if (!near.worn(circles, boxes)) {
         return report(circles, boxes, area, tick_s, near);
+    }
     NearPairs fresh;
     base::InlineExecutor executor;
     fresh.renew(circles, boxes, area, executor);

@@ -36,8 +36,9 @@ class Reordering {
         constexpr std::size_t grain = 2048;
         spare_.resize(order_.size());
         executor_.parallel_for(order_.size(), grain, [&](base::Range range) {
-            for (std::size_t i = range.begin; i < range.end; ++i)
+            for (std::size_t i = range.begin; i < range.end; ++i) {
                 std::memcpy(&spare_[i], &column[order_[i]], sizeof(T));
+            }
         });
         executor_.parallel_for(order_.size(), grain, [&](base::Range range) {
             std::memcpy(&column[range.begin], &spare_[range.begin], (range.end - range.begin) * sizeof(T));

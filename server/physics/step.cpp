@@ -18,8 +18,9 @@ namespace {
 /// Cuts a velocity to `limit`, px/s; whether it had to.
 bool limit_speed(float& vx, float& vy, float limit) {
     const float square = vx * vx + vy * vy;
-    if (square <= limit * limit)
+    if (square <= limit * limit) {
         return false;
+    }
     const float share = limit / std::sqrt(square);
     vx *= share;
     vy *= share;
@@ -30,8 +31,9 @@ bool limit_speed(float& vx, float& vy, float limit) {
 template <class Wall>
 void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (boxes.inverse_mass[i] == 0)
+        if (boxes.inverse_mass[i] == 0) {
             continue;
+        }
         wall(boxes.x[i], boxes.velocity_x[i], to_units(boxes.half_width[i]), area.width);
         wall(boxes.y[i], boxes.velocity_y[i], to_units(boxes.half_height[i]), area.height);
     }
@@ -41,17 +43,20 @@ void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
 
 StepCounts Stepper::step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                          const Forces& force, base::Executor& executor) {
-    if (near_.worn(circles, boxes))
+    if (near_.worn(circles, boxes)) {
         near_.renew(circles, boxes, area, executor);
+    }
     begin(circles, boxes, area, parameters);
     executor.parallel_for(block_count(circles.size()), blocks_per_piece(circles.size()), [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             accelerate(circles, block, {force.x + block * circles_per_block, force.y + block * circles_per_block});
+        }
     });
     collide(circles, boxes, executor);
     executor.parallel_for(block_count(circles.size()), blocks_per_piece(circles.size()), [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             move(circles, block);
+        }
     });
     return finish(boxes);
 }
@@ -102,8 +107,9 @@ void Stepper::collide(Circles& circles, Boxes& boxes, base::Executor& executor) 
         box_drift_y_[i] -= boxes.velocity_y[i];
     }
     for_each_axis(boxes, area_, [&](Coordinate position, float& velocity, Coordinate extent, Coordinate size) {
-        if ((position <= extent && velocity < 0) || (position >= size - extent && velocity > 0))
+        if ((position <= extent && velocity < 0) || (position >= size - extent && velocity > 0)) {
             velocity *= -parameters_.restitution;
+        }
     });
     contacts_.find_with_boxes(circles, boxes, near_);
     contacts_.resolve(circles, boxes, parameters_.restitution, executor);
@@ -141,8 +147,9 @@ StepCounts Stepper::finish(Boxes& boxes) {
         if (position < extent || position > size - extent) {
             const bool below = position < extent;
             position = below ? extent : size - extent;
-            if (below ? velocity < 0 : velocity > 0)
+            if (below ? velocity < 0 : velocity > 0) {
                 velocity *= -parameters_.restitution;
+            }
         }
     });
     return counts;

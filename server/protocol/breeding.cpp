@@ -37,18 +37,21 @@ v1::Contender to_proto(const evolution::BreedingRecord::Contender& contender) {
         to.mutable_migrant()->set_island(contender.migrant->from);
         to.mutable_migrant()->set_organism(contender.migrant->organism);
     }
-    if (contender.own_fitness)
+    if (contender.own_fitness) {
         to.set_own_fitness(*contender.own_fitness);
+    }
     return to;
 }
 
 v1::Pick to_proto(const evolution::BreedingRecord::Pick& pick) {
     v1::Pick to;
     to.set_organism(pick.organism);
-    if (pick.turns)
+    if (pick.turns) {
         to.set_turns(*pick.turns);
-    if (pick.tournament)
+    }
+    if (pick.tournament) {
         to.set_tournament(*pick.tournament);
+    }
     to.mutable_contestants()->Add(pick.contestants.begin(), pick.contestants.end());
     return to;
 }
@@ -108,12 +111,15 @@ v1::Breeding to_proto(const evolution::BreedingRecord& record, const simulation:
     to.set_descendant_count(record.places.survivors + record.places.children);
     to.set_elite_count(record.places.elite);
     to.set_survivor_count(record.places.survivors);
-    for (const auto& contender : record.contenders)
+    for (const auto& contender : record.contenders) {
         *to.add_contenders() = to_proto(contender);
-    for (const auto& pick : record.picks)
+    }
+    for (const auto& pick : record.picks) {
         *to.add_picks() = to_proto(pick);
-    for (const auto& descendant : record.descendants)
+    }
+    for (const auto& descendant : record.descendants) {
         *to.add_descendants() = to_proto(descendant, record.places, parameters.rearranging);
+    }
     return to;
 }
 

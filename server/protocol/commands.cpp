@@ -25,17 +25,19 @@ constexpr const char* least_1 = "at least 1";
 /// longest request would keep the simulation waiting.
 bool too_many(int assignments, std::string field, Violations& violations) {
     const std::size_t most = simulation::parameter_registry().size();
-    if (static_cast<std::size_t>(assignments) <= most)
+    if (static_cast<std::size_t>(assignments) <= most) {
         return false;
+    }
     violations.push_back(
         {std::move(field), "at most " + std::to_string(most) + " assignments", std::to_string(assignments)});
     return true;
 }
 
 simulation::Command command_of(const v1::CreateWorld& request, const Draws& draws, Violations& violations) {
-    if (!simulation::is_world_name(request.name()))
+    if (!simulation::is_world_name(request.name())) {
         violations.push_back(
             {"create_world.name", std::string{simulation::world_name_allowed}, '"' + request.name() + '"'});
+    }
     simulation::CreateWorld command{.name = request.name(),
                                     .parameters = {},
                                     .seed = request.has_seed() ? base::Seed{request.seed()} : draws.seed,
@@ -45,10 +47,11 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
         const auto assignments = to_assignments(request.parameters(), "create_world.", missing);
         if (missing.empty()) {
             auto parameters = simulation::assign({}, assignments, "create_world.");
-            if (parameters)
+            if (parameters) {
                 command.parameters = *parameters;
-            else
+            } else {
                 missing = parameters.error().violations;
+            }
         }
         if (missing.empty()) {
             command.first_population = first_population_of(request, missing);
@@ -63,8 +66,9 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
 
 /// A command that destroys something names its world: an empty field may have been forgotten.
 void need_world(const std::string& world, const char* field, Violations& violations) {
-    if (world.empty())
+    if (world.empty()) {
         violations.push_back({field, "the name of a world", "nothing"});
+    }
 }
 
 simulation::Command command_of(const v1::DeleteWorld& request, const Draws&, Violations& violations) {
@@ -75,16 +79,18 @@ simulation::Command command_of(const v1::DeleteWorld& request, const Draws&, Vio
 simulation::Command command_of(const v1::ResetWorld& request, const Draws& draws, Violations& violations) {
     need_world(request.world(), "reset_world.world", violations);
     simulation::ResetWorld command{.world = lookup_name(request.world()), .seed = {}, .run_id = draws.run_id};
-    if (request.has_seed())
+    if (request.has_seed()) {
         command.seed = base::Seed{request.seed()};
+    }
     return command;
 }
 
 simulation::Command command_of(const v1::Run& request, const Draws&, Violations& violations) {
     simulation::Run command{.world = lookup_name(request.world()), .generations = {}};
     if (request.has_generations()) {
-        if (request.generations() == 0)
+        if (request.generations() == 0) {
             violations.push_back({"run.generations", least_1, "0"});
+        }
         command.generations = request.generations();
     }
     return command;
@@ -111,16 +117,18 @@ simulation::Command command_of(const v1::SetSpeed& request, const Draws&, Violat
     switch (request.speed().kind_case()) {
     case v1::Speed::kRealTimeFactor: {
         const double factor = request.speed().real_time_factor();
-        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) // a NaN is in no range
+        if (!(factor >= simulation::speed_min && factor <= simulation::speed_max)) { // a NaN is in no range
             violations.push_back({"set_speed.speed.real_time_factor",
                                   number_text(simulation::speed_min) + " to " + number_text(simulation::speed_max),
                                   number_text(factor)});
+        }
         command.speed = factor;
         break;
     }
     case v1::Speed::kMax:
-        if (!request.speed().max())
+        if (!request.speed().max()) {
             violations.push_back({"set_speed.speed.max", "true", "false"});
+        }
         break;
     case v1::Speed::KIND_NOT_SET:
         violations.push_back({"set_speed.speed", "real_time_factor or max", "nothing"});
@@ -134,17 +142,20 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
                                       .assignments = {},
                                       .dry_run = request.dry_run(),
                                       .expected_revision = {}};
-    if (!too_many(request.parameters_size(), "set_parameters.parameters", violations))
+    if (!too_many(request.parameters_size(), "set_parameters.parameters", violations)) {
         command.assignments = to_assignments(request.parameters(), "set_parameters.", violations);
-    if (request.has_expected_revision())
+    }
+    if (request.has_expected_revision()) {
         command.expected_revision = request.expected_revision();
-    if (request.has_at_generation() && request.has_at_tick())
+    }
+    if (request.has_at_generation() && request.has_at_tick()) {
         violations.push_back(
             {"set_parameters.at_tick", "nothing beside at_generation", std::to_string(request.at_tick())});
-    else if (request.has_at_generation())
+    } else if (request.has_at_generation()) {
         command.at = simulation::PlannedMoment{.generation = request.at_generation(), .tick = {}};
-    else if (request.has_at_tick())
+    } else if (request.has_at_tick()) {
         command.at = simulation::PlannedMoment{.generation = {}, .tick = request.at_tick()};
+    }
     return command;
 }
 
@@ -153,14 +164,16 @@ simulation::Command command_of(const v1::CancelChange& request, const Draws&, Vi
 }
 
 simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws, Violations& violations) {
-    if (!simulation::is_world_name(request.name()))
+    if (!simulation::is_world_name(request.name())) {
         violations.push_back(
             {"fork_world.name", std::string{simulation::world_name_allowed}, '"' + request.name() + '"'});
+    }
     simulation::ForkWorld command{
         .world = lookup_name(request.world()), .name = request.name(), .at_generation = {}, .run_id = draws.run_id};
     if (request.has_at_generation()) {
-        if (request.at_generation() == 0)
+        if (request.at_generation() == 0) {
             violations.push_back({"fork_world.at_generation", least_1, "0"});
+        }
         command.at_generation = request.at_generation();
     }
     return command;
@@ -169,12 +182,14 @@ simulation::Command command_of(const v1::ForkWorld& request, const Draws& draws,
 void add_faults(const v1::View& view, const std::string& path, Violations& violations) {
     const v1::Region& region = view.region(); // all 0 without one
     const auto finite = [&](const char* field, double value) {
-        if (!std::isfinite(value))
+        if (!std::isfinite(value)) {
             violations.push_back({path + ".region." + field, "a finite number", number_text(value)});
+        }
     };
     const auto positive = [&](const char* field, double value) {
-        if (!(value > 0 && std::isfinite(value)))
+        if (!(value > 0 && std::isfinite(value))) {
             violations.push_back({path + ".region." + field, "a finite number above 0", number_text(value)});
+        }
     };
     if (view.has_region()) {
         finite("left_px", region.left_px());
@@ -182,57 +197,70 @@ void add_faults(const v1::View& view, const std::string& path, Violations& viola
         positive("width_px", region.width_px());
         positive("height_px", region.height_px());
     }
-    if (!v1::Detail_IsValid(view.detail()))
+    if (!v1::Detail_IsValid(view.detail())) {
         violations.push_back({path + ".detail", "one of Detail's", std::to_string(view.detail())});
+    }
     const std::uint64_t bytes = view.bytes_per_s_max();
-    if (view.has_bytes_per_s_max() && (bytes < view_bytes_per_s_least || bytes > view_bytes_per_s_most))
+    if (view.has_bytes_per_s_max() && (bytes < view_bytes_per_s_least || bytes > view_bytes_per_s_most)) {
         violations.push_back({path + ".bytes_per_s_max",
                               std::to_string(view_bytes_per_s_least) + " to " + std::to_string(view_bytes_per_s_most),
                               std::to_string(bytes)});
+    }
 }
 
 void add_faults(const v1::SubscribeSnapshots& request, Violations& violations) {
-    if (!(request.rate_hz() > 0 && std::isfinite(request.rate_hz())))
+    if (!(request.rate_hz() > 0 && std::isfinite(request.rate_hz()))) {
         violations.push_back({"subscribe_snapshots.rate_hz", "a number above 0", number_text(request.rate_hz())});
-    if (!v1::Codec_IsValid(request.codec()))
+    }
+    if (!v1::Codec_IsValid(request.codec())) {
         violations.push_back({"subscribe_snapshots.codec", "one of Codec's", std::to_string(request.codec())});
-    if (!v1::Compression_IsValid(request.compression()))
+    }
+    if (!v1::Compression_IsValid(request.compression())) {
         violations.push_back(
             {"subscribe_snapshots.compression", "one of Compression's", std::to_string(request.compression())});
-    else if (request.compression() == v1::COMPRESSION_ZSTD && request.codec() != v1::CODEC_DELTA)
+    } else if (request.compression() == v1::COMPRESSION_ZSTD && request.codec() != v1::CODEC_DELTA) {
         violations.push_back({"subscribe_snapshots.codec", "CODEC_DELTA (2) with COMPRESSION_ZSTD (2)",
                               std::to_string(request.codec())});
+    }
     const std::uint32_t unacknowledged = request.unacknowledged_max();
-    if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_snapshots_max))
+    if (request.has_unacknowledged_max() && (unacknowledged < 1 || unacknowledged > unacknowledged_snapshots_max)) {
         violations.push_back({"subscribe_snapshots.unacknowledged_max",
                               "1 to " + std::to_string(unacknowledged_snapshots_max), std::to_string(unacknowledged)});
-    if (request.has_view())
+    }
+    if (request.has_view()) {
         add_faults(request.view(), "subscribe_snapshots.view", violations);
-    if (request.has_view() && request.codec() != v1::CODEC_DELTA)
+    }
+    if (request.has_view() && request.codec() != v1::CODEC_DELTA) {
         violations.push_back(
             {"subscribe_snapshots.codec", "CODEC_DELTA (2) with a view", std::to_string(request.codec())});
+    }
 }
 
 void add_faults(const v1::SetView& request, Violations& violations) {
-    if (request.has_view())
+    if (request.has_view()) {
         add_faults(request.view(), "set_view.view", violations);
-    else
+    } else {
         violations.push_back({"set_view.view", "a view; an empty one is of everything", "nothing"});
+    }
 }
 
 void add_faults(const v1::ExportRun& request, Violations& violations) {
     const auto is_word = [](const auto* words, int number) {
         return number != 0 && words->FindValueByNumber(number) != nullptr;
     };
-    if (!is_word(v1::RunTable_descriptor(), request.table()))
+    if (!is_word(v1::RunTable_descriptor(), request.table())) {
         violations.push_back({"export_run.table", "one of RunTable's, from 1", std::to_string(request.table())});
-    if (!is_word(v1::TextFormat_descriptor(), request.format()))
+    }
+    if (!is_word(v1::TextFormat_descriptor(), request.format())) {
         violations.push_back({"export_run.format", "one of TextFormat's, from 1", std::to_string(request.format())});
-    if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION)
+    }
+    if (request.has_generation() && request.table() != v1::RUN_TABLE_POPULATION) {
         violations.push_back({"export_run.generation", "only of the population", std::to_string(request.generation())});
-    if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE)
+    }
+    if (request.has_of() && request.table() != v1::RUN_TABLE_LINEAGE) {
         violations.push_back(
             {"export_run.of", "only of the lineage", "one of generation " + std::to_string(request.of().generation())});
+    }
 }
 
 } // namespace
@@ -288,9 +316,10 @@ RequestKind kind_of(const v1::Request& request) {
 
 base::Result<simulation::Command> to_command(const v1::Request& request, const Draws& draws) {
     Violations violations;
-    if (request.client_key().empty() || request.client_key().size() > client_key_bytes_max)
+    if (request.client_key().empty() || request.client_key().size() > client_key_bytes_max) {
         violations.push_back({"client_key", "1 to " + std::to_string(client_key_bytes_max) + " bytes",
                               std::to_string(request.client_key().size()) + " bytes"});
+    }
     const simulation::Command command = [&]() -> simulation::Command {
         switch (request.kind_case()) {
         case RequestCase::kCreateWorld:
@@ -322,26 +351,30 @@ base::Result<simulation::Command> to_command(const v1::Request& request, const D
             return simulation::Pause{};
         }
     }();
-    if (!violations.empty())
+    if (!violations.empty()) {
         return invalid(std::move(violations));
+    }
     return command;
 }
 
 std::optional<std::string> unknown_field_of(const google::protobuf::Message& message) {
     const google::protobuf::Reflection& fields = *message.GetReflection();
-    if (const auto& unknown = fields.GetUnknownFields(message); !unknown.empty())
+    if (const auto& unknown = fields.GetUnknownFields(message); !unknown.empty()) {
         return std::to_string(unknown.field(0).number());
+    }
     std::vector<const google::protobuf::FieldDescriptor*> present;
     fields.ListFields(message, &present);
     for (const auto* field : present) {
-        if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE)
+        if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
             continue;
+        }
         const int count = field->is_repeated() ? fields.FieldSize(message, field) : 1;
         for (int i = 0; i < count; ++i) {
-            const auto& inner = field->is_repeated() ? fields.GetRepeatedMessage(message, field, i)
-                                                     : fields.GetMessage(message, field);
-            if (const auto path = unknown_field_of(inner))
+            const auto& inner =
+                field->is_repeated() ? fields.GetRepeatedMessage(message, field, i) : fields.GetMessage(message, field);
+            if (const auto path = unknown_field_of(inner)) {
                 return field->name() + "." + *path;
+            }
         }
     }
     return std::nullopt;
@@ -352,10 +385,11 @@ std::vector<base::Violation> faults_of(const v1::Request& request) {
     if (request.has_get_history()) {
         const v1::GetHistory& query = request.get_history();
         if (query.has_first_generation() && query.has_last_generation() &&
-            query.first_generation() > query.last_generation())
+            query.first_generation() > query.last_generation()) {
             violations.push_back({"get_history.last_generation",
                                   "at least first_generation (" + std::to_string(query.first_generation()) + ")",
                                   std::to_string(query.last_generation())});
+        }
     } else if (request.has_subscribe_snapshots()) {
         add_faults(request.subscribe_snapshots(), violations);
     } else if (request.has_set_view()) {

@@ -29,8 +29,9 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
     std::visit(Overloaded{
                    [&](const simulation::GenerationFinished& finished) {
                        auto& to = *told.mutable_generation_finished();
-                       for (const auto& statistics : finished.statistics)
+                       for (const auto& statistics : finished.statistics) {
                            *to.add_statistics() = to_proto(statistics);
+                       }
                    },
                    [&](const simulation::MigrationHappened& migration) {
                        auto& to = *told.mutable_migration();
@@ -55,10 +56,12 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        *to.mutable_by() = planner(changed.planned, changed.by);
                        to.set_revision(changed.revision);
                        to.set_planned_change(changed.planned);
-                       if (const auto entry = laboratory.find(event.world))
-                           for (const std::string& name : changed.names)
+                       if (const auto entry = laboratory.find(event.world)) {
+                           for (const std::string& name : changed.names) {
                                *to.add_changed() =
                                    state_of(*simulation::find_parameter(name), (*entry)->world.parameters());
+                           }
+                       }
                    },
                    [&](const simulation::ChangeDropped& dropped) {
                        auto& to = *told.mutable_change_dropped();
@@ -73,8 +76,9 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                    [&](const simulation::GoalReached&) {
                        auto& to = *told.mutable_run_control_changed();
                        *to.mutable_by() = actor_of_kind(v1::ACTOR_KIND_GOAL);
-                       if (const auto entry = laboratory.find(event.world))
+                       if (const auto entry = laboratory.find(event.world)) {
                            *to.mutable_world() = to_proto(**entry);
+                       }
                    },
                },
                event.kind);
@@ -87,12 +91,14 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
     told.set_world(applied.world);
     told.set_tick(applied.tick);
     const auto entry = laboratory.find(applied.world);
-    if (entry)
+    if (entry) {
         told.set_run_id(to_text((*entry)->run_id));
+    }
     const auto tell_world = [&](auto& to) {
         *to.mutable_by() = actor_of(by);
-        if (entry)
+        if (entry) {
             *to.mutable_world() = to_proto(**entry);
+        }
     };
     std::visit(Overloaded{
                    [&](const simulation::CreateWorld&) { tell_world(*told.mutable_world_created()); },
@@ -100,32 +106,38 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                    [&](const simulation::ResetWorld&) { tell_world(*told.mutable_world_reset()); },
                    [&](const simulation::DeleteWorld&) { *told.mutable_world_deleted()->mutable_by() = actor_of(by); },
                    [&](const simulation::SetParameters& set) {
-                       if (set.dry_run)
+                       if (set.dry_run) {
                            return;
+                       }
                        if (applied.planned) {
                            *told.mutable_change_planned()->mutable_change() = to_proto(*applied.planned);
                            return;
                        }
-                       if (!applied.parameters)
+                       if (!applied.parameters) {
                            return;
+                       }
                        auto& to = *told.mutable_parameters_changed();
                        *to.mutable_by() = actor_of(by);
                        to.set_revision(applied.parameters->revision);
-                       for (const auto& assignment : set.assignments)
-                           if (const auto* description = simulation::find_parameter(assignment.name))
+                       for (const auto& assignment : set.assignments) {
+                           if (const auto* description = simulation::find_parameter(assignment.name)) {
                                *to.add_changed() = state_of(*description, *applied.parameters);
+                           }
+                       }
                    },
                    [&](const simulation::CancelChange&) {
                        auto& to = *told.mutable_change_cancelled();
                        *to.mutable_by() = actor_of(by);
-                       if (applied.planned)
+                       if (applied.planned) {
                            *to.mutable_change() = to_proto(*applied.planned);
+                       }
                    },
                    [&](const auto&) { tell_world(*told.mutable_run_control_changed()); },
                },
                command);
-    if (told.kind_case() == v1::Event::KIND_NOT_SET)
+    if (told.kind_case() == v1::Event::KIND_NOT_SET) {
         return std::nullopt;
+    }
     return told;
 }
 

@@ -41,14 +41,15 @@ simulation::ParameterValue to_value(const v1::ParameterValue& value) {
 
 v1::ParameterValue to_proto(const simulation::ParameterValue& value) {
     v1::ParameterValue to;
-    if (const auto* real = std::get_if<double>(&value))
+    if (const auto* real = std::get_if<double>(&value)) {
         to.set_real(*real);
-    else if (const auto* count = std::get_if<std::uint32_t>(&value))
+    } else if (const auto* count = std::get_if<std::uint32_t>(&value)) {
         to.set_count(*count);
-    else if (const auto* flag = std::get_if<bool>(&value))
+    } else if (const auto* flag = std::get_if<bool>(&value)) {
         to.set_flag(*flag);
-    else
+    } else {
         to.set_choice(std::get<std::string>(value));
+    }
     return to;
 }
 
@@ -69,8 +70,9 @@ v1::ParameterDescription to_proto(const simulation::ParameterDescription& descri
         to.set_max(count->range.max);
     } else if (const auto* choice = std::get_if<simulation::ChoiceParameter>(&description.kind)) {
         to.set_kind(v1::PARAMETER_KIND_CHOICE);
-        for (const std::string_view name : choice->names)
+        for (const std::string_view name : choice->names) {
             to.add_choices(std::string{name});
+        }
     } else {
         to.set_kind(v1::PARAMETER_KIND_FLAG);
     }
@@ -82,15 +84,17 @@ v1::ParameterState state_of(const simulation::ParameterDescription& description,
     const auto active = description.get(set.active), requested = description.get(set.requested);
     to.set_name(std::string{description.name});
     *to.mutable_value() = to_proto(active);
-    if (requested != active)
+    if (requested != active) {
         *to.mutable_pending() = to_proto(requested);
+    }
     return to;
 }
 
 v1::ParameterSet to_proto(const simulation::ParameterSet& set) {
     v1::ParameterSet to;
-    for (const auto& description : simulation::parameter_registry())
+    for (const auto& description : simulation::parameter_registry()) {
         *to.add_parameters() = state_of(description, set);
+    }
     to.set_revision(set.revision);
     return to;
 }
@@ -99,23 +103,25 @@ google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const simulation
                                                                 std::uint64_t after_generation) {
     google::protobuf::RepeatedPtrField<v1::ScheduledValue> values;
     const auto& changes = schedule.changes();
-    for (auto change = changes.upper_bound(after_generation); change != changes.end(); ++change)
+    for (auto change = changes.upper_bound(after_generation); change != changes.end(); ++change) {
         for (const simulation::Assignment& assignment : change->second) {
             v1::ScheduledValue& to = *values.Add();
             to.set_name(assignment.name);
             to.set_generation(change->first);
             *to.mutable_value() = to_proto(assignment.value);
         }
+    }
     return values;
 }
 
 v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
     v1::PlannedChange to;
     to.set_id(change.id);
-    if (change.at.generation)
+    if (change.at.generation) {
         to.set_generation(*change.at.generation);
-    else
+    } else {
         to.set_tick(*change.at.tick);
+    }
     for (const simulation::Assignment& assignment : change.assignments) {
         v1::ParameterAssignment& assigned = *to.add_parameters();
         assigned.set_name(assignment.name);
@@ -144,9 +150,11 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
     }
     if (!complete) {
         // The request is refused whatever the world says, so the rest is judged on its own.
-        for (const simulation::Assignment& assignment : made)
-            if (auto fault = simulation::fault_of(assignment, field_prefix))
+        for (const simulation::Assignment& assignment : made) {
+            if (auto fault = simulation::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));
+            }
+        }
     }
     return made;
 }
@@ -166,22 +174,27 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
     };
     const auto fault_of = [&](const v1::ScheduledValue& value) -> std::optional<base::Violation> {
         const auto* description = simulation::find_parameter(value.name());
-        if (description == nullptr)
+        if (description == nullptr) {
             return simulation::fault_of({value.name(), simulation::ParameterValue{0u}});
-        if (!can_be_scheduled(*description))
+        }
+        if (!can_be_scheduled(*description)) {
             return base::Violation{{}, "one value, as it can only change when a world is reset", "a scheduled one"};
-        if (value.generation() < 2)
+        }
+        if (value.generation() < 2) {
             return base::Violation{{}, "a generation from 2 on", std::to_string(value.generation())};
-        if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET)
+        }
+        if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             return base::Violation{{}, description->allowed(), "no value"};
+        }
         return simulation::fault_of({value.name(), to_value(value.value())});
     };
     std::set<std::pair<std::uint64_t, std::string_view>> seen;
     const std::size_t before = violations.size();
     for (const v1::ScheduledValue& value : values) {
         auto fault = fault_of(value);
-        if (!fault && !seen.emplace(value.generation(), value.name()).second)
+        if (!fault && !seen.emplace(value.generation(), value.name()).second) {
             fault = base::Violation{{}, "given once", "given twice"};
+        }
         if (fault) {
             fault->field = field(value.name(), value.generation());
             violations.push_back(*std::move(fault));
@@ -189,8 +202,9 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
             schedule.add(value.generation(), {value.name(), to_value(value.value())});
         }
     }
-    if (violations.size() > before)
+    if (violations.size() > before) {
         return schedule;
+    }
     schedule.begin_with(parameters);
     for (simulation::ScheduleFault& wrong : faults_of(schedule, parameters)) {
         wrong.violation.field = field(wrong.violation.field, wrong.generation);

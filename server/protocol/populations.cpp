@@ -7,8 +7,9 @@ namespace evod::protocol {
 
 simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
                                                 std::vector<base::Violation>& violations) {
-    if (request.population().empty())
+    if (request.population().empty()) {
         return nullptr;
+    }
     std::vector<evolution::GeneMatrix> islands;
     bool whole = true;
     for (int island = 0; island < request.population_size(); ++island) {
@@ -28,10 +29,12 @@ simulation::FirstPopulation first_population_of(const v1::CreateWorld& request,
 }
 
 void add_population(v1::CreateWorld& request, const simulation::FirstPopulation& population) {
-    if (!population)
+    if (!population) {
         return;
-    for (const evolution::GeneMatrix& genes : *population)
+    }
+    for (const evolution::GeneMatrix& genes : *population) {
         request.add_population()->mutable_genes()->Add(genes.data(), genes.data() + genes.size());
+    }
 }
 
 } // namespace evod::protocol

@@ -29,11 +29,13 @@ struct Found {
 base::Result<Found> find_island(const simulation::Laboratory& laboratory, const std::string& world,
                                 std::uint32_t island, const char* field) {
     const auto entry = laboratory.find(lookup_name(world));
-    if (!entry)
+    if (!entry) {
         return entry.error();
+    }
     const auto islands = (*entry)->world.islands();
-    if (island >= islands.size())
+    if (island >= islands.size()) {
         return no_such("island", field, islands.size(), island, base::Reason::IslandNotFound);
+    }
     return Found{(*entry)->world, islands[island]};
 }
 
@@ -52,9 +54,11 @@ void append_column(std::string& bytes, const Rows& rows, Of&& of) {
 
 v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
     v1::WorldList list;
-    for (const auto& entry : laboratory.entries())
-        if (!entry->is_look_back())
+    for (const auto& entry : laboratory.entries()) {
+        if (!entry->is_look_back()) {
             *list.add_worlds() = to_proto(*entry);
+        }
+    }
     // Which world was created first is not known after a restart.
     std::sort(list.mutable_worlds()->begin(), list.mutable_worlds()->end(),
               [](const v1::WorldInfo& a, const v1::WorldInfo& b) { return a.name() < b.name(); });
@@ -64,54 +68,66 @@ v1::WorldList list_worlds(const simulation::Laboratory& laboratory) {
 base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& laboratory,
                                               const v1::GetParameters& query) {
     const auto entry = laboratory.find(lookup_name(query.world()));
-    if (!entry)
+    if (!entry) {
         return entry.error();
+    }
     const simulation::World& world = (*entry)->world;
     v1::ParameterSet set = to_proto(world.parameters());
-    for (const simulation::PlannedChange& change : world.planned())
+    for (const simulation::PlannedChange& change : world.planned()) {
         *set.add_planned() = to_proto(change);
+    }
     *set.mutable_schedule() = to_proto(world.schedule(), world.moment().generation);
     return set;
 }
 
 base::Result<v1::Statistics> get_statistics(const simulation::Laboratory& laboratory, const v1::GetStatistics& query) {
     const auto entry = laboratory.find(lookup_name(query.world()));
-    if (!entry)
+    if (!entry) {
         return entry.error();
+    }
     const simulation::World& world = (*entry)->world;
     v1::Statistics statistics;
     *statistics.mutable_world() = to_proto(**entry);
-    if (world.has_bodies())
-        for (const simulation::Island& island : world.islands())
+    if (world.has_bodies()) {
+        for (const simulation::Island& island : world.islands()) {
             *statistics.add_live() = to_proto(island.live_statistics(), island.index());
-    if (!world.history().empty())
-        for (const auto& last : world.history().back())
+        }
+    }
+    if (!world.history().empty()) {
+        for (const auto& last : world.history().back()) {
             *statistics.add_last() = to_proto(last);
+        }
+    }
     return statistics;
 }
 
 base::Result<v1::OrganismInfo> get_organism(const simulation::Laboratory& laboratory, const v1::GetOrganism& query) {
     const auto found = find_island(laboratory, query.world(), query.island(), "get_organism.island");
-    if (!found)
+    if (!found) {
         return found.error();
+    }
     const auto born = static_cast<std::uint64_t>(found->island.born().genes.cols());
-    if (query.organism() >= born)
+    if (query.organism() >= born) {
         return no_such("organism", "get_organism.organism", born, query.organism(), base::Reason::OrganismNotFound);
+    }
     return organism_info(found->world, found->island, query.organism());
 }
 
 base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, const v1::GetHistory& query) {
     const auto entry = laboratory.find(lookup_name(query.world()));
-    if (!entry)
+    if (!entry) {
         return entry.error();
+    }
     const simulation::World& world = (*entry)->world;
-    if (query.has_island() && query.island() >= world.islands().size())
+    if (query.has_island() && query.island() >= world.islands().size()) {
         return no_such("island", "get_history.island", world.islands().size(), query.island(),
                        base::Reason::IslandNotFound);
+    }
 
     HistoryPart answer;
-    if (query.has_island())
+    if (query.has_island()) {
         answer.island = query.island();
+    }
     const auto& history = world.history();
     const std::uint64_t first = query.has_first_generation() ? query.first_generation() : 0;
     const std::uint64_t last =
@@ -134,25 +150,31 @@ base::Result<HistoryPart> get_history(const simulation::Laboratory& laboratory, 
 
 v1::History to_proto(const HistoryPart& part) {
     v1::History history;
-    for (const simulation::GenerationRows& rows : part.generations)
-        for (const simulation::GenerationStatistics& row : rows)
-            if (!part.island || row.island == *part.island)
+    for (const simulation::GenerationRows& rows : part.generations) {
+        for (const simulation::GenerationStatistics& row : rows) {
+            if (!part.island || row.island == *part.island) {
                 *history.add_generations() = to_proto(row);
-    if (part.next_generation)
+            }
+        }
+    }
+    if (part.next_generation) {
         history.set_next_generation(*part.next_generation);
+    }
     return history;
 }
 
 base::Result<PopulationRows> get_population(const simulation::Laboratory& laboratory, const v1::GetPopulation& query) {
     const auto found = find_island(laboratory, query.world(), query.island(), "get_population.island");
-    if (!found)
+    if (!found) {
         return found.error();
+    }
     const auto& [world, island] = *found;
     const evolution::NextGeneration& born = island.born();
     const auto count = static_cast<std::size_t>(born.genes.cols());
     const std::size_t first = query.first_organism();
-    if (first >= count)
+    if (first >= count) {
         return no_such("organism", "get_population.first_organism", count, first, base::Reason::OrganismNotFound);
+    }
     const base::Range ids{first, std::min(count, first + population_rows_max)};
     PopulationRows answer{.generation = world.moment().generation,
                           .generation_tick = world.moment().generation_tick,
@@ -163,12 +185,15 @@ base::Result<PopulationRows> get_population(const simulation::Laboratory& labora
                           .founders = {},
                           .intentions = world.intentions(island, ids)};
     answer.genes.reserve(ids.end - ids.begin);
-    for (std::size_t id = ids.begin; id < ids.end; ++id)
+    for (std::size_t id = ids.begin; id < ids.end; ++id) {
         answer.genes.emplace_back(born.genes.col(static_cast<Eigen::Index>(id)));
-    if (!born.parents.empty())
+    }
+    if (!born.parents.empty()) {
         answer.parents.assign(born.parents.data() + ids.begin, born.parents.data() + ids.end);
-    if (const auto founders = world.founders(island); !founders.empty())
+    }
+    if (const auto founders = world.founders(island); !founders.empty()) {
         answer.founders.assign(founders.begin() + ids.begin, founders.begin() + ids.end);
+    }
     return answer;
 }
 
@@ -179,14 +204,16 @@ v1::Population to_proto(const PopulationRows& rows) {
     population.set_organism_count(rows.organism_count);
     population.set_first(rows.first);
     population.set_count(static_cast<std::uint32_t>(rows.genes.size()));
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
         append_column(*population.mutable_genes(), rows.genes, [gene](const auto& genes) { return genes(gene); });
+    }
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.first; });
     append_column(*population.mutable_parents(), rows.parents, [](const auto& parents) { return parents.second; });
     append_column(*population.mutable_founders(), rows.founders, [](std::uint32_t founder) { return founder; });
     using simulation::Intention;
-    for (const Intention& intention : rows.intentions)
+    for (const Intention& intention : rows.intentions) {
         population.mutable_choices()->push_back(static_cast<char>(intention.choice));
+    }
     const auto append = [&rows](std::string& bytes, auto of) { append_column(bytes, rows.intentions, of); };
     append(*population.mutable_forces(), [](const Intention& i) { return i.force_x; });
     append(*population.mutable_forces(), [](const Intention& i) { return i.force_y; });
@@ -198,8 +225,9 @@ v1::Population to_proto(const PopulationRows& rows) {
 
 base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, const v1::GetMotion& query) {
     const auto found = find_island(laboratory, query.world(), query.island(), "get_motion.island");
-    if (!found)
+    if (!found) {
         return found.error();
+    }
     const auto& [world, island] = *found;
     const simulation::Parameters& parameters = world.parameters().active;
     const auto report = island.motion_report(parameters);
@@ -223,12 +251,14 @@ base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, co
 
 base::Result<Watched> find_watched(const simulation::Laboratory& laboratory, const v1::SubscribeSnapshots& request) {
     const auto entry = laboratory.find(lookup_name(request.world()));
-    if (!entry)
+    if (!entry) {
         return entry.error();
+    }
     const auto island_count = static_cast<std::uint32_t>((*entry)->world.islands().size());
-    if (request.has_island() && request.island() >= island_count)
+    if (request.has_island() && request.island() >= island_count) {
         return no_such("island", "subscribe_snapshots.island", island_count, request.island(),
                        base::Reason::IslandNotFound);
+    }
     return Watched{(*entry)->name, island_count};
 }
 

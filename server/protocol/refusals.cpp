@@ -11,8 +11,9 @@ constexpr std::size_t violations_told_max = 200;
 
 /// Of a refusal without one, where its code has a single reason.
 base::Reason reason_of(const base::Refusal& refusal) {
-    if (refusal.reason != base::Reason::Unspecified)
+    if (refusal.reason != base::Reason::Unspecified) {
         return refusal.reason;
+    }
     switch (refusal.code) {
     case base::RefusalCode::InvalidArgument:
         return base::Reason::FieldInvalid;
@@ -63,14 +64,17 @@ namespace {
 std::size_t steering_bytes(std::string_view text) {
     const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0; };
     const auto is = [](int value, int least, int most) { return value >= least && value <= most; };
-    if (byte(0) < 0x20 || byte(0) == 0x7f)
+    if (byte(0) < 0x20 || byte(0) == 0x7f) {
         return 1;
-    if ((byte(0) == 0xc2 && is(byte(1), 0x80, 0x9f)) || (byte(0) == 0xd8 && byte(1) == 0x9c)) // U+0080 to 9F, U+061C
+    }
+    if ((byte(0) == 0xc2 && is(byte(1), 0x80, 0x9f)) || (byte(0) == 0xd8 && byte(1) == 0x9c)) { // U+0080 to 9F, U+061C
         return 2;
+    }
     const bool e280 = byte(0) == 0xe2 && byte(1) == 0x80, e281 = byte(0) == 0xe2 && byte(1) == 0x81;
     if ((e280 && (is(byte(2), 0x8e, 0x8f) || is(byte(2), 0xa8, 0xae))) || // U+200E, U+200F, U+2028 to 202E
-        (e281 && is(byte(2), 0xa6, 0xa9)))                                // U+2066 to 2069
+        (e281 && is(byte(2), 0xa6, 0xa9))) {                              // U+2066 to 2069
         return 3;
+    }
     return 0;
 }
 
@@ -80,8 +84,9 @@ std::string quotable(std::string_view text, std::size_t bytes_max) {
     const bool cut = text.size() > bytes_max;
     if (cut) {
         std::size_t end = bytes_max;
-        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+        while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
             --end; // not in the middle of a character
+        }
         text = text.substr(0, end);
     }
     std::string quoted;
@@ -100,9 +105,11 @@ std::string number_text(double value) {
 }
 
 base::Refusal with_paths(base::Refusal refused, const std::string& request_name) {
-    for (base::Violation& violation : refused.violations)
-        if (!violation.field.starts_with(request_name + "."))
+    for (base::Violation& violation : refused.violations) {
+        if (!violation.field.starts_with(request_name + ".")) {
             violation.field = request_name + "." + violation.field;
+        }
+    }
     return refused;
 }
 

@@ -36,10 +36,11 @@ v1::Outcome to_proto(evolution::Outcome outcome) {
 
 v1::Speed to_proto(const simulation::Speed& speed) {
     v1::Speed to;
-    if (speed)
+    if (speed) {
         to.set_real_time_factor(*speed);
-    else
+    } else {
         to.set_max(true);
+    }
     return to;
 }
 
@@ -80,15 +81,18 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
     *to.mutable_speed() = to_proto(entry.control.speed);
     to.set_state_hash(to_text(world.hash()));
     to.set_parameter_revision(world.parameters().revision);
-    if (const auto ended = entry.control.until_generation)
+    if (const auto ended = entry.control.until_generation) {
         to.set_run_until_generation(*ended + (*ended < ~std::uint64_t{0} ? 1 : 0)); // the one that begins then
+    }
     to.set_leased(entry.control.leased);
     to.set_slowed(entry.slowed);
-    if (entry.control.until_tick)
+    if (entry.control.until_tick) {
         to.set_run_until_tick(*entry.control.until_tick);
+    }
     to.set_ticks_per_s(entry.ticks_per_s);
-    for (const std::string_view name : evolution::gene_names)
+    for (const std::string_view name : evolution::gene_names) {
         to.add_gene_names(std::string{name});
+    }
     if (entry.replay) {
         v1::Replay& replay = *to.mutable_replay();
         replay.set_replay_of(entry.replay->replay_of);
@@ -97,8 +101,9 @@ v1::WorldInfo to_proto(const simulation::Entry& entry) {
         replay.set_first_tick(entry.replay->first_tick);
         replay.set_last_tick(entry.replay->last_tick);
     }
-    if (entry.storage)
+    if (entry.storage) {
         *to.mutable_storage() = to_proto(*entry.storage);
+    }
     return to;
 }
 
@@ -120,8 +125,9 @@ v1::GenerationStatistics to_proto(const simulation::GenerationStatistics& statis
         to_gene.set_deviation(gene.deviation);
         to_gene.set_min(gene.min);
         to_gene.set_max(gene.max);
-        if (!statistics.account)
+        if (!statistics.account) {
             continue;
+        }
         const evolution::GeneAccount& account = (*statistics.account)[i];
         auto& to_account = *to_gene.mutable_account();
         to_account.set_selection(account.selection);
@@ -164,17 +170,20 @@ v1::OrganismInfo organism_info(const simulation::World& world, const simulation:
     to.set_id(id);
     to.set_island(island.index());
     to.set_generation(world.moment().generation);
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
         to.add_genes(born.genes(gene, id));
+    }
     if (id < born.parents.size()) {
         to.add_parents(born.parents[id].first);
-        if (born.parents[id].second != born.parents[id].first)
+        if (born.parents[id].second != born.parents[id].first) {
             to.add_parents(born.parents[id].second);
+        }
     }
     const auto body = island.body_of(id);
     to.set_alive(body.has_value() || !world.has_bodies());
-    if (!world.has_bodies())
+    if (!world.has_bodies()) {
         return to;
+    }
 
     const auto shape = simulation::body_shape(born.genes(evolution::BodySize, id), parameters);
     to.set_radius_px(shape.radius_px);

@@ -79,8 +79,9 @@ bool ExportThread::give(Part part, const std::stop_token& stop) {
         std::unique_lock lock{mutex_};
         // What nobody asked for in time is not given later either: something would be missing.
         over_ = over_ || !asked_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
-        if (over_)
+        if (over_) {
             return false;
+        }
         reply = std::exchange(reply_, {});
         over_ = part.last;
     }
@@ -90,12 +91,15 @@ bool ExportThread::give(Part part, const std::stop_token& stop) {
 
 Result<void> ExportThread::write(const std::stop_token& stop) {
     const auto file = run_.open();
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held;
-    if (wanted_.table == tables::RunTable::Organisms || wanted_.table == tables::RunTable::Lineage)
+    }
+    if (wanted_.table == tables::RunTable::Organisms || wanted_.table == tables::RunTable::Lineage) {
         generations_left_out_ = tables::generations_out_of_reach(**file);
+    }
     const auto executor = make_executor(1);
     PartBuffer buffer{*this, stop};
     std::ostream out{&buffer};
@@ -105,18 +109,21 @@ Result<void> ExportThread::write(const std::stop_token& stop) {
 void ExportThread::work(const std::stop_token& stop) {
     pthread_setname_np(pthread_self(), "export"); // as `top -H` shows it
     const Result<void> written = base::within_memory([&] { return write(stop); });
-    if (written)
+    if (written) {
         give({.text = std::move(text_), .last = true}, stop);
+    }
     Reply reply;
     {
         std::unique_lock lock{mutex_};
-        if (!written)
+        if (!written) {
             asked_.wait_for(lock, stop, patience_, [this] { return reply_ != nullptr; });
+        }
         over_ = true;
         reply = std::exchange(reply_, {});
     }
-    if (reply)
+    if (reply) {
         reply(written ? over() : written.error());
+    }
     finished_.store(true, std::memory_order_release);
 }
 

@@ -16,8 +16,9 @@ void Mailbox::push(Mail&& mail) {
 bool Mailbox::push(Mail&& mail, std::size_t capacity) {
     {
         const std::lock_guard lock{mutex_};
-        if (waiting_.size() >= capacity)
+        if (waiting_.size() >= capacity) {
             return false;
+        }
         waiting_.push_back(std::move(mail));
         pending_.store(true, std::memory_order_release);
     }
@@ -49,10 +50,11 @@ Mailbox::Fill Mailbox::fill() const {
 void Mailbox::wait(std::optional<Clock::time_point> until) {
     std::unique_lock lock{mutex_};
     const auto wanted = [this] { return pending_.load(std::memory_order_relaxed); };
-    if (until)
+    if (until) {
         changed_.wait_until(lock, *until, wanted);
-    else
+    } else {
         changed_.wait(lock, wanted);
+    }
 }
 
 } // namespace evod::runtime

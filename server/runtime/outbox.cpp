@@ -42,8 +42,9 @@ void Outbox::picture(SnapshotPtr snapshot) {
 void Outbox::added(std::unique_lock<std::mutex> lock) {
     const bool wake = !std::exchange(woken_, true);
     lock.unlock();
-    if (wake)
+    if (wake) {
         wake_();
+    }
 }
 
 Outbox::Taken Outbox::take() {

@@ -12,8 +12,9 @@ void PastReader::ask(Read read) {
         waiting_.push_back(std::move(read));
     }
     changed_.notify_one();
-    if (!thread_.joinable())
+    if (!thread_.joinable()) {
         thread_ = std::jthread{[this](const std::stop_token& stop) { work(stop); }};
+    }
 }
 
 void PastReader::work(const std::stop_token& stop) {
@@ -23,8 +24,9 @@ void PastReader::work(const std::stop_token& stop) {
         {
             std::unique_lock lock{mutex_};
             changed_.wait(lock, stop, [this] { return !waiting_.empty(); });
-            if (stop.stop_requested())
+            if (stop.stop_requested()) {
                 return;
+            }
             read = std::move(waiting_.front());
             waiting_.pop_front();
         }

@@ -19,8 +19,9 @@ Clock::duration seconds(double s) {
 constexpr std::chrono::milliseconds measuring_time{1000};
 
 void give(const CommandAnswer& answer) {
-    if (answer.give)
+    if (answer.give) {
         answer.give();
+    }
 }
 
 /// How many ticks may come between two looks at the clock, where one takes so long.
@@ -55,10 +56,12 @@ SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor&
     , laboratory_{std::move(laboratory)}
     , recorder_{recorder}
     , past_{laboratory_, mailbox, executor, recorder} {
-    if (recorder_)
+    if (recorder_) {
         laboratory_.set_storage({});
-    if (replay)
+    }
+    if (replay) {
         past_.show(*std::move(replay));
+    }
 }
 
 std::optional<Clock::time_point> SimulationLoop::pass() {
@@ -72,8 +75,9 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     std::optional<Clock::time_point> next;
     std::optional<Clock::time_point> in_time; // the same of those that keep their pace
     const auto at_latest = [&next](Clock::time_point time) { next = next ? std::min(*next, time) : time; };
-    if (waiting_since_ && !laboratory_.storage()->worlds_wait())
+    if (waiting_since_ && !laboratory_.storage()->worlds_wait()) {
         at_latest(*waiting_since_ + slow_disk_patience);
+    }
     const auto has_to_be_in_time = [](const simulation::Entry& entry) {
         return entry.control.speed.has_value() && !entry.replay;
     };
@@ -81,17 +85,21 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         return entry.wants_tick() && !waits_for_the_disk(entry);
     };
     for (const auto& entry : laboratory_.entries()) {
-        if (!has_to_be_in_time(*entry) || !wants_tick(*entry))
+        if (!has_to_be_in_time(*entry) || !wants_tick(*entry)) {
             continue;
+        }
         Track& track = tracks_.find(entry->name)->second;
         const auto now = clock_.now();
-        if (track.due <= now)
+        if (track.due <= now) {
             advance_slice(*entry, track, now + slice);
-        if (!entry->wants_tick())
+        }
+        if (!entry->wants_tick()) {
             continue;
+        }
         at_latest(track.due);
-        if (!entry->slowed)
+        if (!entry->slowed) {
             in_time = in_time ? std::min(*in_time, track.due) : track.due;
+        }
     }
     // The others share what is left until then, journeys like a world.
     const auto wants_share = [&](const simulation::Entry& entry) {
@@ -107,13 +115,16 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
     };
     const auto paced_until = next;
     for (const auto& entry : laboratory_.entries()) {
-        if (has_to_be_in_time(*entry) || !wants_tick(*entry))
+        if (has_to_be_in_time(*entry) || !wants_tick(*entry)) {
             continue;
+        }
         Track& track = tracks_.find(entry->name)->second;
-        if (!entry->control.speed || track.due <= clock_.now())
+        if (!entry->control.speed || track.due <= clock_.now()) {
             advance_slice(*entry, track, end_of_share(paced_until));
-        if (entry->wants_tick())
+        }
+        if (entry->wants_tick()) {
             at_latest(entry->control.speed ? track.due : clock_.now());
+        }
     }
     if (past_.under_way()) {
         // A world that cannot keep its pace anyway shares the processor with them.
@@ -122,18 +133,21 @@ std::optional<Clock::time_point> SimulationLoop::pass() {
         at_latest(clock_.now());
     }
     mind_arrivals();
-    if (const auto again = answer_queries()) // until the next tick is due
+    if (const auto again = answer_queries()) { // until the next tick is due
         at_latest(*again);
+    }
 
     const auto now = clock_.now();
-    if (const auto again = past_.refresh(now))
+    if (const auto again = past_.refresh(now)) {
         at_latest(*again);
+    }
     for (const auto& entry : laboratory_.entries()) {
         Track& track = tracks_.find(entry->name)->second;
         measure(*entry, track, now);
         show(*entry, track, now);
-        if (track.counted)
+        if (track.counted) {
             track.counted->ticks_per_s.set(entry->ticks_per_s);
+        }
     }
     return next;
 }
@@ -143,8 +157,9 @@ void SimulationLoop::mind_arrivals() {
     for (const std::string& name : past_.take_arrivals()) {
         const auto entry = std::as_const(laboratory_).find(name);
         const auto track = tracks_.find(name);
-        if (!entry || track == tracks_.end())
+        if (!entry || track == tracks_.end()) {
             continue; // closed since
+        }
         track->second.changed = true;
         outputs_.events(laboratory_,
                         {{name, (*entry)->run_id, (*entry)->world.moment().tick, simulation::GoalReached{}}});
@@ -152,35 +167,41 @@ void SimulationLoop::mind_arrivals() {
 }
 
 void SimulationLoop::mind_mail() {
-    if (!mailbox_.pending())
+    if (!mailbox_.pending()) {
         return;
+    }
     mail_ = mailbox_.drain(std::move(mail_));
-    for (Mail& mail : mail_)
+    for (Mail& mail : mail_) {
         std::visit(base::Overloaded{[this](CommandMail& command) { apply(command); },
                                     [this](QueryMail& query) { queries_.push_back(std::move(query)); },
                                     [](CallMail& call) { call.call(); },
                                     [this](PastMail& past) { past_.apply(std::move(past)); },
                                     [this](FindRun& run) { past_.find_run(run); }},
                    mail);
+    }
     mail_.clear();
 }
 
 std::optional<Clock::time_point> SimulationLoop::answer_queries() {
-    if (queries_.empty())
+    if (queries_.empty()) {
         return std::nullopt;
+    }
     auto now = clock_.now();
     const auto end = now + slice;
     bool woken = false; // perhaps for something else than mail, which the rest of a pass looks at
     while (!queries_.empty()) {
-        if (now >= end)
+        if (now >= end) {
             return now;
+        }
         const bool time_is_free = !time_is_wanted(now);
-        if (!query_budget_.allows(now) && !time_is_free)
+        if (!query_budget_.allows(now) && !time_is_free) {
             return woken ? now : query_budget_.next_at();
+        }
         answer_query();
         const auto began = std::exchange(now, clock_.now());
-        if (!time_is_free)
+        if (!time_is_free) {
             query_budget_.spend(now - began);
+        }
         if (mailbox_.pending()) {
             mind_mail(); // commands do not wait for the queries of others
             woken = true;
@@ -197,8 +218,9 @@ void SimulationLoop::answer_query() {
 
 bool SimulationLoop::time_is_wanted(Clock::time_point now) const {
     return past_.under_way() || std::ranges::any_of(laboratory_.entries(), [&](const auto& entry) {
-               if (!entry->wants_tick() || waits_for_the_disk(*entry))
+               if (!entry->wants_tick() || waits_for_the_disk(*entry)) {
                    return false;
+               }
                const auto track = tracks_.find(entry->name);
                return !entry->control.speed || track == tracks_.end() || track->second.due <= now;
            });
@@ -209,14 +231,17 @@ void SimulationLoop::apply(CommandMail& mail) {
     std::visit(
         [this](auto& command) {
             if constexpr (requires { command.world; }) {
-                if (command.world.empty())
-                    if (const auto entry = std::as_const(laboratory_).find(""))
+                if (command.world.empty()) {
+                    if (const auto entry = std::as_const(laboratory_).find("")) {
                         command.world = (*entry)->name;
+                    }
+                }
             }
         },
         mail.command);
-    if (std::holds_alternative<simulation::ForkWorld>(mail.command))
+    if (std::holds_alternative<simulation::ForkWorld>(mail.command)) {
         return fork(mail);
+    }
     const auto before = run_of(mail.command);
     answer(mail, apply(mail.command), before);
 }
@@ -224,9 +249,11 @@ void SimulationLoop::apply(CommandMail& mail) {
 const simulation::Entry* SimulationLoop::entry_in(const simulation::Command& command) const {
     return std::visit(
         [this](const auto& c) -> const simulation::Entry* {
-            if constexpr (requires { c.world; })
-                if (const auto entry = laboratory_.find(c.world))
+            if constexpr (requires { c.world; }) {
+                if (const auto entry = laboratory_.find(c.world)) {
                     return *entry;
+                }
+            }
             return nullptr;
         },
         command);
@@ -238,15 +265,18 @@ std::optional<SimulationLoop::RunBefore> SimulationLoop::run_of(const simulation
 }
 
 std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Command& command) const {
-    if (!recorder_ || !changes_something(command))
+    if (!recorder_ || !changes_something(command)) {
         return std::nullopt;
+    }
     const simulation::Entry* entry = entry_in(command);
     const bool only_a_look =
         entry && entry->replay && !std::holds_alternative<simulation::ForkWorld>(command); // is not written down
-    if (only_a_look)
+    if (only_a_look) {
         return std::nullopt;
-    if (auto refused = recorder_->refusal())
+    }
+    if (auto refused = recorder_->refusal()) {
         return refused;
+    }
     const auto* created = std::get_if<simulation::CreateWorld>(&command);
     const auto* forked = std::get_if<simulation::ForkWorld>(&command);
     return created  ? recorder_->refusal_of_place(created->name)
@@ -255,10 +285,12 @@ std::optional<base::Refusal> SimulationLoop::refusal_of(const simulation::Comman
 }
 
 base::Result<simulation::Applied> SimulationLoop::apply(const simulation::Command& command) {
-    if (auto refused = refusal_of(command))
+    if (auto refused = refusal_of(command)) {
         return *refused;
-    if (builds_a_world(command))
+    }
+    if (builds_a_world(command)) {
         return base::within_memory([&] { return laboratory_.apply(command); });
+    }
     return laboratory_.apply(command);
 }
 
@@ -272,25 +304,30 @@ void SimulationLoop::fork(CommandMail& mail) {
             return laboratory_.fork(command, origin->world.at_its_opening(executor_, with_what_was_asked_since));
         });
     };
-    if (origin && !refused && !command.at_generation && origin->world.moment().generation_tick == 0)
+    if (origin && !refused && !command.at_generation && origin->world.moment().generation_tick == 0) {
         return answer(mail, fork_at_opening(true), before);
-    if (!origin || refused || !command.at_generation)
+    }
+    if (!origin || refused || !command.at_generation) {
         return answer(mail, refused ? base::Result<simulation::Applied>{*refused} : base::within_memory([&] {
                           return laboratory_.apply(command);
                       }),
                       before);
-    if (*command.at_generation == origin->world.moment().generation)
+    }
+    if (*command.at_generation == origin->world.moment().generation) {
         return answer(mail, fork_at_opening(false), before);
+    }
     // Others are served meanwhile.
     const std::uint64_t generation = *command.at_generation;
     const auto waiting = std::make_shared<CommandMail>(std::move(mail));
     past_.begin_journey(origin->name, generation, [this, waiting, before](base::Result<TimeTravel::Arrival> arrival) {
         const auto& fork = std::get<simulation::ForkWorld>(waiting->command);
-        if (arrival)
+        if (arrival) {
             return answer(*waiting, laboratory_.fork(fork, std::move(arrival->rerun).take()), before);
+        }
         base::Refusal why = arrival.error();
-        for (base::Violation& violation : why.violations)
+        for (base::Violation& violation : why.violations) {
             violation.field = "at_" + violation.field;
+        }
         answer(*waiting, why, before);
     });
 }
@@ -299,49 +336,57 @@ void SimulationLoop::answer(CommandMail& mail, const base::Result<simulation::Ap
                             const std::optional<RunBefore>& before) {
     tell_events();
     CommandAnswer answer = mail.reply(laboratory_, mail.command, applied);
-    if (recorder_ && applied && changes_something(mail.command))
+    if (recorder_ && applied && changes_something(mail.command)) {
         record(mail, *applied, std::move(answer), before);
-    else
+    } else {
         give(answer);
-    if (applied)
-        if (const auto track = tracks_.find(applied->world); track != tracks_.end())
+    }
+    if (applied) {
+        if (const auto track = tracks_.find(applied->world); track != tracks_.end()) {
             track->second.changed = true;
+        }
+    }
 }
 
 void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applied, CommandAnswer answer,
                             const std::optional<RunBefore>& before) {
     const bool ends = std::holds_alternative<simulation::DeleteWorld>(mail.command);
     const auto entry = std::as_const(laboratory_).find(applied.world);
-    if (entry && (*entry)->replay)
+    if (entry && (*entry)->replay) {
         return give(answer); // how somebody looks at the past is nobody else's
+    }
     storage::CommandRecord command{.tick = applied.tick,
                                    .control = ends ? simulation::RunControl{} : (*entry)->control,
                                    .origin = std::move(mail.origin),
                                    .answer = std::move(answer.frame),
                                    .done = std::move(answer.give)};
-    if (ends)
+    if (ends) {
         recorder_->end(applied.world, before->run_id, std::move(command));
-    else if (std::holds_alternative<simulation::CreateWorld>(mail.command))
+    } else if (std::holds_alternative<simulation::CreateWorld>(mail.command)) {
         recorder_->begin(**entry, std::move(command));
-    else if (std::holds_alternative<simulation::ForkWorld>(mail.command))
+    } else if (std::holds_alternative<simulation::ForkWorld>(mail.command)) {
         recorder_->begin_fork(**entry, before->run_id, std::move(command), executor_);
-    else if (std::holds_alternative<simulation::ResetWorld>(mail.command))
+    } else if (std::holds_alternative<simulation::ResetWorld>(mail.command)) {
         recorder_->begin_again(**entry, before->run_id, before->tick, std::move(command));
-    else
+    } else {
         recorder_->of(applied.world)->journal(std::move(command));
+    }
 }
 
 void SimulationLoop::close() {
     mind_mail();
-    while (!queries_.empty())
+    while (!queries_.empty()) {
         answer_query();
-    if (recorder_)
+    }
+    if (recorder_) {
         recorder_->close_all(laboratory_);
+    }
 }
 
 void SimulationLoop::mind_demand() {
-    if (!demand_.changed())
+    if (!demand_.changed()) {
         return;
+    }
     watches_ = demand_.take();
     for (auto& [name, track] : tracks_) {
         const auto watch = watches_.find(name);
@@ -350,15 +395,17 @@ void SimulationLoop::mind_demand() {
 }
 
 void SimulationLoop::mind_storage() {
-    if (!recorder_)
+    if (!recorder_) {
         return;
+    }
     // In this order, for room is made before trouble is over.
     const auto trouble = recorder_->trouble();
     worlds_wait_ = !recorder_->has_room();
-    if (!worlds_wait_ || trouble)
+    if (!worlds_wait_ || trouble) {
         waiting_since_.reset();
-    else if (!waiting_since_)
+    } else if (!waiting_since_) {
         waiting_since_ = clock_.now();
+    }
     simulation::Storage now;
     if (trouble) {
         past_.stop_waiting();
@@ -368,38 +415,45 @@ void SimulationLoop::mind_storage() {
                std::to_string(storage::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
     }
     const simulation::Storage before = *laboratory_.storage();
-    if (now == before)
+    if (now == before) {
         return;
-    if (now.worlds_wait() && !before.worlds_wait())
+    }
+    if (now.worlds_wait() && !before.worlds_wait()) {
         log::warn("worlds wait for the disk: {}", now.reason);
-    else if (before.worlds_wait() && !now.worlds_wait())
+    } else if (before.worlds_wait() && !now.worlds_wait()) {
         log::info("worlds go on");
+    }
     laboratory_.set_storage(now);
     outputs_.storage(now);
 }
 
 void SimulationLoop::follow_worlds() {
-    for (const auto& entry : laboratory_.entries())
+    for (const auto& entry : laboratory_.entries()) {
         follow(*entry);
-    if (tracks_.size() > laboratory_.entries().size())
+    }
+    if (tracks_.size() > laboratory_.entries().size()) {
         std::erase_if(tracks_, [this](const auto& item) {
             return std::none_of(laboratory_.entries().begin(), laboratory_.entries().end(),
                                 [&](const auto& entry) { return entry->name == item.first; });
         });
+    }
 }
 
 SimulationLoop::Track& SimulationLoop::follow(simulation::Entry& entry) {
     auto found = tracks_.find(entry.name);
     if (found == tracks_.end()) {
         found = tracks_.emplace(entry.name, Track{}).first;
-        if (const auto watch = watches_.find(entry.name); watch != watches_.end())
+        if (const auto watch = watches_.find(entry.name); watch != watches_.end()) {
             found->second.watch = &watch->second;
-        if (outputs_.counted != nullptr && !entry.is_look_back())
+        }
+        if (outputs_.counted != nullptr && !entry.is_look_back()) {
             found->second.counted = outputs_.counted->add(entry.name);
+        }
     }
     Track& track = found->second;
-    if (recorder_)
+    if (recorder_) {
         track.recorder = recorder_->of(entry.name);
+    }
     // A short wait is part of its pace.
     const bool wants_tick = entry.wants_tick() && !(entry.storage && entry.storage->worlds_wait());
     const double tick_s = entry.world.parameters().active.tick_s;
@@ -436,10 +490,12 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         bool stopped = false;
         do {
             laboratory_.advance(entry, executor_);
-            if (track.recorder)
+            if (track.recorder) {
                 track.recorder->follow(entry.world);
-            if (entry.replay)
+            }
+            if (entry.replay) {
                 past_.follow(entry);
+            }
             ++taken;
             stopped = !entry.wants_tick();
             tell_events();
@@ -459,18 +515,21 @@ void SimulationLoop::advance_slice(simulation::Entry& entry, Track& track, Clock
         measure(entry, track, now);
         show(entry, track, now);
         const auto spent = now - std::exchange(before, now);
-        if (track.counted)
+        if (track.counted) {
             track.counted->tick_time.add(spent / taken, taken);
+        }
         track.ticks_a_look = ticks_a_look(spent / taken);
         mind_checkpoint(entry, track, spent);
-        if (stopped || now >= end || (paced && track.due > now))
+        if (stopped || now >= end || (paced && track.due > now)) {
             return;
+        }
     } while (!mailbox_.pending() && !demand_.changed());
 }
 
 void SimulationLoop::mind_checkpoint(const simulation::Entry& entry, Track& track, Clock::duration spent) {
-    if (!track.recorder || !track.recorder->checkpoint_due(entry.world, spent))
+    if (!track.recorder || !track.recorder->checkpoint_due(entry.world, spent)) {
         return;
+    }
     const auto began = clock_.now();
     track.recorder->make_checkpoint(entry.world, executor_);
     track.recorder->checkpoint_took(clock_.now() - began);
@@ -479,8 +538,9 @@ void SimulationLoop::mind_checkpoint(const simulation::Entry& entry, Track& trac
 void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time_point now) {
     const std::chrono::duration<double> passed = now - track.measured_since;
     // The first figure comes soon, for somebody may be waiting to see one.
-    if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time))
+    if (!track.running || passed < (entry.ticks_per_s == 0 ? measuring_time / 4 : measuring_time)) {
         return;
+    }
     entry.ticks_per_s = static_cast<double>(track.ticks) / passed.count();
     const bool slowed = std::chrono::duration<double>{track.lost} > slowed_from * passed;
     track.changed |= slowed != entry.slowed;
@@ -491,15 +551,17 @@ void SimulationLoop::measure(simulation::Entry& entry, Track& track, Clock::time
 }
 
 void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::time_point now) {
-    if (!track.watch)
+    if (!track.watch) {
         return;
+    }
     const Watch& watch = *track.watch;
     const bool newcomer = track.newcomers_served != watch.newcomers;
     const auto between = seconds(1 / watch.rate_hz);
     if (!newcomer && !track.changed) {
         // A tenth early rather than a whole tick late: ticks do not fall exactly on a picture's time.
-        if (entry.world.moment().tick == track.pictured_tick || now + between / 10 < track.next_picture)
+        if (entry.world.moment().tick == track.pictured_tick || now + between / 10 < track.next_picture) {
             return;
+        }
     }
     island_indices_.clear();
     const auto island_count = static_cast<std::uint32_t>(entry.world.islands().size());
@@ -507,18 +569,22 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
         island_indices_.resize(island_count);
         std::iota(island_indices_.begin(), island_indices_.end(), 0u);
     } else {
-        for (const std::uint32_t island : watch.islands)
-            if (island < island_count)
+        for (const std::uint32_t island : watch.islands) {
+            if (island < island_count) {
                 island_indices_.push_back(island);
+            }
+        }
     }
     const auto began = clock_.now();
     outputs_.picture(pool_.take(entry, island_indices_, track.changed));
-    if (track.counted)
+    if (track.counted) {
         track.counted->picture_time.add(clock_.now() - began);
+    }
     // Kept on a grid, so that the rate holds on average; begun anew after a pause or a picture out of turn.
     track.next_picture += between;
-    if (newcomer || track.changed || track.next_picture <= now)
+    if (newcomer || track.changed || track.next_picture <= now) {
         track.next_picture = now + between;
+    }
     track.newcomers_served = watch.newcomers;
     track.changed = false;
     track.pictured_tick = entry.world.moment().tick;
@@ -526,8 +592,9 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
 
 void SimulationLoop::tell_events() {
     auto events = laboratory_.take_events();
-    if (!events.empty())
+    if (!events.empty()) {
         outputs_.events(laboratory_, std::move(events));
+    }
 }
 
 } // namespace evod::runtime

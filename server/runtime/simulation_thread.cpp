@@ -14,24 +14,28 @@ SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Execu
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}
     , thread_{[this] {
         pthread_setname_np(pthread_self(), "simulation"); // as `top -H` shows it
-        if (recorder_)
+        if (recorder_) {
             recorder_->when_changed([this] { mailbox_.wake(); });
+        }
         while (!stopping_.load(std::memory_order_acquire)) {
             const auto next = loop_.pass();
             // A pass takes the call to stop for mail if it came after the look at it above.
-            if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending()))
+            if (!stopping_.load(std::memory_order_acquire) && (!next || !mailbox_.pending())) {
                 mailbox_.wait(next);
+            }
         }
         loop_.close();
-        if (recorder_)
+        if (recorder_) {
             recorder_->when_changed({});
+        }
     }} {}
 
 void SimulationThread::stop() {
     stopping_.store(true, std::memory_order_release);
     mailbox_.wake();
-    if (thread_.joinable())
+    if (thread_.joinable()) {
         thread_.join();
+    }
 }
 
 } // namespace evod::runtime

@@ -56,8 +56,9 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
             spare_->snapshots.pop_back();
         }
     }
-    if (!taken)
+    if (!taken) {
         taken = std::make_unique<Snapshot>();
+    }
     taken->world = entry.name;
     taken->run_id = entry.run_id;
     taken->moment = entry.world.moment();
@@ -70,14 +71,16 @@ SnapshotPtr SnapshotPool::take(const simulation::Entry& entry, const std::vector
     taken->island_count = static_cast<std::uint32_t>(entry.world.islands().size());
     taken->after_change = after_change;
     taken->islands.resize(islands.size());
-    for (std::size_t i = 0; i < islands.size(); ++i)
+    for (std::size_t i = 0; i < islands.size(); ++i) {
         copy(entry.world.islands()[islands[i]], entry.world.parameters().active, taken->islands[i]);
+    }
 
     return {taken.release(), [spare = spare_](const Snapshot* snapshot) {
                 std::unique_ptr<Snapshot> back{const_cast<Snapshot*>(snapshot)}; // made above, and not const there
                 const std::lock_guard lock{spare->mutex};
-                if (spare->snapshots.size() < spares_max)
+                if (spare->snapshots.size() < spares_max) {
                     spare->snapshots.push_back(std::move(back));
+                }
             }};
 }
 

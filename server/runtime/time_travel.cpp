@@ -17,8 +17,9 @@ namespace {
 
 /// A field of a RunMoment is known to clients by its path.
 Refusal within(Refusal refused, const std::string& field) {
-    for (base::Violation& violation : refused.violations)
+    for (base::Violation& violation : refused.violations) {
         violation.field = field + "." + violation.field;
+    }
     return refused;
 }
 
@@ -41,17 +42,21 @@ Refusal closed_since() {
 Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::optional<std::uint64_t> generation,
                                                  base::Executor& executor) {
     auto past = storage::Past::of_file(path);
-    if (!past)
+    if (!past) {
         return past.error();
+    }
     const auto name = past->world_name();
-    if (!name)
+    if (!name) {
         return name.error();
+    }
     std::optional<storage::WantedMoment> wanted;
-    if (generation)
+    if (generation) {
         wanted = storage::WantedMoment{.generation = generation, .tick = {}};
+    }
     auto departure = past->depart(wanted, {}, executor);
-    if (!departure)
+    if (!departure) {
         return departure.error();
+    }
     Journey journey{.number = 0,
                     .owner = 0,
                     .rerun = std::move(departure->from),
@@ -83,49 +88,59 @@ simulation::Entry* TimeTravel::entry_of(const std::string& world) {
 }
 
 void TimeTravel::apply(PastMail mail) {
-    if (const auto* open_replay = std::get_if<OpenReplay>(&mail.request))
+    if (const auto* open_replay = std::get_if<OpenReplay>(&mail.request)) {
         return open(*open_replay, mail.reply);
-    if (const auto* seek_moment = std::get_if<Seek>(&mail.request))
+    }
+    if (const auto* seek_moment = std::get_if<Seek>(&mail.request)) {
         return seek(*seek_moment, mail.reply);
-    if (const auto* close_replay = std::get_if<CloseReplay>(&mail.request))
+    }
+    if (const auto* close_replay = std::get_if<CloseReplay>(&mail.request)) {
         return mail.reply(laboratory_, close(*close_replay));
+    }
     close_all_of(std::get<OwnerGone>(mail.request).owner);
 }
 
 void TimeTravel::find_run(const FindRun& mail) {
     const auto entry = std::as_const(laboratory_).find(mail.world);
-    if (!entry)
+    if (!entry) {
         return mail.found(entry.error());
+    }
     const auto past = replay_of((*entry)->name);
-    if (!past)
+    if (!past) {
         return mail.found(past.error());
+    }
     once_written((*entry)->name, [found = mail.found,
                                   run = FoundRun{*past, (*entry)->world.moment().generation}](bool) { found(run); });
 }
 
 Result<storage::Past> TimeTravel::replay_of(const std::string& world) const {
     const auto entry = std::as_const(laboratory_).find(world);
-    if (!entry)
+    if (!entry) {
         return entry.error();
-    if (const auto look = looks_.find((*entry)->name); look != looks_.end())
+    }
+    if (const auto look = looks_.find((*entry)->name); look != looks_.end()) {
         return look->second.past;
-    if (!recorder_)
+    }
+    if (!recorder_) {
         return refusal(RefusalCode::FailedPrecondition,
                        "this server keeps no runs, so nothing tells of their past: start it without --keep-nothing",
                        base::Reason::RunsNotKept);
+    }
     return storage::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
 }
 
 void TimeTravel::once_written(const std::string& world, std::function<void(bool)> then) {
     storage::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
-    if (!recorder || recorder_->refusal())
+    if (!recorder || recorder_->refusal()) {
         return then(false); // what is in the file is what there is
+    }
     const std::uint64_t number = ++last_waiting_;
     waiting_.emplace(number, std::move(then));
     recorder->once_written([this, number] {
         mailbox_.push(CallMail{[this, number] {
-            if (auto waited = waiting_.extract(number))
+            if (auto waited = waiting_.extract(number)) {
                 waited.mapped()(true);
+            }
         }});
     });
 }
@@ -140,15 +155,17 @@ storage::KnownUntil TimeTravel::known_of(const std::string& world, const simulat
 }
 
 void TimeTravel::stop_waiting() {
-    for (const auto& [number, then] : std::exchange(waiting_, {}))
+    for (const auto& [number, then] : std::exchange(waiting_, {})) {
         then(false);
+    }
 }
 
 void TimeTravel::set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
                          storage::KnownUntil known, std::uint64_t owner, Arrived arrived, const Departed& departed) {
-    if (departing_.size() + journeys_.size() >= journeys_max)
+    if (departing_.size() + journeys_.size() >= journeys_max) {
         return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again",
                                base::Reason::PastsMax));
+    }
     const std::uint64_t number = ++last_journey_;
     departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
@@ -165,8 +182,9 @@ void TimeTravel::depart(std::uint64_t number, Result<storage::Departure> departu
         return;
     }
     Departing departing = std::move(found.mapped());
-    if (!departure)
+    if (!departure) {
         return departing.arrived(departure.error());
+    }
     if (departing.departed && !departing.departed(number)) {
         return departing.arrived(closed_since());
     }
@@ -180,8 +198,9 @@ void TimeTravel::depart(std::uint64_t number, Result<storage::Departure> departu
 
 void TimeTravel::give_up(std::uint64_t number, const Refusal& why) {
     const auto journey = std::ranges::find(journeys_, number, &Journey::number);
-    if (journey == journeys_.end())
+    if (journey == journeys_.end()) {
         return;
+    }
     const Arrived gave_up = std::move(journey->arrived);
     journeys_.erase(journey);
     gave_up(why);
@@ -189,8 +208,9 @@ void TimeTravel::give_up(std::uint64_t number, const Refusal& why) {
 
 void TimeTravel::begin_journey(const std::string& world, std::uint64_t generation, Arrived arrived) {
     const auto past = replay_of(world);
-    if (!past)
+    if (!past) {
         return arrived(past.error());
+    }
     const auto known = known_of(world, past->run_id());
     once_written(world, [this, generation, known, past = *past, arrived = std::move(arrived)](bool all_is_written) {
         set_out(past, storage::WantedMoment{.generation = generation, .tick = {}},
@@ -207,30 +227,34 @@ bool TimeTravel::is_over(const Journey& journey) {
 bool TimeTravel::advance(Journey& journey, base::Executor& executor) {
     const simulation::World& world = journey.rerun.world();
     const simulation::Moment& now = world.moment();
-    if (is_over(journey))
+    if (is_over(journey)) {
         return true;
-    if (now.generation < journey.to.generation && world.generation_over())
+    }
+    if (now.generation < journey.to.generation && world.generation_over()) {
         journey.rerun.turn_over(executor);
-    else if (world.outcome() == evolution::Outcome::Running)
+    } else if (world.outcome() == evolution::Outcome::Running) {
         journey.rerun.advance_tick(executor);
-    else
+    } else {
         return true; // the run was over before: whoever arrives sees that
+    }
     return is_over(journey);
 }
 
 void TimeTravel::travel(const std::function<bool()>& stop) {
     for (std::size_t next = 0; !journeys_.empty() && (next == 0 || !stop()); ++next) {
         const std::size_t i = next % journeys_.size();
-        if (!advance(journeys_[i], executor_))
+        if (!advance(journeys_[i], executor_)) {
             continue;
+        }
         Journey journey = std::move(journeys_[i]);
         journeys_.erase(journeys_.begin() + static_cast<std::ptrdiff_t>(i));
         const simulation::Moment& there = journey.rerun.world().moment();
-        if (there.generation == journey.to.generation && there.tick == journey.to.tick)
+        if (there.generation == journey.to.generation && there.tick == journey.to.tick) {
             journey.arrived(Arrival{std::move(journey.rerun), std::move(journey.there)});
-        else
+        } else {
             journey.arrived(refusal(RefusalCode::DataLoss,
                                     "simulated again, the run does not come to the moment that its file contains"));
+        }
     }
 }
 
@@ -246,16 +270,18 @@ void TimeTravel::arrive_in(simulation::Entry& entry, Look& look, Arrival arrival
 
 void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
     const auto origin = std::as_const(laboratory_).find(request.world);
-    if (!origin)
+    if (!origin) {
         return reply(laboratory_, origin.error());
+    }
     std::size_t of_owner = 0, of_all = looks_.size();
-    for (const auto& [name, look] : looks_)
+    for (const auto& [name, look] : looks_) {
         of_owner += look.owner == request.owner;
+    }
     for (const auto& [owner, count] : opening_) {
         of_owner += owner == request.owner ? count : 0;
         of_all += count;
     }
-    if (of_owner >= replays_max || of_all >= pasts_of_all_max)
+    if (of_owner >= replays_max || of_all >= pasts_of_all_max) {
         return reply(laboratory_, refusal(RefusalCode::ResourceExhausted,
                                           of_owner >= replays_max
                                               ? "this session looks at " + std::to_string(replays_max) +
@@ -263,25 +289,30 @@ void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
                                               : "all clients together look at " + std::to_string(pasts_of_all_max) +
                                                     " pasts already: try again when one of them is closed",
                                           base::Reason::PastsMax));
+    }
     const std::string name = (*origin)->is_look_back() ? (*origin)->replay->replay_of : (*origin)->name;
     const std::string world = (*origin)->name;
     const auto past = replay_of(world);
-    if (!past)
+    if (!past) {
         return reply(laboratory_, past.error());
+    }
     ++opening_[request.owner];
     const auto opened = [this, owner = request.owner, reply](const Result<std::string>& look) {
-        if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0)
+        if (const auto opening = opening_.find(owner); opening != opening_.end() && --opening->second == 0) {
             opening_.erase(opening);
+        }
         reply(laboratory_, look);
     };
     const auto known = known_of(world, past->run_id());
     once_written(world, [this, name, known, past = *past, request, opened](bool all_is_written) {
         std::optional<storage::WantedMoment> at;
-        if (request.at.generation || request.at.tick)
+        if (request.at.generation || request.at.tick) {
             at = request.at;
+        }
         const auto arrived = [this, name, past, owner = request.owner, opened](Result<Arrival> arrival) {
-            if (!arrival)
+            if (!arrival) {
                 return opened(within(arrival.error(), "at"));
+            }
             arrival->there.replay_of = name;
             const std::string look_name = name + "@" + std::to_string(++last_look_);
             show(look_name, past, owner, *std::move(arrival));
@@ -296,10 +327,11 @@ void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
 
 void TimeTravel::seek(const Seek& request, const PastReply& reply) {
     const auto entry = std::as_const(laboratory_).find(request.world);
-    if (!entry)
+    if (!entry) {
         return reply(laboratory_, entry.error());
+    }
     const std::string name = (*entry)->name;
-    if (!looks_.contains(name))
+    if (!looks_.contains(name)) {
         return reply(
             laboratory_,
             Refusal{.code = RefusalCode::FailedPrecondition,
@@ -308,6 +340,7 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
                         "past, as evoview and evoctl stats --at-generation do, or serve its file with evod replay",
                     .violations = {},
                     .reason = base::Reason::WorldIsLive});
+    }
     const std::string& replay_of = (*entry)->replay->replay_of;
     const std::string origin = replay_of.empty() ? name : replay_of;
     const auto known_now = known_of(origin, looks_.find(name)->second.past.run_id());
@@ -320,8 +353,9 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
     };
     once_written(origin, [this, name, known_now, request, sought](bool all_is_written) {
         const auto look = looks_.find(name);
-        if (look == looks_.end())
+        if (look == looks_.end()) {
             return sought(closed_since());
+        }
         if (!seeking_.contains(request.owner)) {
             return sought(owner_gone());
         }
@@ -334,11 +368,13 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
             known.tick = std::max(known.tick, known_now.tick);
         }
         const auto arrived = [this, name, replay_of = seen.replay_of, sought](Result<Arrival> arrival) {
-            if (!arrival)
+            if (!arrival) {
                 return sought(within(arrival.error(), "to"));
+            }
             const auto seen_from = looks_.find(name);
-            if (seen_from == looks_.end())
+            if (seen_from == looks_.end()) {
                 return sought(closed_since());
+            }
             arrival->there.replay_of = replay_of;
             arrive_in(*entry_of(name), seen_from->second, *std::move(arrival));
             sought(name);
@@ -356,11 +392,12 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
 
 Result<std::string> TimeTravel::close(const CloseReplay& request) {
     const auto look = looks_.find(request.world);
-    if (look == looks_.end() || look->second.owner == 0)
+    if (look == looks_.end() || look->second.owner == 0) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "there is no such look at the past",
                        .violations = {{"world", "one that was opened with OpenReplay", request.world}},
                        .reason = base::Reason::WorldNotFound};
+    }
     give_up(look->second.journey, closed_since());
     laboratory_.dismiss(request.world);
     looks_.erase(look);
@@ -369,8 +406,9 @@ Result<std::string> TimeTravel::close(const CloseReplay& request) {
 
 void TimeTravel::close_all_of(std::uint64_t owner) {
     std::erase_if(looks_, [&](const auto& item) {
-        if (item.second.owner != owner)
+        if (item.second.owner != owner) {
             return false;
+        }
         laboratory_.dismiss(item.first);
         return true;
     });
@@ -397,8 +435,9 @@ void TimeTravel::close_all_of(std::uint64_t owner) {
 }
 
 void TimeTravel::follow(simulation::Entry& entry) {
-    if (const auto look = looks_.find(entry.name); look != looks_.end())
+    if (const auto look = looks_.find(entry.name); look != looks_.end()) {
         look->second.changes.make_due(entry.world);
+    }
 }
 
 std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
@@ -406,8 +445,9 @@ std::optional<Clock::time_point> TimeTravel::refresh(Clock::time_point now) {
     for (auto& [name, look] : looks_) {
         simulation::Entry& entry = *entry_of(name);
         const bool at_its_end = entry.world.moment().tick >= entry.replay->last_tick;
-        if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || look.being_read)
+        if (!at_its_end || (entry.control.paused && !entry.control.until_tick) || look.being_read) {
             continue;
+        }
         if (now >= look.refreshed + refresh_time) {
             look.refreshed = now;
             ask_for_news(name, look);
@@ -423,22 +463,26 @@ void TimeTravel::ask_for_news(const std::string& name, Look& look) {
     reader_.ask([this, name, past = look.past, after = look.entries_read]() -> PastReader::Then {
         return [this, name, news = base::within_memory([&] { return past.news(after); })] {
             const auto look_on = looks_.find(name);
-            if (look_on == looks_.end())
+            if (look_on == looks_.end()) {
                 return;
+            }
             look_on->second.being_read = false;
-            if (news)
+            if (news) {
                 go_on(*entry_of(name), look_on->second, *news);
+            }
         };
     });
 }
 
 void TimeTravel::go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news) {
     // Asked for before the look was taken to another moment, the news may begin after what is known there.
-    if (news.there.last_tick <= entry.replay->last_tick || news.after_entry > look.entries_read)
+    if (news.there.last_tick <= entry.replay->last_tick || news.after_entry > look.entries_read) {
         return;
+    }
     // Commands may have come since the last time.
-    if (!look.changes.extend(news.path, news.changes))
+    if (!look.changes.extend(news.path, news.changes)) {
         return;
+    }
     look.entries_read = std::max(look.entries_read, news.last_entry);
     look.changes.make_due(entry.world);
     const std::string replay_of = entry.replay->replay_of;

@@ -23,7 +23,7 @@ namespace evod::runtime {
 
 class TimeTravel {
   public:
-    static constexpr std::size_t replays_max = 4;         // of one client
+    static constexpr std::size_t replays_max = 4;       // of one client
     static constexpr std::size_t pasts_of_all_max = 64; // of all clients
     static constexpr std::size_t journeys_max = 64;     // under way at a time
     static constexpr std::chrono::milliseconds refresh_time{250};
@@ -77,7 +77,7 @@ class TimeTravel {
         storage::Past past;
         storage::ComingChanges changes;
         std::uint64_t entries_read = 0; // of the journal, into `changes`
-        std::uint64_t owner = 0; // 0: nobody's, there for good
+        std::uint64_t owner = 0;        // 0: nobody's, there for good
         Clock::time_point refreshed;
         bool being_read = false;   // what it has come to
         std::uint64_t journey = 0; // the newest to another moment

@@ -35,8 +35,9 @@ class Pool final : public base::Executor {
             tbb::parallel_for(
                 tbb::blocked_range<std::size_t>{0, pieces, 1},
                 [&](const tbb::blocked_range<std::size_t>& range) {
-                    for (std::size_t piece = range.begin(); piece < range.end(); ++piece)
+                    for (std::size_t piece = range.begin(); piece < range.end(); ++piece) {
                         body({piece * grain, std::min((piece + 1) * grain, count)});
+                    }
                 },
                 tbb::simple_partitioner{});
         });
@@ -53,8 +54,9 @@ class Pool final : public base::Executor {
 
 std::unique_ptr<base::Executor> make_executor(std::size_t threads) {
     EVOD_ASSERT(threads >= 1);
-    if (threads == 1)
+    if (threads == 1) {
         return std::make_unique<base::InlineExecutor>();
+    }
 #ifdef EVOD_THREAD_EXECUTOR
     return std::make_unique<support::ThreadExecutor>(threads);
 #else

@@ -109,8 +109,9 @@ void foresee(const physics::Circles& bodies, const Living& living, const Items& 
     std::array<std::int32_t, FewOrganisms::room> choices;
     for (std::size_t begin = 0; begin < who.size(); begin += FewOrganisms::room) {
         const std::size_t count = std::min(who.size() - begin, FewOrganisms::room);
-        for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t k = 0; k < count; ++k) {
             few.put(k, bodies, living, who[begin + k]);
+        }
         few.food.look(food, count);
         few.poison.look(poison, count);
         organism_kernels().foretell(few.columns(), 0, count, choice_rules(rules, key, tick), forces.x.data(),

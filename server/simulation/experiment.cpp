@@ -29,17 +29,21 @@ std::vector<Field> fields_of(std::string_view text) {
         line += text[i] == '\n';
         depth += text[i] == '{' || text[i] == '[';
         depth -= text[i] == '}' || text[i] == ']';
-        if (depth == 0 && (text[i] == '}' || text[i] == ']'))
+        if (depth == 0 && (text[i] == '}' || text[i] == ']')) {
             break; // what comes then is not of this object
-        if (text[i] != '"')
+        }
+        if (text[i] != '"') {
             continue;
+        }
         const std::size_t begin = ++i;
-        while (text[i] != '"')
+        while (text[i] != '"') {
             i += text[i] == '\\' ? 2 : 1;
+        }
         const std::size_t after = text.find_first_not_of(" \t\r\n", i + 1);
-        if (depth == 1 && after != std::string_view::npos && text[after] == ':')
+        if (depth == 1 && after != std::string_view::npos && text[after] == ':') {
             fields.push_back({text.substr(begin, i - begin), line,
                               text.substr(std::min(text.find_first_not_of(" \t\r\n", after + 1), text.size()))});
+        }
     }
     return fields;
 }
@@ -76,16 +80,21 @@ double exact(double nearly, std::string_view text) {
 /// from_value  the text from the value on.
 std::optional<ParameterValue> to_parameter_value(const json::value& value, std::string_view from_value) {
     constexpr std::uint64_t count_max = base::count_max;
-    if (value.is_bool())
+    if (value.is_bool()) {
         return ParameterValue{value.get_bool()};
-    if (value.is_string())
+    }
+    if (value.is_string()) {
         return ParameterValue{std::string{value.get_string()}};
-    if (value.is_double())
+    }
+    if (value.is_double()) {
         return ParameterValue{exact(value.get_double(), from_value)};
-    if (value.is_int64() && value.get_int64() >= 0 && static_cast<std::uint64_t>(value.get_int64()) <= count_max)
+    }
+    if (value.is_int64() && value.get_int64() >= 0 && static_cast<std::uint64_t>(value.get_int64()) <= count_max) {
         return ParameterValue{static_cast<std::uint32_t>(value.get_int64())};
-    if (value.is_number())
+    }
+    if (value.is_number()) {
         return ParameterValue{value.to_number<double>()};
+    }
     return std::nullopt;
 }
 
@@ -116,8 +125,9 @@ class ValuesByGeneration {
         : name_{name}, description_{find_parameter(name)} {
         const std::size_t first_line = from.empty() ? 1 : line_of(text, text.size() - from.size());
         fields_ = fields_of(from);
-        for (Field& field : fields_)
+        for (Field& field : fields_) {
             field.line += first_line - 1;
+        }
         line_ = first_line;
         if (description_ == nullptr) {
             refuse(name_, line_, *fault_of({name_, ParameterValue{0u}}));
@@ -132,12 +142,15 @@ class ValuesByGeneration {
                    {{}, "at most " + std::to_string(Schedule::values_max) + " values", std::to_string(values.size())});
         } else {
             std::set<std::string_view> seen;
-            for (const Field& field : fields_)
-                if (!seen.insert(field.name).second)
+            for (const Field& field : fields_) {
+                if (!seen.insert(field.name).second) {
                     refuse(name_ + " at generation " + std::string{field.name}, field.line,
                            {{}, "given once", "given twice"});
-            for (const auto& [key, value] : values)
+                }
+            }
+            for (const auto& [key, value] : values) {
                 read(std::string{key}, value);
+            }
         }
     }
 
@@ -158,14 +171,17 @@ class ValuesByGeneration {
         const auto field = std::ranges::find(fields_, key, &Field::name);
         const std::size_t line = field == fields_.end() ? line_ : field->line;
         const auto generation = generation_of(key);
-        if (!generation)
+        if (!generation) {
             return refuse(name_, line, {{}, R"(generations as keys: "1", "30", …)", '"' + key + '"'});
+        }
         auto parameter = to_parameter_value(value, from_value_of(fields_, key));
-        if (!parameter)
+        if (!parameter) {
             return refuse(at_generation(name_, *generation), line,
                           {{}, description_->allowed(), json::serialize(value)});
-        if (auto fault = fault_of({name_, *parameter}))
+        }
+        if (auto fault = fault_of({name_, *parameter})) {
             return refuse(at_generation(name_, *generation), line, *std::move(fault));
+        }
         values_.emplace(*generation, *std::move(parameter));
     }
 
@@ -179,8 +195,9 @@ class ValuesByGeneration {
 
 base::Result<json::value> parse_object(std::string_view text) {
     auto document = parse_json(text);
-    if (document && !document->is_object())
+    if (document && !document->is_object()) {
         return refusal("not an experiment: a JSON object of parameters is needed");
+    }
     return document;
 }
 
@@ -195,22 +212,26 @@ class ScheduleReader {
         const auto [place, added] = read_.try_emplace(name, name, values, text, from_value);
         const ValuesByGeneration& read = place->second;
         violations.insert(violations.end(), read.violations().begin(), read.violations().end());
-        if (!read.violations().empty())
+        if (!read.violations().empty()) {
             return std::nullopt;
+        }
         std::optional<ParameterValue> first;
-        for (const auto& [generation, value] : read.values())
-            if (generation == 1)
+        for (const auto& [generation, value] : read.values()) {
+            if (generation == 1) {
                 first = value;
-            else
+            } else {
                 schedule_.add(generation, {name, value});
+            }
+        }
         return first;
     }
 
     /// parameters  of generation 1, valid.
     std::vector<base::Violation> finish(const Parameters& parameters, const std::vector<Field>& fields) {
-        if (const std::size_t count = schedule_.value_count(); count > Schedule::values_max)
+        if (const std::size_t count = schedule_.value_count(); count > Schedule::values_max) {
             return {{"the schedule", "at most " + std::to_string(Schedule::values_max) + " values after generation 1",
                      std::to_string(count)}};
+        }
         schedule_.begin_with(parameters);
         std::vector<base::Violation> violations;
         for (const ScheduleFault& fault : faults_of(schedule_, parameters)) {
@@ -228,11 +249,14 @@ class ScheduleReader {
     /// Of the parameter, or of what changes in that generation, where the file does not name that one.
     std::string line_text(const std::vector<Field>& fields, const ScheduleFault& fault) const {
         const auto found = std::ranges::find(fields, fault.violation.field, &Field::name);
-        if (found != fields.end())
+        if (found != fields.end()) {
             return with_line("", found->line);
-        for (const Assignment& change : schedule_.at(fault.generation))
-            if (const auto line = read_.at(change.name).line_at(fault.generation))
+        }
+        for (const Assignment& change : schedule_.at(fault.generation)) {
+            if (const auto line = read_.at(change.name).line_at(fault.generation)) {
                 return with_line("", *line);
+            }
+        }
         return "";
     }
 
@@ -243,11 +267,14 @@ class ScheduleReader {
 /// "{"1": 0.2, "30": 0.05}"; empty if nothing is planned for the parameter.
 std::string values_text(const Schedule& schedule, std::string_view name) {
     std::string text;
-    for (const auto& [generation, assignments] : schedule.changes())
-        for (const Assignment& assignment : assignments)
-            if (assignment.name == name)
+    for (const auto& [generation, assignments] : schedule.changes()) {
+        for (const Assignment& assignment : assignments) {
+            if (assignment.name == name) {
                 text +=
                     (text.empty() ? "{\"" : ", \"") + std::to_string(generation) + "\": " + json_text(assignment.value);
+            }
+        }
+    }
     return text.empty() ? text : text + "}";
 }
 
@@ -255,8 +282,9 @@ std::string values_text(const Schedule& schedule, std::string_view name) {
 
 base::Result<Experiment> parse_experiment(std::string_view text) {
     const base::Result<json::value> document = parse_object(text);
-    if (!document)
+    if (!document) {
         return document.error();
+    }
 
     Experiment experiment;
     ScheduleReader schedule;
@@ -265,26 +293,31 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
     bool reference_given = false;
     const std::vector<Field> fields = fields_of(text);
     std::set<std::string_view> seen;
-    for (const Field& field : fields)
-        if (!seen.insert(field.name).second)
+    for (const Field& field : fields) {
+        if (!seen.insert(field.name).second) {
             violations.push_back({with_line(field.name, field.line), "given once", "given twice"});
+        }
+    }
     for (const auto& [key, value] : document->get_object()) {
         const std::string name{key};
         if (name == "seed") {
-            if (value.is_uint64() || (value.is_int64() && value.get_int64() >= 0))
+            if (value.is_uint64() || (value.is_int64() && value.get_int64() >= 0)) {
                 experiment.seed = base::Seed{value.to_number<std::uint64_t>()};
-            else
+            } else {
                 violations.push_back(
                     {with_line(fields, name), "a whole number, 0 to 18446744073709551615", json::serialize(value)});
+            }
         } else if (name == "description") {
-            if (value.is_string())
+            if (value.is_string()) {
                 experiment.description = std::string{value.get_string()};
-            else
+            } else {
                 violations.push_back({with_line(fields, name), "a text", json::serialize(value)});
+            }
         } else if (value.is_object()) {
             reference_given |= name == "reference_population";
-            if (auto first = schedule.read(name, value.get_object(), text, from_value_of(fields, name), violations))
+            if (auto first = schedule.read(name, value.get_object(), text, from_value_of(fields, name), violations)) {
                 assignments.push_back({name, *std::move(first)});
+            }
         } else if (auto parameter = to_parameter_value(value, from_value_of(fields, name))) {
             reference_given |= name == "reference_population";
             assignments.push_back({name, std::move(*parameter)});
@@ -292,26 +325,32 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
             violations.push_back({with_line(fields, name), "a number, true, false or a text", json::serialize(value)});
         }
     }
-    if (!reference_given)
-        for (const Assignment& assignment : assignments)
+    if (!reference_given) {
+        for (const Assignment& assignment : assignments) {
             if (assignment.name == "population_size") {
                 assignments.push_back({"reference_population", assignment.value});
                 break;
             }
+        }
+    }
 
     const base::Result<Parameters> parameters = assign({}, assignments);
     if (!parameters) {
         const base::Refusal refused = parameters.error();
-        for (const base::Violation& violation : refused.violations)
-            if (violation.field != "reference_population" || reference_given)
+        for (const base::Violation& violation : refused.violations) {
+            if (violation.field != "reference_population" || reference_given) {
                 violations.push_back({with_line(fields, violation.field), violation.allowed, violation.got});
+            }
+        }
     }
-    if (violations.empty())
+    if (violations.empty()) {
         violations = schedule.finish(*parameters, fields);
-    if (!violations.empty())
+    }
+    if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "the experiment has fields that cannot be used",
                              .violations = std::move(violations)};
+    }
     experiment.parameters = *parameters;
     experiment.schedule = schedule.schedule();
     return experiment;
@@ -319,8 +358,9 @@ base::Result<Experiment> parse_experiment(std::string_view text) {
 
 base::Result<Schedule> parse_schedule(std::string_view text) {
     const base::Result<json::value> document = parse_object(text);
-    if (!document)
+    if (!document) {
         return document.error();
+    }
     const std::vector<Field> fields = fields_of(text);
     std::vector<base::Violation> violations;
     Schedule schedule;
@@ -332,18 +372,22 @@ base::Result<Schedule> parse_schedule(std::string_view text) {
         }
         const ValuesByGeneration read{name, value.get_object(), text, from_value_of(fields, name)};
         violations.insert(violations.end(), read.violations().begin(), read.violations().end());
-        if (read.violations().empty() && !read.values().contains(1))
+        if (read.violations().empty() && !read.values().contains(1)) {
             violations.push_back({with_line(fields, name), "a value for generation 1", "none"});
-        for (const auto& [generation, parameter] : read.values())
+        }
+        for (const auto& [generation, parameter] : read.values()) {
             schedule.add(generation, {name, parameter});
+        }
     }
-    if (violations.empty() && schedule.value_count() > Schedule::values_max)
+    if (violations.empty() && schedule.value_count() > Schedule::values_max) {
         violations.push_back({"the schedule", "at most " + std::to_string(Schedule::values_max) + " values",
                               std::to_string(schedule.value_count())});
-    if (!violations.empty())
+    }
+    if (!violations.empty()) {
         return base::Refusal{.code = base::RefusalCode::InvalidArgument,
                              .message = "the schedule cannot be used",
                              .violations = std::move(violations)};
+    }
     return schedule;
 }
 
@@ -365,8 +409,9 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
         const bool follows = description.name == "reference_population";
         if (written == Written::Differences && scheduled.empty() &&
             (follows ? parameters.reference_population == parameters.population_size
-                     : value == description.default_value()))
+                     : value == description.default_value())) {
             continue;
+        }
         text += text.size() > 1 ? ",\n  " : "\n  ";
         text += "\"" + std::string{description.name} + "\": " + (scheduled.empty() ? json_text(value) : scheduled);
     }

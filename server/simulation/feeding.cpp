@@ -17,26 +17,30 @@ void Feeding::find_touches(std::size_t block, std::span<const std::uint32_t> at_
                            const Items& items) {
     std::vector<Touch>& touches = touches_of_block_[block];
     touches.clear();
-    for (const std::uint32_t i : at_items)
+    for (const std::uint32_t i : at_items) {
         items.prefetch(bodies.x[i], bodies.y[i]);
-    for (const std::uint32_t i : at_items)
+    }
+    for (const std::uint32_t i : at_items) {
         items.for_each_within(bodies.x[i], bodies.y[i], bodies.radius[i] + items.radius_px(),
                               [&](std::uint32_t item, std::uint32_t place, float square) {
                                   touches.push_back({item, place, square, bodies.id[i], i, true});
                               });
+    }
 }
 
 std::size_t Feeding::award() {
     std::size_t count = 0;
-    for (const std::vector<Touch>& touches : touches_of_block_)
+    for (const std::vector<Touch>& touches : touches_of_block_) {
         count += touches.size();
+    }
     const std::size_t slots = std::bit_ceil(2 * count);
     first_of_item_.assign(slots, nullptr);
-    for (std::vector<Touch>& touches : touches_of_block_)
+    for (std::vector<Touch>& touches : touches_of_block_) {
         for (Touch& touch : touches) {
             std::size_t slot = touch.item * 0x9e37'79b9u & (slots - 1);
-            while (first_of_item_[slot] != nullptr && first_of_item_[slot]->item != touch.item)
+            while (first_of_item_[slot] != nullptr && first_of_item_[slot]->item != touch.item) {
                 slot = (slot + 1) & (slots - 1);
+            }
             Touch*& first = first_of_item_[slot];
             if (first == nullptr) {
                 first = &touch;
@@ -47,6 +51,7 @@ std::size_t Feeding::award() {
             (nearer ? first : &touch)->gets_it = false;
             first = nearer ? &touch : first;
         }
+    }
     return count;
 }
 

@@ -13,8 +13,9 @@ std::string counted(std::size_t count, const char* what) {
 } // namespace
 
 bool same(const FirstPopulation& a, const FirstPopulation& b) {
-    if (!a || !b)
+    if (!a || !b) {
         return !a && !b;
+    }
     return std::ranges::equal(*a, *b, [](const evolution::GeneMatrix& one, const evolution::GeneMatrix& other) {
         return one.cols() == other.cols() && (one == other).all();
     });
@@ -23,23 +24,27 @@ bool same(const FirstPopulation& a, const FirstPopulation& b) {
 std::vector<base::Violation> faults_of(const FirstPopulation& population, const Parameters& parameters,
                                        const std::string& field) {
     std::vector<base::Violation> faults;
-    if (!population)
+    if (!population) {
         return faults;
-    if (population->size() != parameters.island_count)
+    }
+    if (population->size() != parameters.island_count) {
         faults.push_back({field, counted(parameters.island_count, "island") + " (island_count)",
                           counted(population->size(), "island")});
+    }
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     for (std::size_t island = 0; island < population->size(); ++island) {
         const evolution::GeneMatrix& genes = (*population)[island];
         const std::string name = field + "[" + std::to_string(island) + "]";
-        if (faults.size() < faults_max && genes.cols() != parameters.population_size)
+        if (faults.size() < faults_max && genes.cols() != parameters.population_size) {
             faults.push_back({name, counted(parameters.population_size, "organism") + " (population_size)",
                               counted(static_cast<std::size_t>(genes.cols()), "organism")});
-        for (Eigen::Index organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism)
+        }
+        for (Eigen::Index organism = 0; organism < genes.cols() && faults.size() < faults_max; ++organism) {
             for (Eigen::Index gene = 0; gene < genes.rows() && faults.size() < faults_max; ++gene) {
                 const float value = genes(gene, organism);
-                if (value >= bounds.min[gene] && value <= bounds.max[gene]) // a NaN is in no range
+                if (value >= bounds.min[gene] && value <= bounds.max[gene]) { // a NaN is in no range
                     continue;
+                }
                 const std::string named{evolution::gene_names[static_cast<std::size_t>(gene)]};
                 faults.push_back({name + ".organism[" + std::to_string(organism) + "]." + named,
                                   to_text(ParameterValue{double{bounds.min[gene]}}) + " to " +
@@ -47,6 +52,7 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                                       named + "_max)",
                                   to_text(ParameterValue{double{value}})});
             }
+        }
     }
     return faults;
 }

@@ -6,8 +6,9 @@ namespace evod::simulation {
 
 double gene_sum(const evolution::Chromosome& genes) {
     double sum = 0;
-    for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+    for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
         sum += static_cast<double>(genes(gene));
+    }
     return sum;
 }
 

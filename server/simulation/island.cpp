@@ -76,11 +76,13 @@ void Island::begin_generation(const Parameters& parameters, std::uint64_t genera
         }
     });
     born_hash_ = {};
-    for (const base::StateHash& hash : hash_of_block)
+    for (const base::StateHash& hash : hash_of_block) {
         born_hash_ += hash;
+    }
     hash_ = born_hash_;
-    if (parameters.fitness == FitnessFunction::Life)
+    if (parameters.fitness == FitnessFunction::Life) {
         place(parameters, generation, executor);
+    }
 }
 
 void Island::place(const Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
@@ -98,16 +100,18 @@ void Island::place(const Parameters& parameters, std::uint64_t generation, base:
     boxes_ = std::move(placed.crates);
     crate_count_ = static_cast<std::uint32_t>(boxes_.size());
     const physics::Boxes& obstacles = placed.obstacles;
-    for (std::size_t i = 0; i < obstacles.size(); ++i)
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
         boxes_.add(obstacles.x[i], obstacles.y[i], obstacles.half_width[i], obstacles.half_height[i], 0);
+    }
 
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     std::vector<float> radius(organisms);
     const auto shape_of = [&](std::size_t id) {
         return body_shape(born_.genes(evolution::BodySize, static_cast<Eigen::Index>(id)), parameters);
     };
-    for (std::size_t id = 0; id < organisms; ++id)
+    for (std::size_t id = 0; id < organisms; ++id) {
         radius[id] = shape_of(id).radius_px;
+    }
     const std::vector<Place> places =
         place_circles(radius, seed_, index_, generation, area_, BoxGrid{area_, boxes_}, executor);
     bodies_.resize(organisms);
@@ -138,8 +142,9 @@ void Island::place(const Parameters& parameters, std::uint64_t generation, base:
 }
 
 void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
-    if (stepper_.near().worn(bodies_, boxes_))
+    if (stepper_.near().worn(bodies_, boxes_)) {
         renew_near_pairs(executor);
+    }
     for_each_kind(
         executor,
         [&] {
@@ -156,8 +161,9 @@ void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base
     const std::size_t grain = physics::blocks_per_piece(bodies_.size());
     stepper_.begin(bodies_, boxes_, area_, step_parameters_);
     executor.parallel_for(block_count, grain, [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             act(rules, tick, block);
+        }
     });
     stepper_.collide(bodies_, boxes_, executor);
 
@@ -165,8 +171,9 @@ void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base
     poison_feeding_.begin(block_count);
     resize_blocks(block_count);
     executor.parallel_for(block_count, grain, [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             move(block);
+        }
     });
     const physics::StepCounts step = stepper_.finish(boxes_);
     counts_.too_fast_count += step.too_fast;
@@ -179,10 +186,12 @@ void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base
 template <class OfFood, class OfPoison>
 void Island::for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison) {
     executor.parallel_for(2, physics::worth_cutting(bodies_.size()) ? 1 : 2, [&](base::Range kinds) {
-        if (kinds.begin == 0)
+        if (kinds.begin == 0) {
             of_food();
-        if (kinds.end == 2)
+        }
+        if (kinds.end == 2) {
             of_poison();
+        }
     });
 }
 
@@ -190,8 +199,9 @@ void Island::resize_blocks(std::size_t count) {
     constexpr std::size_t usually_enough = 32;
     const std::size_t before = blocks_.size();
     blocks_.resize(count);
-    for (std::size_t block = before; block < count; ++block)
+    for (std::size_t block = before; block < count; ++block) {
         blocks_[block].dying.reserve(usually_enough);
+    }
 }
 
 void Island::renew_near_pairs(base::Executor& executor) {
@@ -202,8 +212,9 @@ void Island::renew_near_pairs(base::Executor& executor) {
     physics::NearPairs& near = stepper_.near();
     near.sort(bodies_, boxes_, area_, executor);
     const bool many_are_void = alive_count_ < bodies_.size() - bodies_.size() / 8;
-    if ((renewals_++ % renewals_between == 0 && bodies_.size() > worth_ordering) || many_are_void)
+    if ((renewals_++ % renewals_between == 0 && bodies_.size() > worth_ordering) || many_are_void) {
         reorder(executor);
+    }
     near.list(bodies_, boxes_, executor);
 }
 
@@ -215,8 +226,9 @@ void Island::reorder(base::Executor& executor) {
     sight_.reorder(reordering);
     near.follow_reordering(bodies_, executor);
     executor.parallel_for(bodies_.size(), 2 * organisms_per_block, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
             body_of_[bodies_.id[i]] = static_cast<std::uint32_t>(i);
+        }
     });
 }
 
@@ -249,11 +261,13 @@ base::StateHash Island::feed_and_bury(const Parameters& parameters, std::uint32_
     // What happens to organisms, block by block; what happens to the items' grid, one after another.
     constexpr std::size_t events_worth_cutting = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
-    for (const Block& block : blocks_)
+    for (const Block& block : blocks_) {
         events += block.dying.size();
+    }
     executor.parallel_for(blocks_.size(), events < events_worth_cutting ? blocks_.size() : 8, [&](base::Range blocks) {
-        for (std::size_t block = blocks.begin; block < blocks.end; ++block)
+        for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
             feed_and_bury_in_block(parameters, tick, block);
+        }
     });
 
     base::StateHash organisms;
@@ -270,12 +284,16 @@ base::StateHash Island::feed_and_bury(const Parameters& parameters, std::uint32_
     const auto take_out = [this](Items& items, const Feeding& feeding) {
         constexpr std::size_t blocks_ahead = 4;
         for (std::size_t block = 0; block < blocks_.size(); ++block) {
-            if (block + blocks_ahead < blocks_.size())
-                for (const Touch& touch : feeding.touches(block + blocks_ahead))
+            if (block + blocks_ahead < blocks_.size()) {
+                for (const Touch& touch : feeding.touches(block + blocks_ahead)) {
                     items.prefetch_place(touch.place);
-            for (const Touch& touch : feeding.touches(block))
-                if (touch.gets_it)
+                }
+            }
+            for (const Touch& touch : feeding.touches(block)) {
+                if (touch.gets_it) {
                     items.take_out(touch.item, touch.place);
+                }
+            }
         }
     };
     for_each_kind(
@@ -299,8 +317,9 @@ void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t 
     }
     // All food before all poison; equal items, so that the order among each does not matter.
     for (const Touch& touch : food_feeding_.touches(index)) {
-        if (!touch.gets_it)
+        if (!touch.gets_it) {
             continue;
+        }
         const float cap = parameters.health_cap_per_size > 0
                               ? health_cap(born_.genes.col(static_cast<Eigen::Index>(touch.id)), parameters)
                               : std::numeric_limits<float>::infinity();
@@ -311,8 +330,9 @@ void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t 
         ++block.food_eaten;
     }
     for (const Touch& touch : poison_feeding_.touches(index)) {
-        if (!touch.gets_it)
+        if (!touch.gets_it) {
             continue;
+        }
         change_health(block, touch.body,
                       [&](float health) { return health - static_cast<float>(parameters.poison_harm); });
         block.poison_hash_change += poison_.set_due(touch.item, tick);
@@ -320,16 +340,18 @@ void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t 
         ++block.poison_eaten;
     }
     // Hunger comes at the beginning of a tick and poison at its end, so poison eaten now was the last loss.
-    for (const Touch& touch : poison_feeding_.touches(index))
+    for (const Touch& touch : poison_feeding_.touches(index)) {
         if (touch.gets_it && is_dying(touch.body)) {
             bury(block, touch.body, tick, CauseOfDeath::Poisoned);
             ++block.poisoned;
         }
-    for (const std::uint32_t body : block.dying)
+    }
+    for (const std::uint32_t body : block.dying) {
         if (is_dying(body)) {
             bury(block, body, tick, CauseOfDeath::Starved);
             ++block.starved;
         }
+    }
 }
 
 template <class Change>
@@ -357,11 +379,12 @@ void Island::bury(Block& block, std::uint32_t body, std::uint32_t tick, CauseOfD
 
 base::StateHash Island::hash_of_boxes() const {
     base::StateHash hash;
-    for (std::uint32_t i = 0; i < crate_count_; ++i)
+    for (std::uint32_t i = 0; i < crate_count_; ++i) {
         hash += base::EntityHash{CrateKind, i}
                     .add(boxes_.x[i], boxes_.y[i])
                     .add(boxes_.velocity_x[i], boxes_.velocity_y[i])
                     .finish();
+    }
     return hash;
 }
 
@@ -377,24 +400,30 @@ IslandState Island::state(base::Executor& executor) const {
     IslandState state;
     state.fate = fate_;
     state.counts = counts_;
-    if (!has_bodies())
+    if (!has_bodies()) {
         return state;
-    for (std::uint32_t i = 0; i < crate_count_; ++i)
+    }
+    for (std::uint32_t i = 0; i < crate_count_; ++i) {
         state.crates.push_back({boxes_.x[i], boxes_.y[i], boxes_.velocity_x[i], boxes_.velocity_y[i]});
+    }
     executor.parallel_for(3, 1, [&](base::Range parts) {
-        for (std::size_t part = parts.begin; part < parts.end; ++part)
-            if (part == 0)
+        for (std::size_t part = parts.begin; part < parts.end; ++part) {
+            if (part == 0) {
                 state.food = food_.all();
-            else if (part == 1)
+            } else if (part == 1) {
                 state.poison = poison_.all();
-            else
+            } else {
                 state.organisms.resize(body_of_.size());
+            }
+        }
     });
     executor.parallel_for(bodies_.size(), organisms_per_block, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
-            if (!bodies_.is_void(i))
+        for (std::size_t i = range.begin; i < range.end; ++i) {
+            if (!bodies_.is_void(i)) {
                 state.organisms[bodies_.id[i]] = {bodies_.x[i], bodies_.y[i], bodies_.velocity_x[i],
                                                   bodies_.velocity_y[i], living_.health[i]};
+            }
+        }
     });
     return state;
 }
@@ -409,10 +438,12 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
     const IslandShape own = shape();
     if (fate.cause.size() != own.organisms || fate.lived_ticks.size() != own.organisms ||
         fate.food_eaten.size() != own.organisms || fate.poison_eaten.size() != own.organisms ||
-        state.organisms.size() != body_of_.size())
+        state.organisms.size() != body_of_.size()) {
         return wrong("the number of its organisms");
-    if (state.crates.size() != own.crates)
+    }
+    if (state.crates.size() != own.crates) {
         return wrong("the number of its crates");
+    }
 
     // Limited when the tick ended, give or take some rounding.
     const float speed_max = step_parameters_.max_speed_px_s * 1.001f;
@@ -424,42 +455,53 @@ base::Result<void> Island::judge(const IslandState& state, std::uint32_t tick) c
     for (std::size_t id = 0; id < own.organisms; ++id) {
         const auto which = [&](const char* what) { return wrong(what + (" organism " + std::to_string(id))); };
         if (fate.cause[id] == CauseOfDeath::Alive) {
-            if (fate.lived_ticks[id] != 0)
+            if (fate.lived_ticks[id] != 0) {
                 return which("when it lost");
-            if (!own.has_bodies)
+            }
+            if (!own.has_bodies) {
                 continue;
+            }
             ++alive;
             const IslandState::Organism& organism = state.organisms[id];
-            if (!can_move(organism))
+            if (!can_move(organism)) {
                 return which("where it has, or how fast it is, its");
-            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0))
+            }
+            if (!(std::abs(organism.health) <= health_reachable) || (organism.health <= 0 && tick > 0)) {
                 return which("the health of its");
+            }
             continue;
         }
         starved += fate.cause[id] == CauseOfDeath::Starved;
         poisoned += fate.cause[id] == CauseOfDeath::Poisoned;
         if (!own.has_bodies || fate.cause[id] > CauseOfDeath::Poisoned || fate.lived_ticks[id] == 0 ||
-            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{})
+            fate.lived_ticks[id] > tick || state.organisms[id] != IslandState::Organism{}) {
             return which("how it lost");
+        }
     }
-    if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count)
+    if (starved != state.counts.starved_count || poisoned != state.counts.poisoned_count) {
         return wrong("the number of its dead");
-    if (!std::ranges::all_of(state.crates, can_move))
+    }
+    if (!std::ranges::all_of(state.crates, can_move)) {
         return wrong("where a crate is, or how fast it is");
-    if (!own.has_bodies)
+    }
+    if (!own.has_bodies) {
         return state.food.empty() && state.poison.empty() ? base::Result<void>{} : wrong("its items");
-    if (const char* fault = food_.fault_of(state.food, tick, alive == 0))
+    }
+    if (const char* fault = food_.fault_of(state.food, tick, alive == 0)) {
         return wrong(std::string{"of its food, "} + fault);
-    if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0))
+    }
+    if (const char* fault = poison_.fault_of(state.poison, tick, alive == 0)) {
         return wrong(std::string{"of its poison, "} + fault);
+    }
     return {};
 }
 
 void Island::restore(const IslandState& state, std::uint32_t tick, base::Executor& executor) {
     fate_ = state.fate;
     counts_ = state.counts;
-    if (!has_bodies() || tick == 0)
+    if (!has_bodies() || tick == 0) {
         return;
+    }
     for (std::uint32_t i = 0; i < crate_count_; ++i) {
         boxes_.x[i] = state.crates[i].x;
         boxes_.y[i] = state.crates[i].y;
@@ -500,43 +542,50 @@ std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t 
     std::vector<double> fitness(organisms);
     if (parameters.fitness == FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
-            for (std::size_t id = range.begin; id < range.end; ++id)
+            for (std::size_t id = range.begin; id < range.end; ++id) {
                 fitness[id] = body_of_[id] == no_body
                                   ? fate_.lived_ticks[id] * parameters.tick_s
                                   : tick * parameters.tick_s + static_cast<double>(living_.health[body_of_[id]]);
+            }
         });
         return fitness;
     }
     const auto function = parameters.fitness == FitnessFunction::GeneSum ? gene_sum : rastrigin;
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
-        for (std::size_t id = range.begin; id < range.end; ++id)
+        for (std::size_t id = range.begin; id < range.end; ++id) {
             fitness[id] = function(born_.genes.col(static_cast<Eigen::Index>(id)));
+        }
     });
     return fitness;
 }
 
 std::vector<Intention> Island::intentions(const Parameters& parameters, std::uint32_t tick, base::Range ids) const {
     std::vector<std::uint32_t> who;
-    for (std::size_t id = ids.begin; id < ids.end; ++id)
-        if (const auto body = body_of(static_cast<std::uint32_t>(id)))
+    for (std::size_t id = ids.begin; id < ids.end; ++id) {
+        if (const auto body = body_of(static_cast<std::uint32_t>(id))) {
             who.push_back(static_cast<std::uint32_t>(*body));
+        }
+    }
     std::vector<Intention> of_living(who.size());
     foresee(bodies_, living_, food_, poison_, behaviour_rules(parameters), behaviour_key_, tick, who, of_living);
     std::vector<Intention> intentions(ids.end - ids.begin);
-    for (std::size_t k = 0; k < who.size(); ++k)
+    for (std::size_t k = 0; k < who.size(); ++k) {
         intentions[bodies_.id[who[k]] - ids.begin] = of_living[k];
+    }
     return intentions;
 }
 
 physics::MotionReport Island::motion_report(const Parameters& parameters) const {
-    if (!has_bodies())
+    if (!has_bodies()) {
         return {};
+    }
     return physics::report_motion(bodies_, boxes_, area_, parameters.tick_s, stepper_.near());
 }
 
 std::optional<std::size_t> Island::body_of(std::uint32_t id) const {
-    if (id >= body_of_.size() || body_of_[id] == no_body)
+    if (id >= body_of_.size() || body_of_[id] == no_body) {
         return std::nullopt;
+    }
     return body_of_[id];
 }
 

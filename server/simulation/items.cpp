@@ -26,8 +26,9 @@ constexpr std::size_t prefetched_ahead = 8; // items
 
 constexpr ItemBucket empty_bucket() {
     ItemBucket bucket{};
-    for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot)
+    for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot) {
         bucket.x[slot] = bucket.y[slot] = physics::elsewhere;
+    }
     return bucket;
 }
 
@@ -79,23 +80,27 @@ void Items::put_all(base::Executor& executor, ItemOf&& item_of) {
         }
     });
     hash_ = {};
-    for (const base::StateHash& hash : hash_of_block)
+    for (const base::StateHash& hash : hash_of_block) {
         hash_ += hash;
+    }
     insert_all(executor);
 }
 
 const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, bool resting) const {
-    if (items.size() != all_.size())
+    if (items.size() != all_.size()) {
         return "their number";
+    }
     const std::uint64_t last_due = std::uint64_t{tick} + rules_.respawn_ticks;
     for (const Item& item : items) {
         // Clear of the walls; sight relies on no item ever lying in the corner.
-        if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height)
+        if (item.x <= 0 || item.x >= area_.width || item.y <= 0 || item.y >= area_.height) {
             return "where one is";
+        }
         const bool possible =
             rules_.respawn ? item.due_tick <= last_due && (item.due_tick > tick || resting) : item.due_tick == none;
-        if (item.due_tick != 0 && !possible)
+        if (item.due_tick != 0 && !possible) {
             return "when one is due";
+        }
     }
     return nullptr;
 }
@@ -103,11 +108,13 @@ const char* Items::fault_of(std::span<const Item> items, std::uint32_t tick, boo
 void Items::restore(std::span<const Item> items, base::Executor& executor) {
     put_all(executor, [&](std::uint32_t item) { return items[item]; });
     present_count_ = 0;
-    for (std::uint32_t item = 0; item < size(); ++item)
-        if (present(item))
+    for (std::uint32_t item = 0; item < size(); ++item) {
+        if (present(item)) {
             ++present_count_;
-        else if (rules_.respawn)
+        } else if (rules_.respawn) {
             due_.push_back({all_[item].due_tick, item});
+        }
+    }
     std::ranges::sort(due_, {}, [](const Due& due) { return std::tie(due.tick, due.item); });
 }
 
@@ -163,8 +170,9 @@ void Items::insert_all(base::Executor& executor) {
                 __builtin_prefetch(&items_[cell], 1);
             }
             const auto item = static_cast<std::uint32_t>(i);
-            if (!present(item))
+            if (!present(item)) {
                 continue;
+            }
             const std::uint32_t cell = cell_of(item);
             if (base::look_at(counts_[cell]) >= slots) {
                 no_slot.push_back(item);
@@ -181,9 +189,11 @@ void Items::insert_all(base::Executor& executor) {
             items_[cell][slot] = item;
         }
     });
-    for (const std::vector<std::uint32_t>& no_slot : waiting)
-        for (const std::uint32_t item : no_slot)
+    for (const std::vector<std::uint32_t>& no_slot : waiting) {
+        for (const std::uint32_t item : no_slot) {
             insert(item, cell_of(item));
+        }
+    }
 }
 
 void Items::insert(std::uint32_t item, std::uint32_t cell) {
@@ -215,25 +225,29 @@ void Items::take_out(std::uint32_t item, std::uint32_t place) {
     // Others that have been taken out may have moved it.
     std::uint32_t holder = place / slots, slot = place % slots;
     const std::uint32_t cell = holder < std::size_t{rows_} * columns_ ? holder : cell_of(item);
-    if (items_[holder][slot] != item || slot >= counts_[holder])
+    if (items_[holder][slot] != item || slot >= counts_[holder]) {
         for (holder = cell;; holder = next_[holder]) {
             EVOD_ASSERT(holder != none);
             const auto end_of_items = items_[holder].begin() + counts_[holder];
             const auto found = std::find(items_[holder].begin(), end_of_items, item);
-            if (found == end_of_items)
+            if (found == end_of_items) {
                 continue;
+            }
             slot = static_cast<std::uint32_t>(found - items_[holder].begin());
             break;
         }
+    }
     changes_.push_back({bucket(holder).x[slot], bucket(holder).y[slot], false});
-    if (rules_.respawn)
+    if (rules_.respawn) {
         due_.push_back({all_[item].due_tick, item});
+    }
     --present_count_;
 
     // Only the last bucket of a cell is ever partly filled: the gap is closed with its last item.
     std::uint32_t last = cell, before_last = none;
-    while (next_[last] != none)
+    while (next_[last] != none) {
         before_last = std::exchange(last, next_[last]);
+    }
     const std::uint32_t end = --counts_[last];
     bucket(holder).x[slot] = bucket(last).x[end];
     bucket(holder).y[slot] = bucket(last).y[end];
@@ -261,18 +275,21 @@ void Items::consume(std::uint32_t item, std::uint32_t tick) {
 
 void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executor& executor) {
     std::size_t due_end = due_begin_;
-    while (due_end < due_.size() && due_[due_end].tick <= tick)
+    while (due_end < due_.size() && due_[due_end].tick <= tick) {
         ++due_end;
-    if (due_end == due_begin_)
+    }
+    if (due_end == due_begin_) {
         return;
+    }
     // Places and hashes side by side, then into the buckets one by one.
     constexpr std::size_t grain = 256;
     const std::size_t count = due_end - due_begin_;
     arrivals_.resize(count);
     hash_of_piece_.assign((count + grain - 1) / grain, {});
     executor.parallel_for(count, grain, [&](base::Range range) {
-        for (std::size_t k = range.begin; k < range.end; ++k)
+        for (std::size_t k = range.begin; k < range.end; ++k) {
             prefetch_item(due_[due_begin_ + k].item);
+        }
         for (std::size_t k = range.begin; k < range.end; ++k) {
             const std::uint32_t item = due_[due_begin_ + k].item;
             base::StateHash& hash = hash_of_piece_[k / grain];
@@ -284,8 +301,9 @@ void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executo
             arrivals_[k] = {item, cell_of(item)};
         }
     });
-    for (const base::StateHash& hash : hash_of_piece_)
+    for (const base::StateHash& hash : hash_of_piece_) {
         hash_ += hash;
+    }
     for (std::size_t k = 0; k < count; ++k) {
         if (k + prefetched_ahead < count) {
             const std::uint32_t cell = arrivals_[k + prefetched_ahead].cell;
@@ -311,10 +329,11 @@ void Items::reappear(std::uint32_t tick, const BoxGrid& obstacles, base::Executo
 
 base::StateHash Items::hash_of(std::uint32_t item) const {
     base::EntityHash hash{rules_.kind, item};
-    if (present(item))
+    if (present(item)) {
         hash.add(all_[item].x, all_[item].y);
-    else
+    } else {
         hash.add(std::uint64_t{all_[item].due_tick});
+    }
     return hash.finish();
 }
 

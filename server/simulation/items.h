@@ -105,8 +105,8 @@ class Items {
         const float within = radius * radius;
         const auto reach = static_cast<std::int64_t>(radius * static_cast<float>(physics::units_per_px)) + 1;
         const std::uint32_t right = column_at(x + reach), bottom = row_at(y + reach);
-        for (std::uint32_t row = row_at(y - reach); row <= bottom; ++row)
-            for (std::uint32_t column = column_at(x - reach); column <= right; ++column)
+        for (std::uint32_t row = row_at(y - reach); row <= bottom; ++row) {
+            for (std::uint32_t column = column_at(x - reach); column <= right; ++column) {
                 for (std::uint32_t b = row * columns_ + column; b != none;) {
                     // Nothing but the places is read of most buckets.
                     const ItemBucket& places = bucket(b);
@@ -114,11 +114,14 @@ class Items {
                         const float dx = physics::distance_px(x, places.x[slot]),
                                     dy = physics::distance_px(y, places.y[slot]);
                         const float square = dx * dx + dy * dy;
-                        if (square <= within)
+                        if (square <= within) {
                             found(items_[b][slot], b * slots + slot, square);
+                        }
                     }
                     b = places.x[slots - 1] == physics::elsewhere ? none : next_[b];
                 }
+            }
+        }
     }
 
     /// What has come and gone since forget_changes(), in order.

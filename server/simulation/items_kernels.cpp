@@ -63,8 +63,9 @@ class Search {
         for (std::uint32_t b = cell;
              grid_.buckets[static_cast<std::int32_t>(b)].x[ItemBucket::slots - 1] != elsewhere;) {
             b = grid_.next[b];
-            if (b == no_item)
+            if (b == no_item) {
                 break;
+            }
             look_at_bucket(b);
         }
     }
@@ -72,13 +73,14 @@ class Search {
     void look_at_cells(std::int64_t top, std::int64_t bottom, std::int64_t left, std::int64_t right) {
         bottom = least<std::int64_t>(bottom, grid_.rows - 1);
         right = least<std::int64_t>(right, grid_.columns - 1);
-        for (std::int64_t row = greatest<std::int64_t>(top, 0); row <= bottom; ++row)
+        for (std::int64_t row = greatest<std::int64_t>(top, 0); row <= bottom; ++row) {
             for (std::int64_t column = greatest<std::int64_t>(left, 0); column <= right; ++column) {
                 const std::uint32_t cell =
                     static_cast<std::uint32_t>(row) * grid_.columns + static_cast<std::uint32_t>(column);
                 look_at_bucket(cell);
                 look_at_overflow(cell);
             }
+        }
     }
 
     /// Of the second nearest so far, units²; greater than any there can be if there is none.
@@ -93,11 +95,13 @@ class Search {
         const float within = radius * radius * (units * units);
         const float best = least_lane(best_);
         const float others = least(others_square(), within) * (px * px);
-        if (best > within)
+        if (best > within) {
             return {no_item, elsewhere, elsewhere, within * (px * px), within * (px * px)};
+        }
         std::uint32_t place = place_[__builtin_ctz(bits_of(best_ == best))];
-        if (others * (units * units) == best)
+        if (others * (units * units) == best) {
             place = lowest_id_at(best, place);
+        }
         const ItemBucket& bucket = grid_.buckets[place / ItemBucket::slots];
         return {place, bucket.x[place % ItemBucket::slots], bucket.y[place % ItemBucket::slots], best * (px * px),
                 others};
@@ -137,13 +141,14 @@ std::uint32_t Search::lowest_id_at(float square, std::uint32_t place) const {
     const auto reach = static_cast<std::int64_t>(__builtin_sqrtf(square) * (1 + 1e-5f)) + 2;
     const Cells cells = cells_within(grid_, x_, y_, reach);
     std::uint32_t lowest = grid_.items[place / ItemBucket::slots][place % ItemBucket::slots];
-    for (std::int64_t row = cells.top; row <= cells.bottom; ++row)
-        for (std::int64_t column = cells.left; column <= cells.right; ++column)
+    for (std::int64_t row = cells.top; row <= cells.bottom; ++row) {
+        for (std::int64_t column = cells.left; column <= cells.right; ++column) {
             for (std::uint32_t b = static_cast<std::uint32_t>(row) * grid_.columns + static_cast<std::uint32_t>(column);
-                 b != no_item; b = grid_.next[b])
+                 b != no_item; b = grid_.next[b]) {
                 for (std::uint32_t slot = 0; slot < ItemBucket::slots; ++slot) {
-                    if (grid_.buckets[b].x[slot] == elsewhere)
+                    if (grid_.buckets[b].x[slot] == elsewhere) {
                         break;
+                    }
                     const auto dx = static_cast<float>(grid_.buckets[b].x[slot] - x_);
                     const auto dy = static_cast<float>(grid_.buckets[b].y[slot] - y_);
                     if (dx * dx + dy * dy == square && grid_.items[b][slot] < lowest) {
@@ -151,6 +156,9 @@ std::uint32_t Search::lowest_id_at(float square, std::uint32_t place) const {
                         place = b * ItemBucket::slots + slot;
                     }
                 }
+            }
+        }
+    }
     return place;
 }
 
@@ -168,10 +176,12 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
         const std::uint32_t below = more_rows != 0 ? first + grid.columns : empty;
         const std::uint32_t across = more_columns != 0 && more_rows != 0 ? first + grid.columns + 1 : empty;
         const std::uint32_t around[4] = {first, right, below, across};
-        for (const std::uint32_t cell : around)
+        for (const std::uint32_t cell : around) {
             search.look_at_bucket(cell);
-        for (const std::uint32_t cell : around)
+        }
+        for (const std::uint32_t cell : around) {
             search.look_at_overflow(cell);
+        }
         return search.result(radius);
     }
     if (more_columns < 4 && more_rows < 4) {
@@ -189,15 +199,18 @@ TwoNearest two_nearest_of(const ItemGrid& grid, const ItemQuery& query) {
     search.look_at_cells(row, row, column, column);
     for (std::int64_t ring = 1; ring <= rings; ++ring) {
         const auto distance = static_cast<float>(greatest<std::int64_t>((ring - 1) * grid.side + to_edge, 0));
-        if (distance * distance * (1 - 1e-5f) > search.others_square())
+        if (distance * distance * (1 - 1e-5f) > search.others_square()) {
             break;
+        }
         const auto look_at_row = [&](std::int64_t r, std::int64_t left, std::int64_t right) {
-            if (r >= 0 && r < grid.rows)
+            if (r >= 0 && r < grid.rows) {
                 search.look_at_cells(r, r, left, right);
+            }
         };
         const auto look_at_column = [&](std::int64_t c) {
-            if (c >= 0 && c < grid.columns)
+            if (c >= 0 && c < grid.columns) {
                 search.look_at_cells(row - ring + 1, row + ring - 1, c, c);
+            }
         };
         look_at_row(row - ring, column - ring, column + ring);
         look_at_row(row + ring, column - ring, column + ring);
@@ -221,8 +234,9 @@ void prefetch(const ItemGrid& grid, const ItemQuery* queries, std::size_t count)
 }
 
 void two_nearest(const ItemGrid& grid, const ItemQuery* queries, TwoNearest* answers, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
         answers[i] = two_nearest_of(grid, queries[i]);
+    }
 }
 
 } // namespace

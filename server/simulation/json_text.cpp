@@ -17,14 +17,17 @@ base::Result<json::value> parse_json(std::string_view text) {
     json::stream_parser parser;
     boost::system::error_code error;
     const std::size_t read = parser.write_some(text, error);
-    if (!error && read < text.size() && text.find_first_not_of(" \t\r\n", read) != std::string_view::npos)
+    if (!error && read < text.size() && text.find_first_not_of(" \t\r\n", read) != std::string_view::npos) {
         error = json::error::extra_data;
-    if (!error)
+    }
+    if (!error) {
         parser.finish(error);
-    if (error)
+    }
+    if (error) {
         return base::refusal(base::RefusalCode::InvalidArgument,
                              "not JSON: line " + std::to_string(line_of(text, std::min(read, text.size()))) + ": " +
                                  error.message());
+    }
     return parser.release();
 }
 

@@ -35,8 +35,9 @@ const char* criterion(evolution::Outcome outcome) {
 
 std::optional<Refusal> refusal_if_terminated(const World& world) {
     const evolution::Outcome outcome = world.outcome();
-    if (outcome == evolution::Outcome::Running)
+    if (outcome == evolution::Outcome::Running) {
         return std::nullopt;
+    }
     return refusal(RefusalCode::FailedPrecondition,
                    std::string{"the run has ended by "} + criterion(outcome) +
                        ": change that parameter to go on, or reset the world",
@@ -48,16 +49,18 @@ template <class C>
 std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
     constexpr bool changes_what_happens = std::is_same_v<C, DeleteWorld> || std::is_same_v<C, ResetWorld> ||
                                           std::is_same_v<C, SetParameters> || std::is_same_v<C, CancelChange>;
-    if (!changes_what_happens || !entry.replay)
+    if (!changes_what_happens || !entry.replay) {
         return std::nullopt;
+    }
     return refusal(RefusalCode::FailedPrecondition,
                    "this world shows what has been, and that cannot be changed: fork it", base::Reason::WorldIsReplay);
 }
 
 std::string ids_of(const std::vector<PlannedChange>& planned) {
     std::string ids;
-    for (const PlannedChange& change : planned)
+    for (const PlannedChange& change : planned) {
         ids += (ids.empty() ? "" : ", ") + std::to_string(change.id);
+    }
     return ids.empty() ? "none: nothing is planned" : ids;
 }
 
@@ -66,25 +69,30 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
     std::vector<base::Violation> violations;
     const PlannedMoment& at = *command.at;
     const Moment& now = world.moment();
-    if (!world.is_to_come(at))
+    if (!world.is_to_come(at)) {
         violations.push_back({at.generation ? "set_parameters.at_generation" : "set_parameters.at_tick",
                               "at least " + std::to_string(1 + (at.generation ? now.generation : now.tick)),
                               std::to_string(at.generation ? *at.generation : *at.tick)});
-    for (const Assignment& assignment : command.assignments)
+    }
+    for (const Assignment& assignment : command.assignments) {
         if (const auto* description = find_parameter(assignment.name);
-            description != nullptr && !can_be_scheduled(*description))
+            description != nullptr && !can_be_scheduled(*description)) {
             violations.push_back({"set_parameters." + assignment.name,
                                   "to be set at once, for the next reset: while the world runs it cannot change",
                                   to_text(assignment.value)});
-    if (!violations.empty())
+        }
+    }
+    if (!violations.empty()) {
         return Refusal{.code = RefusalCode::InvalidArgument,
                        .message = "this cannot be planned",
                        .violations = std::move(violations)};
-    if (world.planned().size() >= planned_changes_max)
+    }
+    if (world.planned().size() >= planned_changes_max) {
         return refusal(RefusalCode::ResourceExhausted,
                        "there are " + std::to_string(planned_changes_max) +
                            " planned changes already: cancel one first",
                        base::Reason::PlannedChangesMax);
+    }
     return std::nullopt;
 }
 
@@ -119,32 +127,38 @@ bool mind_goals(RunControl& control, const World& world) {
 }
 
 bool Entry::wants_tick() const {
-    if (world.outcome() != evolution::Outcome::Running || (replay && world.moment().tick >= replay->last_tick))
+    if (world.outcome() != evolution::Outcome::Running || (replay && world.moment().tick >= replay->last_tick)) {
         return false;
-    if (control.until_tick)
+    }
+    if (control.until_tick) {
         return world.moment().tick < *control.until_tick;
+    }
     return !control.paused &&
            (control.endless || (control.until_generation && generations_over(world) < *control.until_generation));
 }
 
 RunState Entry::state() const {
-    if (world.outcome() != evolution::Outcome::Running)
+    if (world.outcome() != evolution::Outcome::Running) {
         return RunState::Terminated;
-    if (wants_tick())
+    }
+    if (wants_tick()) {
         return RunState::Running;
+    }
     return control.paused ? RunState::Paused : RunState::Waiting;
 }
 
 void Laboratory::advance(Entry& entry, base::Executor& executor) {
     entry.world.advance_tick(executor);
     collect_events(entry);
-    if (mind_goals(entry.control, entry.world))
+    if (mind_goals(entry.control, entry.world)) {
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, GoalReached{}});
+    }
 }
 
 void Laboratory::collect_events(Entry& entry) {
-    for (EventKind& kind : entry.world.take_events())
+    for (EventKind& kind : entry.world.take_events()) {
         events_.push_back({entry.name, entry.run_id, entry.world.moment().tick, std::move(kind)});
+    }
 }
 
 Result<Entry*> Laboratory::find(std::string_view name) {
@@ -152,23 +166,29 @@ Result<Entry*> Laboratory::find(std::string_view name) {
         return std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == wanted; });
     };
     const auto looks_back = [](const auto& entry) { return entry->is_look_back(); };
-    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(looks_back)) == 1)
+    if (name.empty() && std::ranges::count_if(entries_, std::not_fn(looks_back)) == 1) {
         return std::ranges::find_if_not(entries_, looks_back)->get();
+    }
     const auto found = named(name.empty() ? "default" : name);
-    if (found != entries_.end())
+    if (found != entries_.end()) {
         return found->get();
+    }
     return not_found(name);
 }
 
 Refusal Laboratory::not_found(std::string_view name) const {
     std::string names;
-    for (const auto& entry : entries_)
-        if (!entry->is_look_back())
+    for (const auto& entry : entries_) {
+        if (!entry->is_look_back()) {
             names += (names.empty() ? "" : ", ") + entry->name;
-    if (names.empty())
+        }
+    }
+    if (names.empty()) {
         return refusal(RefusalCode::NotFound, "there is no world: create one", base::Reason::WorldNotFound);
-    if (name.empty())
+    }
+    if (name.empty()) {
         return refusal(RefusalCode::NotFound, "say which world: there are " + names, base::Reason::WorldNotFound);
+    }
     return Refusal{.code = RefusalCode::NotFound,
                    .message = "there is no world of that name",
                    .violations = {{"world", names, std::string{name}}},
@@ -177,8 +197,9 @@ Refusal Laboratory::not_found(std::string_view name) const {
 
 Result<const Entry*> Laboratory::find(std::string_view name) const {
     const Result<Entry*> found = const_cast<Laboratory*>(this)->find(name);
-    if (!found)
+    if (!found) {
         return found.error();
+    }
     return *found;
 }
 
@@ -189,10 +210,12 @@ Result<Applied> Laboratory::apply(const Command& command) {
                 return carry_out(c);
             } else {
                 const Result<Entry*> found = find(c.world);
-                if (!found)
+                if (!found) {
                     return found.error();
-                if (auto refused = refusal_if_recorded(**found, c))
+                }
+                if (auto refused = refusal_if_recorded(**found, c)) {
                     return *refused;
+                }
                 return carry_out(**found, c);
             }
         },
@@ -200,16 +223,19 @@ Result<Applied> Laboratory::apply(const Command& command) {
 }
 
 std::optional<Refusal> Laboratory::refusal_of(const std::string& name) const {
-    for (const auto& entry : entries_)
-        if (entry->name == name)
+    for (const auto& entry : entries_) {
+        if (entry->name == name) {
             return Refusal{.code = RefusalCode::AlreadyExists,
                            .message = "there is a world of that name already",
                            .violations = {{"name", "a name that is free", name}},
                            .reason = base::Reason::WorldExists};
-    if (is_full())
+        }
+    }
+    if (is_full()) {
         return refusal(RefusalCode::ResourceExhausted,
                        "there are " + std::to_string(worlds_max) + " worlds already: delete one first",
                        base::Reason::WorldsMax);
+    }
     return std::nullopt;
 }
 
@@ -219,8 +245,9 @@ bool Laboratory::is_full() const {
 }
 
 Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
-    if (auto refused = refusal_of(command.name))
+    if (auto refused = refusal_of(command.name)) {
         return *refused;
+    }
     auto entry = std::make_unique<Entry>(
         Entry{command.name, command.run_id, RunControl{},
               World{command.parameters, command.seed, command.first_population, command.schedule}});
@@ -230,10 +257,12 @@ Result<Applied> Laboratory::carry_out(const CreateWorld& command) {
 Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
     const auto found =
         std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) { return entry->name == command.world; });
-    if (found == entries_.end())
+    if (found == entries_.end()) {
         return not_found(command.world);
-    if (auto refused = refusal_if_recorded(**found, command))
+    }
+    if (auto refused = refusal_if_recorded(**found, command)) {
         return *refused;
+    }
     const Applied applied{.world = command.world, .tick = (*found)->world.moment().tick, .parameters = {}};
     entries_.erase(found);
     return applied;
@@ -241,19 +270,21 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
     const Result<Parameters> beginning = entry.world.beginning();
-    if (!beginning)
+    if (!beginning) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "the run cannot begin with what its schedule has in generation 1 and the parameters "
                                   "asked for: change those that are not scheduled, or create another world",
                        .violations = beginning.error().violations,
                        .reason = base::Reason::ResetImpossible};
-    if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty())
+    }
+    if (auto faults = faults_of(entry.world.first_population(), *beginning, "population"); !faults.empty()) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message =
                            "the world was given its first population, with which a run with the parameters asked "
                            "for cannot begin: change them back, or create another world",
                        .violations = std::move(faults),
                        .reason = base::Reason::ResetImpossible};
+    }
     Applied applied = applied_now(entry);
     entry.world.reset(command.seed.value_or(entry.world.seed()));
     entry.run_id = command.run_id;
@@ -265,8 +296,9 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
-    if (auto refused = refusal_if_terminated(entry.world))
+    if (auto refused = refusal_if_terminated(entry.world)) {
         return *refused;
+    }
     entry.control.endless = !command.generations;
     entry.control.until_generation.reset();
     if (command.generations) {
@@ -280,26 +312,32 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Run& command) {
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const RunUntilTick& command) {
     const std::uint64_t now = entry.world.moment().tick;
-    if (command.tick > now)
-        if (auto refused = refusal_if_terminated(entry.world))
+    if (command.tick > now) {
+        if (auto refused = refusal_if_terminated(entry.world)) {
             return *refused;
+        }
+    }
     // One that shows the past belongs to who opened it.
     entry.control.leased |= has_goal(entry.control) && !entry.control.paused && !entry.replay;
-    if (entry.control.leased)
+    if (entry.control.leased) {
         ++entry.control.lease;
+    }
     entry.control.paused = true;
     entry.control.until_tick.reset();
-    if (command.tick > now)
+    if (command.tick > now) {
         entry.control.until_tick = command.tick;
+    }
     return applied_now(entry);
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ReleaseLease& command) {
-    if (command.lease && *command.lease != entry.control.lease)
+    if (command.lease && *command.lease != entry.control.lease) {
         return refusal(RefusalCode::FailedPrecondition, "the world has been stepped since, and has another lease",
                        base::Reason::NoLease);
-    if (entry.control.leased)
+    }
+    if (entry.control.leased) {
         go_on(entry.control);
+    }
     return applied_now(entry);
 }
 
@@ -311,12 +349,14 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const Pause&) {
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const Resume&) {
-    if (auto refused = refusal_if_terminated(entry.world))
+    if (auto refused = refusal_if_terminated(entry.world)) {
         return *refused;
-    if (!has_goal(entry.control))
+    }
+    if (!has_goal(entry.control)) {
         return refusal(RefusalCode::FailedPrecondition,
                        "there is nothing to resume: tell the world how far to run with start or run",
                        base::Reason::NothingToResume);
+    }
     go_on(entry.control);
     return applied_now(entry);
 }
@@ -328,33 +368,39 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetSpeed& command) {
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command) {
     World& world = entry.world;
-    if (command.expected_revision && *command.expected_revision != world.parameters().revision)
+    if (command.expected_revision && *command.expected_revision != world.parameters().revision) {
         return Refusal{.code = RefusalCode::Aborted,
                        .message = "the parameters have been changed by someone else since: read them again, and set "
                                   "them with their new revision",
                        .violations = {{"set_parameters.expected_revision", std::to_string(world.parameters().revision),
                                        std::to_string(*command.expected_revision)}},
                        .reason = base::Reason::RevisionChanged};
-    if (command.at)
-        if (auto refused = refusal_of_plan(world, command))
+    }
+    if (command.at) {
+        if (auto refused = refusal_of_plan(world, command)) {
             return *refused;
+        }
+    }
     const bool at_generation = command.at && command.at->generation;
     const Result<Parameters> requested = (at_generation ? request_at_generation : request_of)(
         world.parameters(), command.assignments, "set_parameters.");
-    if (!requested)
+    if (!requested) {
         return requested.error();
+    }
     if (command.at) {
         PlannedChange change{.id = 0, .at = *command.at, .assignments = command.assignments, .by = command.by};
-        if (!command.dry_run)
+        if (!command.dry_run) {
             change.id = world.plan(change);
+        }
         Applied planned = applied_now(entry);
         planned.planned = std::move(change);
         return planned;
     }
     Applied applied = applied_now(entry);
     applied.parameters = after_request(world.parameters(), *requested);
-    if (!command.dry_run)
+    if (!command.dry_run) {
         world.request_parameters(*requested);
+    }
     return applied;
 }
 
@@ -362,27 +408,30 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const CancelChange& command)
     const std::string there_are = ids_of(entry.world.planned());
     Applied applied = applied_now(entry);
     applied.planned = entry.world.cancel(command.id);
-    if (!applied.planned)
+    if (!applied.planned) {
         return Refusal{.code = RefusalCode::NotFound,
                        .message = "no change waits under that id: it was made, dropped or cancelled, or never planned",
                        .violations = {{"cancel_change.id", there_are, std::to_string(command.id)}},
                        .reason = base::Reason::PlannedChangeNotFound};
+    }
     return applied;
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ForkWorld& command) {
-    if (command.at_generation)
+    if (command.at_generation) {
         return refusal(RefusalCode::FailedPrecondition,
                        "how a generation began is known to the file of a run only, "
                        "and there is none: fork the world as it is now, or "
                        "start the server without --keep-nothing",
                        base::Reason::RunsNotKept);
+    }
     return fork(command, entry.world);
 }
 
 Result<Applied> Laboratory::fork(const ForkWorld& command, World world) {
-    if (auto refused = refusal_of(command.name))
+    if (auto refused = refusal_of(command.name)) {
         return *refused;
+    }
     (void)world.take_events(); // were told of its origin
     world.become_fork();
     return add(std::make_unique<Entry>(Entry{command.name, command.run_id, RunControl{}, std::move(world)}));
@@ -397,9 +446,11 @@ Applied Laboratory::add(std::unique_ptr<Entry> entry) {
 
 void Laboratory::set_storage(const Storage& storage) {
     storage_ = storage;
-    for (const auto& entry : entries_)
-        if (!entry->replay)
+    for (const auto& entry : entries_) {
+        if (!entry->replay) {
             entry->storage = storage;
+        }
+    }
 }
 
 } // namespace evod::simulation

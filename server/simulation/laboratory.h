@@ -29,7 +29,7 @@ struct RunControl {
     std::optional<std::uint64_t> until_generation; // run until this many generations have ended
     std::optional<std::uint64_t> until_tick;       // step: run until this tick, then be paused
     bool paused = false;
-    bool leased = false; // paused, or stepping, only until the lease is over
+    bool leased = false;     // paused, or stepping, only until the lease is over
     std::uint64_t lease = 0; // number of the last one since the server started
     Speed speed = 1.0;
 };
@@ -67,9 +67,9 @@ struct Entry {
     World world;
     // Measured by whoever drives the laboratory; no part of the state.
     double ticks_per_s = 0;
-    bool slowed = false;                               // its speed is more than the machine can do
-    std::optional<Replay> replay = std::nullopt; // nothing: the world lives. What happens in others is past
-    std::optional<Storage> storage = std::nullopt;     // nothing: what it does is not written down
+    bool slowed = false;                           // its speed is more than the machine can do
+    std::optional<Replay> replay = std::nullopt;   // nothing: the world lives. What happens in others is past
+    std::optional<Storage> storage = std::nullopt; // nothing: what it does is not written down
 
     /// Whether it shows the past of another: such worlds are there for those who ask for them by name.
     bool is_look_back() const { return replay && !replay->replay_of.empty(); }

@@ -12,8 +12,9 @@ namespace {
 using namespace evod::base; // lanes
 
 void append(FoundIndices& found, std::size_t begin, unsigned bits) {
-    for (; bits != 0; bits &= bits - 1)
+    for (; bits != 0; bits &= bits - 1) {
         found.indices[found.count++] = static_cast<std::uint32_t>(begin) + static_cast<unsigned>(__builtin_ctz(bits));
+    }
 }
 
 /// to − from, px; see physics::distance_px.
@@ -22,9 +23,11 @@ Floats distances(Integers from, Integers to) {
 }
 
 void find_stale(const float* others, std::size_t begin, std::size_t end, FoundIndices& stale) {
-    for (std::size_t i = begin; i < end; i += lanes)
-        if (const unsigned bits = bits_of(load<Floats>(others + i) < 0.0f); bits != 0)
+    for (std::size_t i = begin; i < end; i += lanes) {
+        if (const unsigned bits = bits_of(load<Floats>(others + i) < 0.0f); bits != 0) {
             append(stale, i, bits);
+        }
+    }
 }
 
 void prefetch_view_ahead(std::size_t i, const ViewColumns& view) {
@@ -77,10 +80,11 @@ inline void choose_each(const OrganismColumns& columns, std::size_t begin, std::
         const Directions random = directions(words.first);
         store(force_x + (i - begin), straight ? way_x * share : random.x * size);
         store(force_y + (i - begin), straight ? way_y * share : random.y * size);
-        if constexpr (foretold)
+        if constexpr (foretold) {
             store(choices + (i - begin), flees       ? all_lanes(static_cast<std::int32_t>(Choice::Flee))
                                          : sees_food ? all_lanes(static_cast<std::int32_t>(Choice::Seek))
                                                      : all_lanes(static_cast<std::int32_t>(Choice::Wander)));
+        }
     }
 }
 
@@ -118,10 +122,12 @@ void follow(const OrganismColumns& columns, std::size_t begin, std::size_t end, 
         store(columns.seen_x + i, x);
         store(columns.seen_y + i, y);
         const Floats body_radius = load<Floats>(columns.body_radius + i);
-        if (const unsigned bits = bits_of(follow_view(columns.food, i, x, y, way, body_radius)); bits != 0)
+        if (const unsigned bits = bits_of(follow_view(columns.food, i, x, y, way, body_radius)); bits != 0) {
             append(at_food, i, bits);
-        if (const unsigned bits = bits_of(follow_view(columns.poison, i, x, y, way, body_radius)); bits != 0)
+        }
+        if (const unsigned bits = bits_of(follow_view(columns.poison, i, x, y, way, body_radius)); bits != 0) {
             append(at_poison, i, bits);
+        }
     }
 }
 
@@ -134,8 +140,9 @@ HashWords hash(const OrganismColumns& columns, std::uint32_t kind, std::size_t b
         const Integers there = health >= -__FLT_MAX__;
         sums.add(load<Words>(columns.id + i) + kind_key, load<Words>(columns.x + i), load<Words>(columns.y + i),
                  load<Words>(columns.velocity_x + i), load<Words>(columns.velocity_y + i), (Words)health, there);
-        if (const unsigned bits = bits_of(there & (health <= 0.0f)); bits != 0)
+        if (const unsigned bits = bits_of(there & (health <= 0.0f)); bits != 0) {
             append(dying, i, bits);
+        }
     }
     return {sum_of(sums.low), sum_of(sums.high)};
 }

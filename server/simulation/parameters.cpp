@@ -52,43 +52,50 @@ std::optional<base::Violation> set_value(const ParameterDescription& description
     const bool done =
         std::visit(Overloaded{[&](const RealParameter& real) {
                                   double number;
-                                  if (const auto* given = std::get_if<double>(&value))
+                                  if (const auto* given = std::get_if<double>(&value)) {
                                       number = *given;
-                                  else if (const auto* whole = std::get_if<std::uint32_t>(&value))
+                                  } else if (const auto* whole = std::get_if<std::uint32_t>(&value)) {
                                       number = *whole;
-                                  else
+                                  } else {
                                       return false;
-                                  if (!(number >= real.range.min && number <= real.range.max)) // a NaN is in no range
+                                  }
+                                  if (!(number >= real.range.min && number <= real.range.max)) { // a NaN is in no range
                                       return false;
+                                  }
                                   real.set(parameters, number);
                                   return true;
                               },
                               [&](const CountParameter& count) {
                                   const auto* given = std::get_if<std::uint32_t>(&value);
-                                  if (given == nullptr || *given < count.range.min || *given > count.range.max)
+                                  if (given == nullptr || *given < count.range.min || *given > count.range.max) {
                                       return false;
+                                  }
                                   count.set(parameters, *given);
                                   return true;
                               },
                               [&](const FlagParameter& flag) {
                                   const auto* given = std::get_if<bool>(&value);
-                                  if (given != nullptr)
+                                  if (given != nullptr) {
                                       flag.set(parameters, *given);
+                                  }
                                   return given != nullptr;
                               },
                               [&](const ChoiceParameter& choice) {
                                   const auto* given = std::get_if<std::string>(&value);
-                                  if (given == nullptr)
+                                  if (given == nullptr) {
                                       return false;
+                                  }
                                   const auto found = std::find(choice.names.begin(), choice.names.end(), *given);
-                                  if (found == choice.names.end())
+                                  if (found == choice.names.end()) {
                                       return false;
+                                  }
                                   choice.set(parameters, static_cast<std::size_t>(found - choice.names.begin()));
                                   return true;
                               }},
                    description.kind);
-    if (done)
+    if (done) {
         return std::nullopt;
+    }
     return base::Violation{std::move(field), description.allowed(), to_text(value)};
 }
 
@@ -117,10 +124,12 @@ double covered_share(const Parameters& p, const IslandPlan& plan) {
     };
     const auto around_obstacles = [&](double half_size) { return p.obstacle_count * square(obstacle + 2 * half_size); };
     double share = share_of_room(around_obstacles(p.item_radius_px), p.item_radius_px);
-    if (p.obstacle_count > 0)
+    if (p.obstacle_count > 0) {
         share = std::max(share, share_of_room(0, obstacle / 2));
-    if (p.crate_count > 0)
+    }
+    if (p.crate_count > 0) {
         share = std::max(share, share_of_room(p.crate_count * square(crate) + around_obstacles(crate / 2), crate / 2));
+    }
     return std::max(share, share_of_room(p.population_size * base::pi * square(radius) +
                                              p.crate_count * square(crate + 2 * radius) + around_obstacles(radius),
                                          radius));
@@ -150,8 +159,9 @@ std::string ParameterDescription::allowed() const {
                    [](const FlagParameter&) { return std::string{"true or false"}; },
                    [](const ChoiceParameter& p) {
                        std::string names;
-                       for (const std::string_view choice : p.names)
+                       for (const std::string_view choice : p.names) {
                            names += (names.empty() ? "" : ", ") + std::string{choice};
+                       }
                        return names;
                    }},
         kind);
@@ -181,13 +191,15 @@ std::vector<std::string_view> similar_parameter_names(std::string_view name) {
     for (const ParameterDescription& description : parameter_registry()) {
         const std::size_t distance = edit_distance(name, description.name);
         const bool part = name.size() >= 3 && description.name.find(name) != std::string_view::npos;
-        if (part || distance <= 1 + description.name.size() / 4)
+        if (part || distance <= 1 + description.name.size() / 4) {
             near.emplace_back(part ? 0 : distance, description.name);
+        }
     }
     std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<std::string_view> names;
-    for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 3); ++i)
+    for (std::size_t i = 0; i < std::min<std::size_t>(near.size(), 3); ++i) {
         names.push_back(near[i].second);
+    }
     return names;
 }
 
@@ -197,11 +209,13 @@ namespace {
 std::optional<base::Violation> assign_one(const Assignment& assignment, std::string_view field_prefix,
                                           Parameters& parameters) {
     std::string field = std::string{field_prefix} + assignment.name;
-    if (const ParameterDescription* description = find_parameter(assignment.name))
+    if (const ParameterDescription* description = find_parameter(assignment.name)) {
         return set_value(*description, assignment.value, parameters, std::move(field));
+    }
     std::string allowed = "a parameter of the registry";
-    for (const std::string_view name : similar_parameter_names(assignment.name))
+    for (const std::string_view name : similar_parameter_names(assignment.name)) {
         allowed += (allowed.back() == 'y' ? "; did you mean " : ", ") + std::string{name};
+    }
     return base::Violation{std::move(field), std::move(allowed), "an unknown name"};
 }
 
@@ -227,16 +241,19 @@ base::Result<Parameters> assign(Parameters parameters, std::span<const Assignmen
     }
     std::vector<std::string_view> seen;
     for (const Assignment& assignment : assignments) {
-        if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end())
+        if (std::find(seen.begin(), seen.end(), assignment.name) != seen.end()) {
             refusal.violations.push_back({std::string{field_prefix} + assignment.name, "given once", "given twice"});
-        else if (auto violation = assign_one(assignment, field_prefix, parameters))
+        } else if (auto violation = assign_one(assignment, field_prefix, parameters)) {
             refusal.violations.push_back(std::move(*violation));
+        }
         seen.push_back(assignment.name);
     }
-    if (refusal.violations.empty())
+    if (refusal.violations.empty()) {
         refusal.violations = validate(parameters, field_prefix);
-    if (!refusal.violations.empty())
+    }
+    if (!refusal.violations.empty()) {
         return refusal;
+    }
     return parameters;
 }
 
@@ -250,26 +267,30 @@ base::Result<ParameterValue> parse_value(const ParameterDescription& description
     return std::visit(Overloaded{[&](const RealParameter&) -> base::Result<ParameterValue> {
                                      double value;
                                      const auto read = std::from_chars(text.data(), end, value);
-                                     if (read.ec != std::errc{} || read.ptr != end)
+                                     if (read.ec != std::errc{} || read.ptr != end) {
                                          return refused();
+                                     }
                                      return ParameterValue{value};
                                  },
                                  [&](const CountParameter&) -> base::Result<ParameterValue> {
                                      std::uint32_t value;
                                      const auto read = std::from_chars(text.data(), end, value);
-                                     if (read.ec != std::errc{} || read.ptr != end)
+                                     if (read.ec != std::errc{} || read.ptr != end) {
                                          return refused();
+                                     }
                                      return ParameterValue{value};
                                  },
                                  [&](const FlagParameter&) -> base::Result<ParameterValue> {
-                                     if (text != "true" && text != "false")
+                                     if (text != "true" && text != "false") {
                                          return refused();
+                                     }
                                      return ParameterValue{text == "true"};
                                  },
                                  [&](const ChoiceParameter& choice) -> base::Result<ParameterValue> {
                                      if (std::find(choice.names.begin(), choice.names.end(), text) ==
-                                         choice.names.end())
+                                         choice.names.end()) {
                                          return refused();
+                                     }
                                      return ParameterValue{std::string{text}};
                                  }},
                       description.kind);
@@ -294,8 +315,9 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
         violations.push_back({std::string{field_prefix} + std::string{field}, std::move(allowed), std::move(got)});
     };
     const auto require_order = [&](std::string_view greater, double max, std::string_view lesser, double min) {
-        if (min > max)
+        if (min > max) {
             refuse(greater, "at least " + std::string{lesser} + " (" + number_text(min) + ")", number_text(max));
+        }
     };
     require_order("initial_gene_max", p.initial_gene_max, "initial_gene_min", p.initial_gene_min);
     require_order("normal_speed_max", p.normal_speed_max, "normal_speed_min", p.normal_speed_min);
@@ -305,49 +327,62 @@ std::vector<base::Violation> validate(const Parameters& p, std::string_view fiel
     require_order("food_radius_max", p.food_radius_max, "food_radius_min", p.food_radius_min);
     require_order("poison_radius_max", p.poison_radius_max, "poison_radius_min", p.poison_radius_min);
     require_order("tournament_size", p.tournament_size, "tournament_winners", p.tournament_winners);
-    if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement)
+    if (p.selection == evolution::SelectionMethod::Tournament && !p.tournament_replacement) {
         require_order("population_size", p.population_size, "tournament_size", p.tournament_size);
+    }
 
     // What a server with a few gigabytes can hold; a parameter alone says nothing of the islands' number.
     const double organisms = static_cast<double>(p.island_count) * p.population_size;
-    if (organisms > 4e6)
+    if (organisms > 4e6) {
         refuse("island_count", "so many that all islands together have at most 4000000 organisms",
                std::to_string(p.island_count) + ", with " + number_text(organisms));
+    }
 
-    if (p.fitness != FitnessFunction::Life)
+    if (p.fitness != FitnessFunction::Life) {
         return violations;
+    }
     require_order("generation_s", p.generation_s, "tick_s", p.tick_s);
-    if (p.generation_s / p.tick_s > 1e9)
+    if (p.generation_s / p.tick_s > 1e9) {
         refuse("generation_s", "at most 1e9 ticks of tick_s", number_text(p.generation_s));
-    if (p.max_speed_px_s * p.tick_s > 5000)
+    }
+    if (p.max_speed_px_s * p.tick_s > 5000) {
         refuse("max_speed_px_s", "at most 5000 px in a tick of tick_s", number_text(p.max_speed_px_s));
+    }
     const IslandPlan plan = island_plan(p);
     const std::string scaled = p.scale_with_population ? " as scaled with the population" : "";
-    if (plan.width_px > 500'000)
+    if (plan.width_px > 500'000) {
         refuse("island_width_px", "at most 500000" + scaled, number_text(plan.width_px));
-    if (plan.height_px > 500'000)
+    }
+    if (plan.height_px > 500'000) {
         refuse("island_height_px", "at most 500000" + scaled, number_text(plan.height_px));
-    if (plan.food_count > 20'000'000)
+    }
+    if (plan.food_count > 20'000'000) {
         refuse("food_count", "at most 20000000" + scaled, std::to_string(plan.food_count));
-    if (plan.poison_count > 20'000'000)
+    }
+    if (plan.poison_count > 20'000'000) {
         refuse("poison_count", "at most 20000000" + scaled, std::to_string(plan.poison_count));
+    }
     const double items =
         static_cast<double>(p.island_count) * (static_cast<double>(plan.food_count) + plan.poison_count);
-    if (items > 4e7)
+    if (items > 4e7) {
         refuse("island_count", "so many that all islands together have at most 40000000 items",
                std::to_string(p.island_count) + ", with " + number_text(items));
-    if (const double share = covered_share(p, plan); share > 0.4)
+    }
+    if (const double share = covered_share(p, plan); share > 0.4) {
         refuse("population_size",
                "so many that organisms of body_size_max, crates and obstacles cover at most 0.4 of an island",
                std::to_string(p.population_size) + ", covering " + number_text(std::round(share * 1000) / 1000));
+    }
     return violations;
 }
 
 Parameters taking_effect(const Parameters& active, const Parameters& requested, base::Effect reached) {
     Parameters result = active;
-    for (const ParameterDescription& description : parameter_registry())
-        if (description.effect <= reached)
+    for (const ParameterDescription& description : parameter_registry()) {
+        if (description.effect <= reached) {
             description.copy(requested, result);
+        }
+    }
     return result;
 }
 
@@ -359,9 +394,11 @@ ParameterSet after_request(const ParameterSet& set, const Parameters& requested)
 
 std::vector<const ParameterDescription*> parameters_that_differ(const Parameters& a, const Parameters& b) {
     std::vector<const ParameterDescription*> differing;
-    for (const ParameterDescription& description : parameter_registry())
-        if (description.get(a) != description.get(b))
+    for (const ParameterDescription& description : parameter_registry()) {
+        if (description.get(a) != description.get(b)) {
             differing.push_back(&description);
+        }
+    }
     return differing;
 }
 

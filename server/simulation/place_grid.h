@@ -64,22 +64,28 @@ class PlaceGrid {
     bool any_near(Place place, physics::Coordinate reach, const Condition& condition) const {
         const Window window = window_of(place, reach);
         const std::size_t own = std::size_t{rows_.at(place.y)} * columns_.count + columns_.at(place.x);
-        if (any_in(own, condition))
+        if (any_in(own, condition)) {
             return true;
-        for (std::uint32_t row = window.top; row <= window.bottom; ++row)
-            for (std::uint32_t column = window.left; column <= window.right; ++column)
+        }
+        for (std::uint32_t row = window.top; row <= window.bottom; ++row) {
+            for (std::uint32_t column = window.left; column <= window.right; ++column) {
                 if (const std::size_t cell = std::size_t{row} * columns_.count + column;
-                    cell != own && any_in(cell, condition))
+                    cell != own && any_in(cell, condition)) {
                     return true;
+                }
+            }
+        }
         return false;
     }
 
     /// Has the cells fetched that any_near would ask.
     void prefetch(Place place, physics::Coordinate reach) const {
         const Window window = window_of(place, reach);
-        for (std::uint32_t row = window.top; row <= window.bottom; ++row)
-            for (std::uint32_t column = window.left; column <= window.right; ++column)
+        for (std::uint32_t row = window.top; row <= window.bottom; ++row) {
+            for (std::uint32_t column = window.left; column <= window.right; ++column) {
                 __builtin_prefetch(&cells_[std::size_t{row} * columns_.count + column]);
+            }
+        }
     }
 
   private:
@@ -121,10 +127,12 @@ class PlaceGrid {
     bool any_in(std::size_t cell, const Condition& condition) const {
         do {
             bool found = false;
-            for (const Thing& thing : cells_[cell].things)
+            for (const Thing& thing : cells_[cell].things) {
                 found |= condition(thing.place, thing.what);
-            if (found)
+            }
+            if (found) {
                 return true;
+            }
             cell = cells_[cell].next;
         } while (cell != 0);
         return false;

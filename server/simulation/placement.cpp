@@ -73,8 +73,9 @@ struct Attempts {
 } // namespace
 
 BoxGrid::BoxGrid(const physics::Area& area, const Boxes& boxes) : BoxGrid{area, boxes.size()} {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
         add({boxes.x[i], boxes.y[i]}, boxes.half_width[i], boxes.half_height[i]);
+    }
 }
 
 void BoxGrid::add(Place place, float half_width_px, float half_height_px) {
@@ -102,8 +103,9 @@ Place random_place(base::RandomStream& random, const physics::Area& area, float 
     const Coordinate margin = physics::to_units(radius_px);
     for (int attempt = 0; attempt < tries_max; ++attempt) {
         const Place place = uniform_place(random, margin, area);
-        if (boxes.clear_of_circle(place, radius_px))
+        if (boxes.clear_of_circle(place, radius_px)) {
             return place;
+        }
     }
     EVOD_ASSERT(false && "room for an item");
 }
@@ -159,8 +161,9 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
         executor.parallel_for(batch, circles_per_piece, [&](base::Range piece) {
             std::vector<std::size_t> looking(piece.end - piece.begin);
             std::iota(looking.begin(), looking.end(), piece.begin);
-            for (const std::size_t i : looking)
+            for (const std::size_t i : looking) {
                 attempts[i] = {{key, static_cast<std::uint32_t>(first + i)}};
+            }
             for (int round = 0; !looking.empty(); ++round) {
                 EVOD_ASSERT(round < tries_max && "room for an organism");
                 for (const std::size_t i : looking) {
@@ -173,8 +176,9 @@ std::vector<Place> place_circles(const std::vector<float>& radius_px, base::Seed
         // Those of the batch that stand in a later one's way are all that is left to mind.
         for (std::size_t i = 0; i < batch; ++i) {
             const std::size_t id = first + i;
-            if (i + prefetched_ahead < batch)
+            if (i + prefetched_ahead < batch) {
                 placed.prefetch(attempts[i + prefetched_ahead].last, radius_px[id + prefetched_ahead]);
+            }
             for (int tries = 0; !succeeds(attempts[i], id); ++tries) {
                 EVOD_ASSERT(tries < tries_max && "room for an organism");
                 make_attempt(attempts[i], id);

@@ -18,8 +18,9 @@ bool Schedule::holds(std::string_view name) const {
 
 std::size_t Schedule::value_count() const {
     std::size_t count = 0;
-    for (const auto& [generation, assignments] : changes_)
+    for (const auto& [generation, assignments] : changes_) {
         count += generation > 1 ? assignments.size() : 0;
+    }
     return count;
 }
 
@@ -27,8 +28,9 @@ void Schedule::add(std::uint64_t generation, const Assignment& assignment) {
     const ParameterDescription* description = find_parameter(assignment.name);
     Assignment added = assignment;
     if (const auto* whole = std::get_if<std::uint32_t>(&assignment.value);
-        whole != nullptr && std::holds_alternative<RealParameter>(description->kind))
+        whole != nullptr && std::holds_alternative<RealParameter>(description->kind)) {
         added.value = static_cast<double>(*whole);
+    }
     auto& there = changes_[generation];
     const auto place = std::ranges::find_if(
         there, [&](const Assignment& other) { return find_parameter(other.name) > description; }); // of one array
@@ -44,19 +46,24 @@ void Schedule::remove(std::string_view name) {
 
 void Schedule::begin_with(const Parameters& parameters) {
     std::set<std::string> names;
-    for (const auto& [generation, assignments] : changes_)
-        for (const Assignment& assignment : assignments)
+    for (const auto& [generation, assignments] : changes_) {
+        for (const Assignment& assignment : assignments) {
             names.insert(assignment.name);
+        }
+    }
     changes_.erase(1);
-    for (const std::string& name : names)
+    for (const std::string& name : names) {
         add(1, {name, find_parameter(name)->get(parameters)});
+    }
 }
 
 Parameters breeding_with(const Parameters& active, const Parameters& requested) {
     Parameters result = active;
-    for (const ParameterDescription& description : parameter_registry())
-        if (description.effect == base::Effect::NextGeneration)
+    for (const ParameterDescription& description : parameter_registry()) {
+        if (description.effect == base::Effect::NextGeneration) {
             description.copy(requested, result);
+        }
+    }
     return result;
 }
 
@@ -73,23 +80,27 @@ base::Refusal refused(std::vector<base::Violation> violations) {
 base::Result<Parameters> request_of(const ParameterSet& set, std::span<const Assignment> assignments,
                                     std::string_view field_prefix) {
     const base::Result<Parameters> requested = assign(set.requested, assignments, field_prefix);
-    if (!requested)
+    if (!requested) {
         return requested;
+    }
     // What waits for a reset may wait for ever, so the rest must go together without it.
     const Parameters next = taking_effect(set.active, *requested, base::Effect::NextGeneration);
-    if (auto violations = validate(next, field_prefix); !violations.empty())
+    if (auto violations = validate(next, field_prefix); !violations.empty()) {
         return refused(std::move(violations));
+    }
     return requested;
 }
 
 base::Result<Parameters> request_at_generation(const ParameterSet& set, std::span<const Assignment> assignments,
                                                std::string_view field_prefix) {
     const base::Result<Parameters> requested = request_of(set, assignments, field_prefix);
-    if (!requested)
+    if (!requested) {
         return requested;
+    }
     if (auto violations = validate(breeding_with(set.active, *requested), field_prefix); !violations.empty()) {
-        for (base::Violation& violation : violations)
+        for (base::Violation& violation : violations) {
             violation.allowed += ", by what breeding still goes by then";
+        }
         return refused(std::move(violations));
     }
     return requested;
@@ -101,8 +112,9 @@ std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters&
     for (const auto& [generation, assignments] : schedule.changes()) {
         const auto requested = request_at_generation(set, assignments);
         if (!requested) {
-            for (const base::Violation& violation : requested.error().violations)
+            for (const base::Violation& violation : requested.error().violations) {
                 faults.push_back({generation, violation});
+            }
             return faults;
         }
         set.active = set.requested = *requested;

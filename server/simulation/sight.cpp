@@ -54,9 +54,10 @@ void Sight::begin(View& view, const Circles& bodies, const base::Column<float>& 
     view.x.assign(bodies.x.size(), far_from_void);
     view.y.assign(bodies.x.size(), far_from_void);
     view.look_radius_max = 0;
-    for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
         view.look_radius_max =
             std::max(view.look_radius_max, look_radius(radius[i], bodies.radius[i], items.radius_px()));
+    }
 }
 
 void Sight::look(const Circles& bodies, const Living& living, const Items& food, const Items& poison,
@@ -115,13 +116,16 @@ void Sight::notice(View& view, const Circles& bodies, const physics::NearPairs& 
     executor.parallel_for(changes.size(), changes_per_piece, [&](base::Range range) {
         for (std::size_t begin = range.begin; begin < range.end; begin += changes_per_piece) {
             const std::size_t count = std::min(changes_per_piece, range.end - begin);
-            if (notice(view, bodies, near, radius, {changes.data() + begin, count}, concerned_max) > concerned_max)
+            if (notice(view, bodies, near, radius, {changes.data() + begin, count}, concerned_max) > concerned_max) {
                 base::put<true>(too_many, 1u);
+            }
         }
     });
-    if (too_many != 0)
-        for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (too_many != 0) {
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
             view.others[i] = bodies.is_void(i) ? never : has_to_look;
+        }
+    }
     items.forget_changes();
 }
 
@@ -146,8 +150,9 @@ std::size_t Sight::notice(View& view, const Circles& bodies, const physics::Near
             __builtin_prefetch(order.data() + batch[k].places.begin);
         }
         for (std::size_t k = 0; k < count && concerned <= concerned_max; ++k) {
-            if (batch[k].places.begin == batch[k].places.end)
+            if (batch[k].places.begin == batch[k].places.end) {
                 continue;
+            }
             const auto& x = batch[k].change->came ? bodies.x : view.x;
             const auto& y = batch[k].change->came ? bodies.y : view.y;
             for (const std::size_t place : {batch[k].places.begin, batch[k].places.end - 1}) {
@@ -155,18 +160,22 @@ std::size_t Sight::notice(View& view, const Circles& bodies, const physics::Near
                 __builtin_prefetch(&y[order[place]]);
             }
         }
-        for (std::size_t k = 0; k < count && concerned <= concerned_max; ++k)
-            for (std::size_t place = batch[k].places.begin; place < batch[k].places.end; ++place)
+        for (std::size_t k = 0; k < count && concerned <= concerned_max; ++k) {
+            for (std::size_t place = batch[k].places.begin; place < batch[k].places.end; ++place) {
                 notice(view, bodies, radius, *batch[k].change, order[place]);
+            }
+        }
         count = 0;
     };
-    for (const Items::Change& change : changes)
+    for (const Items::Change& change : changes) {
         near.for_each_stretch_near(change.x, change.y, view.look_radius_max, [&](physics::Strips::Stretch stretch) {
             near.strips().prefetch(stretch);
             batch[count++] = {&change, stretch};
-            if (count == batch_max)
+            if (count == batch_max) {
                 notice_batch();
+            }
         });
+    }
     notice_batch();
     return concerned;
 }
@@ -174,17 +183,20 @@ std::size_t Sight::notice(View& view, const Circles& bodies, const physics::Near
 void Sight::notice(View& view, const Circles& bodies, const base::Column<float>& radius, const Items::Change& change,
                    std::uint32_t i) {
     if (!change.came) {
-        if (view.x[i] == change.x && view.y[i] == change.y)
+        if (view.x[i] == change.x && view.y[i] == change.y) {
             base::fetch_min<true>(view.others[i], has_to_look);
+        }
         return;
     }
     const float dx = physics::distance_px(bodies.x[i], change.x), dy = physics::distance_px(bodies.y[i], change.y);
     const float square = dx * dx + dy * dy;
-    if (square > view.look_radius_max * view.look_radius_max)
+    if (square > view.look_radius_max * view.look_radius_max) {
         return;
+    }
     const float distance = safely_below(std::sqrt(square));
-    if (distance >= base::look_at(view.others[i]))
+    if (distance >= base::look_at(view.others[i])) {
         return;
+    }
     const float to_x = physics::distance_px(bodies.x[i], view.x[i]),
                 to_y = physics::distance_px(bodies.y[i], view.y[i]);
     const float known = std::min(to_x * to_x + to_y * to_y, radius[i] * radius[i]);

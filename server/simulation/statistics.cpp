@@ -19,15 +19,17 @@ struct Sums {
 
     Sums& operator+=(const Sums& other) {
         fitness += other.fitness;
-        for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+        for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
             genes[gene] += other.genes[gene];
+        }
         return *this;
     }
     Sums over(std::size_t count) const {
         const auto n = static_cast<double>(count);
         Sums means{.fitness = fitness / n, .genes = {}};
-        for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+        for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
             means.genes[gene] = genes[gene] / n;
+        }
         return means;
     }
 };
@@ -63,13 +65,15 @@ struct Population {
             for (std::size_t i = block.begin; i < block.end; ++i) {
                 sum.fitness += raised(fitness[i] - centre.fitness);
                 const float* chromosome = genes.data() + i * evolution::gene_count;
-                for (unsigned gene = 0; gene < evolution::gene_count; ++gene)
+                for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
                     sum.genes[gene] += raised(static_cast<double>(chromosome[gene]) - centre.genes[gene]);
+                }
             }
             return sum;
         });
-        for (const Sums& sum : blocks)
+        for (const Sums& sum : blocks) {
             total += sum;
+        }
         return total;
     }
 
@@ -80,8 +84,9 @@ struct Population {
             std::copy_n(first, evolution::gene_count, e.gene_min.begin());
             e.gene_max = e.gene_min;
             for (std::size_t i = block.begin; i < block.end; ++i, first += evolution::gene_count) {
-                if (fitness[i] > fitness[e.best_organism])
+                if (fitness[i] > fitness[e.best_organism]) {
                     e.best_organism = static_cast<std::uint32_t>(i);
+                }
                 e.worst = std::min(e.worst, fitness[i]);
                 for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
                     e.gene_min[gene] = std::min(e.gene_min[gene], first[gene]);
@@ -92,8 +97,9 @@ struct Population {
         });
         Extremes all = blocks.front();
         for (const Extremes& e : blocks) {
-            if (fitness[e.best_organism] > fitness[all.best_organism])
+            if (fitness[e.best_organism] > fitness[all.best_organism]) {
                 all.best_organism = e.best_organism; // the first of equals stays
+            }
             all.worst = std::min(all.worst, e.worst);
             for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
                 all.gene_min[gene] = std::min(all.gene_min[gene], e.gene_min[gene]);
@@ -108,8 +114,9 @@ double median(std::span<const double> values) {
     std::vector<double> sorted(values.begin(), values.end());
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
     std::nth_element(sorted.begin(), middle, sorted.end());
-    if (sorted.size() % 2 == 1)
+    if (sorted.size() % 2 == 1) {
         return *middle;
+    }
     return (*std::max_element(sorted.begin(), middle) + *middle) / 2;
 }
 
@@ -160,12 +167,13 @@ double mean_health(std::span<const float> health, std::uint32_t alive_count) {
     // apart, so that no health that can be reached overflows either sum.
     constexpr double parts = 1 << 16;
     std::int64_t whole = 0, rest = 0;
-    for (const float of_one : health)
+    for (const float of_one : health) {
         if (of_one != -std::numeric_limits<float>::infinity()) {
             const auto units = static_cast<std::int64_t>(of_one);
             whole += units;
             rest += std::llrint((static_cast<double>(of_one) - static_cast<double>(units)) * parts);
         }
+    }
     return alive_count == 0 ? 0 : (static_cast<double>(whole) + static_cast<double>(rest) / parts) / alive_count;
 }
 

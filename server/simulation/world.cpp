@@ -36,21 +36,25 @@ World::World(base::Seed seed, const Opening& opening, std::vector<evolution::Nex
     EVOD_ASSERT(moment_.generation_tick == 0);
     make_islands();
     begin_generation(std::move(born), executor);
-    if (moment_.generation > 1)
+    if (moment_.generation > 1) {
         founders_ = std::move(founders);
+    }
     EVOD_ASSERT(founders_.empty() || founders_.size() == islands_.size());
 }
 
 World World::at_its_opening(base::Executor& executor, bool with_what_was_asked_since) const {
     Opening opening = opening_;
-    if (with_what_was_asked_since && moment_.generation_tick == 0)
+    if (with_what_was_asked_since && moment_.generation_tick == 0) {
         opening.parameters = parameters_;
+    }
     std::vector<evolution::NextGeneration> born;
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         born.push_back(island.born());
+    }
     History before = history_;
-    while (!before.empty() && before.back().front().generation >= opening_.moment.generation)
+    while (!before.empty() && before.back().front().generation >= opening_.moment.generation) {
         before.pop_back();
+    }
     return {seed_, opening, std::move(born), std::move(before), executor, first_population_, founders_, schedule_};
 }
 
@@ -60,8 +64,9 @@ void World::become_fork() {
     const auto is_inherited = [&](const GenerationRows& rows) {
         return rows.front().generation + history_generations_inherited >= opening_.moment.generation;
     };
-    while (!history_.empty() && !is_inherited(history_.front()))
+    while (!history_.empty() && !is_inherited(history_.front())) {
         history_.pop_front();
+    }
 }
 
 base::Result<Parameters> World::beginning() const {
@@ -94,8 +99,9 @@ void World::begin_run() {
 
 void World::make_islands() {
     islands_.clear();
-    for (std::uint32_t island = 0; island < parameters_.active.island_count; ++island)
+    for (std::uint32_t island = 0; island < parameters_.active.island_count; ++island) {
         islands_.emplace_back(seed_, island);
+    }
 }
 
 void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor) {
@@ -103,8 +109,9 @@ void World::begin_generation(std::vector<evolution::NextGeneration> bred, base::
     fitness_.clear();
     find_founders(bred);
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
             islands_[i].begin_generation(parameters_.active, moment_.generation, std::move(bred[i]), executor);
+        }
     });
     update_hash();
 }
@@ -123,8 +130,9 @@ void World::find_founders(const std::vector<evolution::NextGeneration>& bred) {
     for (std::size_t i = 0; i < founders_.size(); ++i) {
         std::vector<std::uint32_t> of_bred;
         of_bred.reserve(bred[i].parents.size());
-        for (const evolution::Parents& parents : bred[i].parents)
+        for (const evolution::Parents& parents : bred[i].parents) {
             of_bred.push_back(founders_[i][parents.first]);
+        }
         founders_[i] = std::move(of_bred);
     }
 }
@@ -142,19 +150,22 @@ evolution::Outcome World::outcome() const {
 }
 
 std::vector<Intention> World::intentions(const Island& island, base::Range ids) const {
-    if (generation_over_)
+    if (generation_over_) {
         return std::vector<Intention>(ids.end - ids.begin);
+    }
     std::optional<Parameters> first; // as they are once the generation's first tick is taken
-    if (moment_.generation_tick == 0)
+    if (moment_.generation_tick == 0) {
         first = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+    }
     return island.intentions(first ? *first : parameters_.active,
                              static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
 }
 
 std::uint64_t World::alive_count() const {
     std::uint64_t alive = 0;
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         alive += island.alive_count();
+    }
     return alive;
 }
 
@@ -171,8 +182,9 @@ std::uint64_t World::plan_anew(PlannedChange change) {
 
 std::optional<PlannedChange> World::cancel(std::uint64_t id) {
     const auto found = std::ranges::find(planned_, id, &PlannedChange::id);
-    if (found == planned_.end())
+    if (found == planned_.end()) {
         return std::nullopt;
+    }
     PlannedChange cancelled = std::move(*found);
     planned_.erase(found);
     return cancelled;
@@ -187,31 +199,36 @@ void World::forget_what_was_due() {
 }
 
 void World::make_planned_for(std::uint64_t generation) {
-    if (const auto scheduled = schedule_.at(generation); !scheduled.empty())
+    if (const auto scheduled = schedule_.at(generation); !scheduled.empty()) {
         make_planned(scheduled, request_at_generation(parameters_, scheduled), 0, {});
+    }
     const auto is_due = [&](const PlannedChange& change) { return change.at.generation == generation; };
-    for (const PlannedChange& change : planned_)
-        if (is_due(change))
+    for (const PlannedChange& change : planned_) {
+        if (is_due(change)) {
             make_planned(change.assignments, request_at_generation(parameters_, change.assignments), change.id,
                          change.by);
+        }
+    }
     std::erase_if(planned_, is_due);
 }
 
 void World::make_planned_now() {
     const auto is_due = [&](const PlannedChange& change) { return change.at.tick == moment_.tick; };
-    for (const PlannedChange& change : planned_)
+    for (const PlannedChange& change : planned_) {
         if (is_due(change)) {
             make_planned(change.assignments, request_of(parameters_, change.assignments), change.id, change.by);
             parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
         }
+    }
     std::erase_if(planned_, is_due);
 }
 
 void World::make_planned(std::span<const Assignment> changes, const base::Result<Parameters>& requested,
                          std::uint64_t id, const std::string& by) {
     std::vector<std::string> names;
-    for (const Assignment& change : changes)
+    for (const Assignment& change : changes) {
         names.push_back(change.name);
+    }
     if (!requested) {
         events_.push_back(ChangeDropped{
             .planned = id, .by = by, .names = std::move(names), .violations = requested.error().violations});
@@ -224,8 +241,9 @@ void World::make_planned(std::span<const Assignment> changes, const base::Result
 }
 
 void World::turn_over(base::Executor& executor) {
-    if (!generation_over_)
+    if (!generation_over_) {
         return;
+    }
     make_planned_for(moment_.generation + 1);
     parameters_.active = breeding_with(parameters_.active, parameters_.requested);
     const Parameters& p = parameters_.active;
@@ -256,17 +274,21 @@ void World::turn_over(base::Executor& executor) {
 std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::GeneMatrix>& migrated) {
     const Parameters& p = parameters_.active;
     std::vector<const evolution::GeneMatrix*> genes;
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         genes.push_back(&island.born().genes);
-    if (!evolution::migration_due(moment_.generation, p))
+    }
+    if (!evolution::migration_due(moment_.generation, p)) {
         return genes;
+    }
     std::vector<std::span<const double>> fitness(fitness_.begin(), fitness_.end());
     const auto migrants = evolution::choose_migrants(fitness, p, seed_, moment_.generation);
-    if (migrants.empty())
+    if (migrants.empty()) {
         return genes;
+    }
     std::vector<evolution::IslandPopulation> populations;
-    for (const evolution::GeneMatrix* born : genes)
+    for (const evolution::GeneMatrix* born : genes) {
         migrated.push_back(*born);
+    }
     for (std::size_t i = 0; i < islands_.size(); ++i) {
         genes[i] = &migrated[i];
         populations.push_back({&migrated[i], fitness_[i]});
@@ -275,17 +297,20 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
     if (!founders_.empty()) {
         std::vector<std::uint32_t> of_migrants; // all leave before anybody arrives
         of_migrants.reserve(migrants.size());
-        for (const evolution::Migrant& migrant : migrants)
+        for (const evolution::Migrant& migrant : migrants) {
             of_migrants.push_back(founders_[migrant.from][migrant.organism]);
-        for (std::size_t i = 0; i < migrants.size(); ++i)
+        }
+        for (std::size_t i = 0; i < migrants.size(); ++i) {
             founders_[migrants[i].to][migrants[i].replaces] = of_migrants[i];
+        }
     }
 
     MigrationHappened happened{.generation = moment_.generation, .edges = {}};
     for (const evolution::Migrant& migrant : migrants) { // ordered by (to, from)
         auto& edges = happened.edges;
-        if (edges.empty() || edges.back().from != migrant.from || edges.back().to != migrant.to)
+        if (edges.empty() || edges.back().from != migrant.from || edges.back().to != migrant.to) {
             edges.push_back({migrant.from, migrant.to, 0});
+        }
         ++edges.back().migrant_count;
     }
     events_.push_back(std::move(happened));
@@ -295,8 +320,9 @@ std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::
 void World::advance_tick(base::Executor& executor) {
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     turn_over(executor);
-    if (moment_.generation_tick == 0)
+    if (moment_.generation_tick == 0) {
         parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+    }
     const Parameters& p = parameters_.active;
     ++moment_.tick;
     ++moment_.generation_tick;
@@ -313,36 +339,41 @@ void World::advance_tick(base::Executor& executor) {
     died_out_.assign(islands_.size(), 0);
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
         for (std::size_t i = range.begin; i < range.end; ++i) {
-            if (islands_[i].alive_count() == 0)
+            if (islands_[i].alive_count() == 0) {
                 continue; // an island that has died out waits
+            }
             islands_[i].advance_tick(p, tick, executor);
             died_out_[i] = islands_[i].alive_count() == 0;
         }
     });
     for (std::uint32_t i = 0; i < islands_.size(); ++i) {
         alive += islands_[i].alive_count();
-        if (died_out_[i])
+        if (died_out_[i]) {
             events_.push_back(Extinction{.island = i, .generation = moment_.generation});
+        }
     }
     update_hash();
-    if (ends(moment_.generation_tick, alive))
+    if (ends(moment_.generation_tick, alive)) {
         end_generation(executor);
+    }
     make_planned_now();
 }
 
 bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
     const Parameters& p = parameters_.active;
-    if (generation_tick == 0)
+    if (generation_tick == 0) {
         return false;
+    }
     // Half a tick of slack, so that 40 s are 2,400 sixtieths however they are rounded.
     return !has_bodies() || alive == 0 || static_cast<double>(generation_tick) + 0.5 > p.generation_s / p.tick_s;
 }
 
 void World::find_fitness(base::Executor& executor) {
     fitness_.clear();
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         fitness_.push_back(
             island.fitness(parameters_.active, static_cast<std::uint32_t>(moment_.generation_tick), executor));
+    }
 }
 
 void World::end_generation(base::Executor& executor) {
@@ -358,8 +389,9 @@ void World::end_generation(base::Executor& executor) {
     }
     close_generation(statistics);
     events_.push_back(GenerationFinished{std::move(statistics)});
-    if (const evolution::Outcome reached = outcome(); reached != evolution::Outcome::Running)
+    if (const evolution::Outcome reached = outcome(); reached != evolution::Outcome::Running) {
         events_.push_back(RunTerminated{reached});
+    }
 }
 
 void World::close_generation(const std::vector<GenerationStatistics>& statistics) {
@@ -367,26 +399,30 @@ void World::close_generation(const std::vector<GenerationStatistics>& statistics
     const double best = std::ranges::max(statistics, {}, &GenerationStatistics::fitness_best).fitness_best;
     progress_ = evolution::advance(progress_, {.best_fitness = best, .died_out = has_bodies() && alive_count() == 0});
     history_.push_back(statistics);
-    if (history_.size() > history_generations_kept_of(islands_.size()))
+    if (history_.size() > history_generations_kept_of(islands_.size())) {
         history_.pop_front();
+    }
 }
 
 WorldState World::state(base::Executor& executor) const {
     WorldState state{.moment = moment_, .parameters = parameters_, .islands = {}, .ended = {}};
     state.islands.resize(islands_.size());
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
             state.islands[i] = islands_[i].state(executor);
+        }
     });
-    if (generation_over_)
+    if (generation_over_) {
         state.ended = history_.back();
+    }
     return state;
 }
 
 std::vector<IslandShape> World::shapes() const {
     std::vector<IslandShape> shapes;
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         shapes.push_back(island.shape());
+    }
     return shapes;
 }
 
@@ -401,46 +437,57 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
     const ParameterSet& set = state.parameters;
     if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
         moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
-        moment.simulated_s < moment_.simulated_s)
+        moment.simulated_s < moment_.simulated_s) {
         return wrong("its moment");
+    }
     // What takes effect with a generation is as it was when this one began.
     if (!(taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
         !validate(set.active).empty() ||
-        !validate(taking_effect(set.active, set.requested, base::Effect::NextGeneration)).empty())
+        !validate(taking_effect(set.active, set.requested, base::Effect::NextGeneration)).empty()) {
         return wrong("its parameters");
-    if (state.islands.size() != islands_.size())
+    }
+    if (state.islands.size() != islands_.size()) {
         return wrong("the number of its islands");
+    }
     // No tick after the last.
-    if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1))
+    if (moment.generation_tick > 1 && ends(moment.generation_tick - 1, 1)) {
         return wrong("its moment");
+    }
     const auto tick = static_cast<std::uint32_t>(moment.generation_tick);
     std::uint64_t alive = 0;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
-        if (auto judged = islands_[i].judge(state.islands[i], tick); !judged)
+        if (auto judged = islands_[i].judge(state.islands[i], tick); !judged) {
             return judged;
-        if (tick == 0 && !(state.islands[i] == islands_[i].state(executor)))
+        }
+        if (tick == 0 && !(state.islands[i] == islands_[i].state(executor))) {
             return wrong("its beginning");
+        }
         alive += static_cast<std::uint64_t>(std::ranges::count(state.islands[i].fate.cause, CauseOfDeath::Alive));
     }
     const bool over = ends(tick, alive);
-    if (state.ended.size() != (over ? islands_.size() : 0))
+    if (state.ended.size() != (over ? islands_.size() : 0)) {
         return wrong("whether it is over");
-    for (std::size_t i = 0; i < state.ended.size(); ++i)
+    }
+    for (std::size_t i = 0; i < state.ended.size(); ++i) {
         if (state.ended[i].generation != moment.generation || state.ended[i].island != i ||
-            !std::isfinite(state.ended[i].fitness_best))
+            !std::isfinite(state.ended[i].fitness_best)) {
             return wrong("its statistics");
+        }
+    }
 
     executor.parallel_for(islands_.size(), 1, [&](base::Range range) {
-        for (std::size_t i = range.begin; i < range.end; ++i)
+        for (std::size_t i = range.begin; i < range.end; ++i) {
             islands_[i].restore(state.islands[i], tick, executor);
+        }
     });
     moment_ = moment;
     parameters_ = set;
     if (over) {
         find_fitness(executor);
         std::vector<GenerationStatistics> ended = state.ended;
-        for (std::size_t i = 0; i < ended.size(); ++i)
+        for (std::size_t i = 0; i < ended.size(); ++i) {
             ended[i].account = islands_[i].born().account; // follows from the beginning
+        }
         close_generation(ended);
     }
     update_hash();
@@ -450,8 +497,9 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
 void World::update_hash() {
     constexpr std::uint32_t world_kind = 100, island_kind = 101;
     hash_ = base::EntityHash{world_kind, seed_.value}.add(moment_.generation).add(moment_.generation_tick).finish();
-    for (const Island& island : islands_)
+    for (const Island& island : islands_) {
         hash_ += base::EntityHash{island_kind, island.index()}.add(island.hash().low).add(island.hash().high).finish();
+    }
 }
 
 } // namespace evod::simulation

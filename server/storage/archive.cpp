@@ -27,20 +27,22 @@ namespace {
 /// Whether a run's file has the end mark of one that is over.
 Result<bool> is_over(RunFile& file) {
     const auto mark = file.end_mark();
-    if (!mark)
+    if (!mark) {
         return mark.error();
+    }
     return *mark && (*mark)->ended;
 }
 
 /// Why there is no server with such a file, and what can be done.
 Refusal with_ways_out(Refusal why, const std::string& folder) {
     const std::string move = "move it, and its -wal if there is one, out of " + folder;
-    if (why.code == RefusalCode::DataLoss)
+    if (why.code == RefusalCode::DataLoss) {
         why.message += "; put a copy back, or " + move + " to start without its world";
-    else if (why.code == RefusalCode::FailedPrecondition)
+    } else if (why.code == RefusalCode::FailedPrecondition) {
         why.message += "; start the evod that made it, or " + move + " to start without its world";
-    else if (why.code == RefusalCode::InvalidArgument)
+    } else if (why.code == RefusalCode::InvalidArgument) {
         why.message += "; " + move;
+    }
     return why;
 }
 
@@ -51,23 +53,29 @@ Result<void> finish_replacing(const DataFolder& folder, const std::string& path)
     std::error_code error;
     if (std::filesystem::exists(path, error)) {
         auto old = RunFile::open_checked(path); // its end mark may be in the log
-        if (!old)
+        if (!old) {
             return old.error();
+        }
         const auto over = is_over(**old);
-        if (!over)
+        if (!over) {
             return over.error();
-        if (!*over)
+        }
+        if (!*over) {
             return RunFile::remove(next);
+        }
         const RunIdentity identity = (*old)->identity();
         old->reset();
-        if (auto moved = RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id)); !moved)
+        if (auto moved = RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id)); !moved) {
             return moved;
+        }
     } else {
         const auto unmade = RunFile::holds_nothing(next);
-        if (!unmade)
+        if (!unmade) {
             return unmade.error();
-        if (*unmade)
+        }
+        if (*unmade) {
             return RunFile::remove(next);
+        }
     }
     return RunFile::rename(next, path);
 }
@@ -77,27 +85,35 @@ Result<void> finish_replacing(const DataFolder& folder, const std::string& path)
 Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const RunFile::Options& options,
                                                base::Executor& executor) {
     auto folder = DataFolder::open(path);
-    if (!folder)
+    if (!folder) {
         return folder.error();
+    }
     auto files = folder->files();
-    for (const std::string& file : files ? files->replaced : std::vector<std::string>{})
-        if (auto finished = finish_replacing(*folder, file); !finished)
+    for (const std::string& file : files ? files->replaced : std::vector<std::string>{}) {
+        if (auto finished = finish_replacing(*folder, file); !finished) {
             return with_ways_out(finished.error(), path);
-    if (files && !files->replaced.empty())
+        }
+    }
+    if (files && !files->replaced.empty()) {
         files = folder->files();
-    if (!files)
+    }
+    if (!files) {
         return files.error();
-    for (const std::string& file : files->strange)
+    }
+    for (const std::string& file : files->strange) {
         log::warn("{} is left alone: a run file is called NAME.evod, and that is no name of a world", file);
+    }
     std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
 
     std::vector<std::string> ended = files->ended;
     for (const std::string& file : files->of_worlds) {
         const auto brought = archive->bring_back(file, options, executor);
-        if (!brought)
+        if (!brought) {
             return with_ways_out(brought.error(), path);
-        if (!brought->empty())
+        }
+        if (!brought->empty()) {
             ended.push_back(*brought);
+        }
     }
     archive->remember(ended);
     return archive;
@@ -118,19 +134,23 @@ void Archive::remember(const std::vector<std::string>& paths) {
     std::size_t bytes = 0;
     for (Ended& run : runs) {
         const auto file = RunFile::open_read_only(run.path);
-        if (!file)
+        if (!file) {
             continue; // no world depends on it; whoever opens it is told
+        }
         const std::uint64_t last = (*file)->last_journal_entry();
         const std::uint64_t count = std::min<std::uint64_t>(
             last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // that which ended it
-        if (auto entries = (*file)->journal(last + 1 - count))
+        if (auto entries = (*file)->journal(last + 1 - count)) {
             run.last = *std::move(entries);
-        for (const JournalEntry& entry : run.last)
+        }
+        for (const JournalEntry& entry : run.last) {
             bytes += entry.origin.request.size() + entry.answer.size();
+        }
     }
     std::vector<JournalEntry> answers;
-    for (auto run = runs.rbegin(); run != runs.rend(); ++run)
+    for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
         std::ranges::move(run->last, std::back_inserter(answers));
+    }
     std::ranges::move(answers_, std::back_inserter(answers));
     answers_ = std::move(answers);
 }
@@ -139,27 +159,32 @@ Result<std::string> Archive::bring_back(const std::string& path, const RunFile::
                                         base::Executor& executor) {
     // With relaxed durability the index may be on the disk before the log, should the machine fail.
     const auto index = options.durability == Durability::Full ? LogIndex::Read : LogIndex::Unread;
-    if (auto sound = check_log(path, index); !sound)
+    if (auto sound = check_log(path, index); !sound) {
         return sound.error();
+    }
     auto file = RunFile::open(path, options);
-    if (!file)
+    if (!file) {
         return file.error();
+    }
     const RunIdentity identity = (*file)->identity();
     const auto over = is_over(**file);
-    if (!over)
+    if (!over) {
         return over.error();
+    }
     if (*over) {
         // It was to be renamed next.
         file->reset();
         const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
-        if (auto renamed = RunFile::rename(path, ended); !renamed)
+        if (auto renamed = RunFile::rename(path, ended); !renamed) {
             return renamed.error();
+        }
         return ended;
     }
     const bool was_closed = (*file)->end_mark()->has_value();
     auto recovered = recover(**file, executor);
-    if (!recovered)
+    if (!recovered) {
         return recovered.error();
+    }
     const EndMark contents = (*file)->contents();
     const std::uint64_t generations_ended = (*file)->last_generation_ended();
     const auto name = std::filesystem::path{path}.stem().string();
@@ -180,8 +205,9 @@ Result<std::string> Archive::bring_back(const std::string& path, const RunFile::
 
 std::vector<std::string> Archive::world_names() const {
     std::vector<std::string> names;
-    for (const RunIdentity& identity : identities_)
+    for (const RunIdentity& identity : identities_) {
         names.push_back(identity.name);
+    }
     return names;
 }
 

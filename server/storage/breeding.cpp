@@ -26,14 +26,16 @@ Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std:
 /// The generation of the parents.
 Result<std::uint64_t> generation_of(RunFile& file, const WantedBreeding& wanted) {
     const std::uint64_t first = file.identity().first_generation, last = file.last_generation();
-    if (last <= first)
+    if (last <= first) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "no generation of this run has bred yet: it is in its first",
                        .violations = {},
                        .reason = base::Reason::NotBredYet};
+    }
     const std::uint64_t generation = wanted.generation.value_or(std::clamp(wanted.seen_from, first + 1, last) - 1);
-    if (generation < first || generation >= last)
+    if (generation < first || generation >= last) {
         return no_such("generation", first, last - 1, generation);
+    }
     return generation;
 }
 
@@ -41,8 +43,9 @@ Result<std::uint64_t> generation_of(RunFile& file, const WantedBreeding& wanted)
 std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const simulation::Parameters& parameters,
                                         base::Seed seed, std::uint32_t island) {
     const std::uint64_t generation = parents.ended->generation;
-    if (!evolution::migration_due(generation, parameters))
+    if (!evolution::migration_due(generation, parameters)) {
         return {};
+    }
     std::vector<std::span<const double>> fitness;
     std::vector<evolution::IslandPopulation> populations;
     for (std::size_t i = 0; i < parents.begun.born.size(); ++i) {
@@ -67,28 +70,34 @@ bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descen
 
 Result<Bred> breeding_of(RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
                          const std::stop_token& stop) {
-    if (auto refused = file.other_model())
+    if (auto refused = file.other_model()) {
         return *refused;
+    }
     const auto generation = generation_of(file, wanted);
-    if (!generation)
+    if (!generation) {
         return generation.error();
+    }
     GenerationReader reader{file, executor, stop};
     auto parents = reader.read(*generation);
-    if (!parents)
+    if (!parents) {
         return parents.error();
+    }
     const auto children = reader.read(*generation + 1);
-    if (!children)
+    if (!children) {
         return children.error();
+    }
     const auto damaged = [&](const char* what) {
         return Refusal{.code = RefusalCode::DataLoss,
                        .message = file.path() + " is damaged: generation " + std::to_string(*generation) + what,
                        .violations = {}};
     };
     const std::size_t islands = parents->begun.born.size();
-    if (wanted.island >= islands)
+    if (wanted.island >= islands) {
         return no_such("island", 0, islands - 1, wanted.island);
-    if (!parents->ended || children->begun.born.size() != islands)
+    }
+    if (!parents->ended || children->begun.born.size() != islands) {
         return damaged(" has bred another one, of which the file cannot tell");
+    }
 
     Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
     const base::Seed seed = file.identity().seed;
@@ -107,17 +116,21 @@ Result<Bred> breeding_of(RunFile& file, const WantedBreeding& wanted, base::Exec
         bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,
         executor);
     const std::uint32_t first_contender = std::min(wanted.rows.first_contender, bred.record.contender_count);
-    for (std::size_t i = 0; shuffled && i < bred.record.contenders.size(); ++i)
+    for (std::size_t i = 0; shuffled && i < bred.record.contenders.size(); ++i) {
         bred.record.contenders[i].own_fitness = own[bred.island][first_contender + i];
-    for (const evolution::Migrant& migrant : migrants)
+    }
+    for (const evolution::Migrant& migrant : migrants) {
         if (migrant.replaces - first_contender < bred.record.contenders.size()) {
             auto& contender = bred.record.contenders[migrant.replaces - first_contender];
             contender.migrant = migrant;
-            if (shuffled)
+            if (shuffled) {
                 contender.own_fitness = own[migrant.from][migrant.organism];
+            }
         }
-    if (!are_stored(bred.record.descendants, children->begun.born[bred.island]))
+    }
+    if (!are_stored(bred.record.descendants, children->begun.born[bred.island])) {
         return damaged(" has bred other descendants than those that are stored");
+    }
     return bred;
 }
 

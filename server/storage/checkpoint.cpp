@@ -87,9 +87,10 @@ std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
         simulation::IslandCounts counts;
         for_each_count(counts, [&](const auto& count) { bytes += sizeof(count); });
         bytes += shape.organisms * std::size_t{13};
-        if (shape.has_bodies)
+        if (shape.has_bodies) {
             bytes += shape.organisms * std::size_t{20} + shape.crates * std::size_t{16} +
                      (std::size_t{shape.food} + shape.poison) * 12;
+        }
         bytes += over ? bytes_of_statistics() : 0;
     }
     return bytes;
@@ -114,8 +115,9 @@ class Packer {
         std::array<T, 4096> values;
         for (std::size_t begin = 0; begin < range.size(); begin += values.size()) {
             const std::size_t count = std::min(values.size(), range.size() - begin);
-            for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t i = 0; i < count; ++i) {
                 values[i] = part(range[begin + i]);
+            }
             put(values.data(), count * sizeof(T));
         }
     }
@@ -129,17 +131,20 @@ class Packer {
 
     void run(ZSTD_inBuffer in, ZSTD_EndDirective directive) {
         for (;;) {
-            if (used_ == packed_.size())
+            if (used_ == packed_.size()) {
                 packed_.resize(packed_.size() + packed_.size() / 2 + ZSTD_CStreamOutSize());
+            }
             ZSTD_outBuffer out{packed_.data(), packed_.size(), used_};
             const std::size_t left = ZSTD_compressStream2(context_.get(), &out, &in, directive);
             EVOD_ASSERT(!ZSTD_isError(left));
             used_ = out.pos;
-            if (directive == ZSTD_e_end ? left == 0 : in.pos == in.size)
+            if (directive == ZSTD_e_end ? left == 0 : in.pos == in.size) {
                 break;
+            }
         }
-        if (directive == ZSTD_e_end)
+        if (directive == ZSTD_e_end) {
             packed_.resize(used_);
+        }
     }
 
     std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context_;
@@ -166,8 +171,9 @@ class Columns {
 
 void resize(IslandState& island, const IslandShape& shape) {
     island.fate.begin_generation(shape.organisms);
-    if (!shape.has_bodies)
+    if (!shape.has_bodies) {
         return;
+    }
     island.organisms.resize(shape.organisms);
     island.crates.resize(shape.crates);
     island.food.resize(shape.food);
@@ -178,12 +184,13 @@ void resize(IslandState& island, const IslandShape& shape) {
 
 std::string pack(const simulation::WorldState& state) {
     std::vector<IslandShape> shapes;
-    for (const IslandState& island : state.islands)
+    for (const IslandState& island : state.islands) {
         shapes.push_back({.organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
                           .has_bodies = !island.organisms.empty(),
                           .crates = static_cast<std::uint32_t>(island.crates.size()),
                           .food = static_cast<std::uint32_t>(island.food.size()),
                           .poison = static_cast<std::uint32_t>(island.poison.size())});
+    }
     const bool over = !state.ended.empty();
     Packer packer;
     packer.expect(bytes_of(shapes, over));
@@ -192,13 +199,15 @@ std::string pack(const simulation::WorldState& state) {
         for_each_count(island.counts, [&](const auto& count) { packer.value(count); });
         for_each_column(island, [&](const auto& range, auto&& part) { packer.column(range, part); });
     }
-    for (const GenerationStatistics& statistics : state.ended)
+    for (const GenerationStatistics& statistics : state.ended) {
         simulation::for_each_number(statistics, [&]<class T>(const std::string&, const T& number) {
-            if constexpr (std::is_floating_point_v<T>)
+            if constexpr (std::is_floating_point_v<T>) {
                 packer.value(double{number});
-            else
+            } else {
                 packer.value(static_cast<std::uint64_t>(number));
+            }
         });
+    }
     return std::move(packer).finish();
 }
 
@@ -213,21 +222,25 @@ StoredCheckpoint pack(const Checkpoint& checkpoint) {
 Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
     // What it takes is known before any memory is taken for it.
     const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true))
+    if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
         return refusal("it has another size than such a world's state");
+    }
     std::string columns(bytes, '\0');
     const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
-    if (ZSTD_isError(unpacked) || unpacked != columns.size())
+    if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
         return refusal("it cannot be unpacked");
+    }
     return read_columns(columns, shapes, state);
 }
 
 Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
-    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > 1)
+    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > 1) {
         return refusal("it does not say whether a generation is over");
+    }
     const bool over = bytes.front() == 1;
-    if (bytes.size() != bytes_of(shapes, over))
+    if (bytes.size() != bytes_of(shapes, over)) {
         return refusal("it has another size than such a world's state");
+    }
     Columns columns{bytes.substr(1)};
     state.islands.assign(shapes.size(), {});
     state.ended.assign(over ? shapes.size() : 0, {});
@@ -236,11 +249,12 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
         resize(island, shapes[i]);
         for_each_count(island.counts, [&](auto& count) { columns.value(count); });
         for_each_column(island, [&](auto& range, auto&& part) {
-            for (auto& element : range)
+            for (auto& element : range) {
                 columns.value(part(element));
+            }
         });
     }
-    for (GenerationStatistics& statistics : state.ended)
+    for (GenerationStatistics& statistics : state.ended) {
         simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& number) {
             if constexpr (std::is_floating_point_v<T>) {
                 columns.value(number);
@@ -250,6 +264,7 @@ Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> s
                 number = static_cast<T>(whole);
             }
         });
+    }
     EVOD_ASSERT(columns.empty());
     return {};
 }

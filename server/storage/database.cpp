@@ -11,11 +11,13 @@ namespace {
 /// A path as a URI of SQLite, with which options can be given.
 std::string uri_of(const std::string& path, const char* options) {
     std::string uri = "file:";
-    for (const char c : path)
-        if (c == '%' || c == '?' || c == '#')
+    for (const char c : path) {
+        if (c == '%' || c == '?' || c == '#') {
             uri += c == '%' ? "%25" : c == '?' ? "%3f" : "%23";
-        else
+        } else {
             uri += c;
+        }
+    }
     return uri + options;
 }
 
@@ -36,16 +38,18 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
     const int code = sqlite3_open_v2(name.c_str(), &handle, flags, vfs);
     handle_.reset(handle);
     check(code);
-    if (failed())
+    if (failed()) {
         return;
+    }
     // Whoever looks at the file from outside may hold a lock for a moment.
     sqlite3_busy_timeout(handle, 2000);
     // Damage is to be found, not to be worked around; nothing in a file may run code.
     sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     run("PRAGMA cell_size_check = ON");
-    if (reads)
+    if (reads) {
         return;
+    }
     // In place of SQLite's own way, which lets the commit wait that makes the log long.
     sqlite3_wal_hook(
         handle,
@@ -57,18 +61,21 @@ Database::Database(const std::string& path, Mode mode, const char* vfs) {
 }
 
 void Database::check(int code) {
-    if (failed() || code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE)
+    if (failed() || code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) {
         return;
+    }
     error_ = handle_ ? sqlite3_errmsg(handle_.get()) : sqlite3_errstr(code);
     if (const int system = handle_ ? sqlite3_system_errno(handle_.get()) : 0;
-        (code & 0xff) == SQLITE_CANTOPEN && system != 0)
+        (code & 0xff) == SQLITE_CANTOPEN && system != 0) {
         error_ += std::string{": "} + std::strerror(system); // too many open files, and the like
+    }
     damaged_ = (code & 0xff) == SQLITE_CORRUPT || (code & 0xff) == SQLITE_NOTADB;
 }
 
 void Database::run(const char* sql) {
-    if (!failed())
+    if (!failed()) {
         check(sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr));
+    }
 }
 
 std::int64_t Database::number(const char* sql) {
@@ -77,23 +84,27 @@ std::int64_t Database::number(const char* sql) {
 }
 
 void Database::copy_log() {
-    if (!failed())
+    if (!failed()) {
         sqlite3_wal_checkpoint_v2(handle_.get(), nullptr, SQLITE_CHECKPOINT_PASSIVE, nullptr, nullptr);
+    }
 }
 
 void Database::copy_to(const std::string& path) {
-    if (failed())
+    if (failed()) {
         return;
+    }
     Database copy{path, Mode::Create};
     if (!copy.failed()) {
         sqlite3_backup* backup = sqlite3_backup_init(copy.handle_.get(), "main", handle_.get(), "main");
         constexpr int all_pages = -1;
-        if (backup != nullptr)
+        if (backup != nullptr) {
             sqlite3_backup_step(backup, all_pages);
+        }
         copy.check(backup == nullptr ? sqlite3_errcode(copy.handle_.get()) : sqlite3_backup_finish(backup));
     }
-    if (copy.failed())
+    if (copy.failed()) {
         error_ = path + ": " + copy.error();
+    }
 }
 
 void Statement::Finalize::operator()(sqlite3_stmt* handle) const {
@@ -101,8 +112,9 @@ void Statement::Finalize::operator()(sqlite3_stmt* handle) const {
 }
 
 Statement::Statement(Database& database, const std::string& sql) : database_{database} {
-    if (database.failed())
+    if (database.failed()) {
         return;
+    }
     sqlite3_stmt* handle = nullptr;
     const int code = sqlite3_prepare_v3(database.handle_.get(), sql.c_str(), static_cast<int>(sql.size()),
                                         SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
@@ -111,39 +123,46 @@ Statement::Statement(Database& database, const std::string& sql) : database_{dat
 }
 
 void Statement::bind(int parameter, std::int64_t value) {
-    if (!database_.failed())
+    if (!database_.failed()) {
         database_.check(sqlite3_bind_int64(handle_.get(), parameter + 1, value));
+    }
 }
 
 void Statement::bind(int parameter, double value) {
-    if (!database_.failed())
+    if (!database_.failed()) {
         database_.check(sqlite3_bind_double(handle_.get(), parameter + 1, value));
+    }
 }
 
 void Statement::bind(int parameter, std::string_view text) {
-    if (!database_.failed())
+    if (!database_.failed()) {
         database_.check(sqlite3_bind_text64(handle_.get(), parameter + 1, text.empty() ? "" : text.data(), text.size(),
                                             SQLITE_TRANSIENT, SQLITE_UTF8));
+    }
 }
 
 void Statement::bind(int parameter, std::span<const std::byte> bytes) {
-    if (!database_.failed())
+    if (!database_.failed()) {
         database_.check(sqlite3_bind_blob64(handle_.get(), parameter + 1,
                                             bytes.empty() ? "" : static_cast<const void*>(bytes.data()), bytes.size(),
                                             SQLITE_TRANSIENT)); // nullptr would be NULL
+    }
 }
 
 void Statement::bind_nothing(int parameter) {
-    if (!database_.failed())
+    if (!database_.failed()) {
         database_.check(sqlite3_bind_null(handle_.get(), parameter + 1));
+    }
 }
 
 bool Statement::row() {
-    if (database_.failed())
+    if (database_.failed()) {
         return false;
+    }
     const int code = sqlite3_step(handle_.get());
-    if (code == SQLITE_ROW)
+    if (code == SQLITE_ROW) {
         return true;
+    }
     database_.check(code);
     sqlite3_reset(handle_.get());
     return false;

@@ -12,11 +12,12 @@ base::Result<simulation::World> world_at(RunFile& origin, std::optional<std::uin
                                          base::Executor& executor) {
     if (!generation) {
         auto last = recover(origin, executor);
-        if (!last)
+        if (!last) {
             return last.error();
+        }
         return std::move(last->world);
     }
-    if (*generation < origin.identity().first_generation || *generation > origin.last_generation())
+    if (*generation < origin.identity().first_generation || *generation > origin.last_generation()) {
         return base::Refusal{.code = base::RefusalCode::NotFound,
                              .message = origin.path() + " does not hold the beginning of that generation",
                              .violations = {{"generation",
@@ -24,9 +25,11 @@ base::Result<simulation::World> world_at(RunFile& origin, std::optional<std::uin
                                                  std::to_string(origin.last_generation()),
                                              std::to_string(*generation)}},
                              .reason = base::Reason::MomentNotFound};
+    }
     auto there = Rerun::at(origin, *generation, executor);
-    if (!there)
+    if (!there) {
         return there.error();
+    }
     return std::move(*there).take();
 }
 
@@ -36,8 +39,9 @@ base::Result<simulation::Moment> fork(RunFile& origin, std::optional<std::uint64
                                       const std::string& name, const simulation::RunId& run_id,
                                       base::Executor& executor) {
     auto world = world_at(origin, generation, executor);
-    if (!world)
+    if (!world) {
         return world.error();
+    }
     world->become_fork();
     const Inherited inherited = inherited_by(*world);
     const simulation::Moment moment = world->moment();
@@ -60,12 +64,14 @@ base::Result<simulation::Moment> fork(RunFile& origin, std::optional<std::uint64
                          .first_population = origin.identity().first_population,
                          .schedule = origin.identity().schedule},
                         {.keep_every = origin.keep_every()}, &begun, checkpoint ? &*checkpoint : nullptr, &inherited);
-    if (!file)
+    if (!file) {
         return file.error();
+    }
     (*file)->begin();
     (*file)->write(EndMark{.tick = moment.tick});
-    if (auto closed = (*file)->commit(); !closed)
+    if (auto closed = (*file)->commit(); !closed) {
         return closed.error();
+    }
     return moment;
 }
 

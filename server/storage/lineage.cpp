@@ -51,13 +51,15 @@ std::optional<std::vector<std::vector<Place>>> breeders(const RunFile& file, con
     std::vector<std::vector<Place>> places(parents.islands.size());
     std::vector<std::vector<double>> fitness;
     for (std::uint32_t island = 0; island < parents.islands.size(); ++island) {
-        for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism)
+        for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism) {
             places[island].push_back({island, organism});
+        }
         fitness.push_back(parents.islands[island].fitness);
     }
     if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
-        if (file.other_model())
+        if (file.other_model()) {
             return std::nullopt;
+        }
         const base::Seed seed = file.identity().seed;
         base::InlineExecutor executor;
         evolution::apply_shuffle(
@@ -65,8 +67,9 @@ std::optional<std::vector<std::vector<Place>>> breeders(const RunFile& file, con
             parents.generation, executor);
         const std::vector<std::span<const double>> bred_by(fitness.begin(), fitness.end());
         for (const evolution::Migrant& migrant :
-             choose_migrants(bred_by, children.parameters, seed, parents.generation))
+             choose_migrants(bred_by, children.parameters, seed, parents.generation)) {
             places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
+        }
     }
     return places;
 }
@@ -74,18 +77,21 @@ std::optional<std::vector<std::vector<Place>>> breeders(const RunFile& file, con
 /// None where nobody knows.
 Result<ParentPlaces> parents_of(const RunFile& file, const Births& children, const Births& parents) {
     const auto places = breeders(file, parents, children);
-    if (!places)
+    if (!places) {
         return ParentPlaces{};
+    }
     ParentPlaces found(children.islands.size());
-    for (std::size_t island = 0; island < children.islands.size(); ++island)
+    for (std::size_t island = 0; island < children.islands.size(); ++island) {
         for (const evolution::Parents& pair : children.islands[island].parents) {
-            if (island >= places->size() || std::max(pair.first, pair.second) >= (*places)[island].size())
+            if (island >= places->size() || std::max(pair.first, pair.second) >= (*places)[island].size()) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = file.path() + " is damaged: generation " +
                                           std::to_string(children.generation) + " has parents that never lived",
                                .violations = {}};
+            }
             found[island].push_back({(*places)[island][pair.first], (*places)[island][pair.second]});
         }
+    }
     return found;
 }
 
@@ -105,14 +111,16 @@ std::vector<Family> families_of(const Births& births, ParentPlaces parents, cons
                             .child_count = std::vector<std::uint32_t>(counted),
                             .kept_count = std::vector<std::uint32_t>(counted)});
     }
-    for (std::size_t i = 0; i < next_parents.size(); ++i)
+    for (std::size_t i = 0; i < next_parents.size(); ++i) {
         for (std::size_t organism = 0; organism < next_parents[i].size(); ++organism) {
             const auto& [first, second] = next_parents[i][organism];
             const bool kept = organism < next->islands[i].survivor_count;
             ++(kept ? families[first.island].kept_count : families[first.island].child_count)[first.organism];
-            if (!(second == first))
+            if (!(second == first)) {
                 ++families[second.island].child_count[second.organism];
+            }
         }
+    }
     return families;
 }
 
@@ -127,8 +135,9 @@ class BackwardReader {
         if (found.empty()) {
             for (std::uint64_t next = file_.held_at_or_before(generation); next <= generation; ++next) {
                 auto whole = reader_.read(next);
-                if (!whole)
+                if (!whole) {
                     return whole.error();
+                }
                 read_.insert_or_assign(next, births_of(*std::move(whole)));
             }
             found = read_.extract(generation);
@@ -152,40 +161,49 @@ Result<void> each_generation(RunFile& file, base::Executor& executor, const std:
     const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
         if (!is_in_reach(file, generation)) {
             const auto opening = file.opening_of(generation);
-            if (!opening)
+            if (!opening) {
                 return opening.error();
-            if (!*opening) // the last may be very far away
+            }
+            if (!*opening) { // the last may be very far away
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
                                           ", and not of generation " + std::to_string(generation),
                                .violations = {}};
+            }
             return {};
         }
         auto whole = reader.read(generation);
-        if (!whole)
+        if (!whole) {
             return whole.error();
+        }
         to = births_of(*std::move(whole));
         return {};
     };
     std::uint64_t generation = file.identity().first_generation;
-    if (generation <= last)
-        if (auto first = read(generation, births); !first)
+    if (generation <= last) {
+        if (auto first = read(generation, births); !first) {
             return first;
+        }
+    }
     for (; generation <= last; ++generation) {
         std::optional<Births> next;
         ParentPlaces next_parents;
-        if (generation < last)
-            if (auto done = read(generation + 1, next); !done)
+        if (generation < last) {
+            if (auto done = read(generation + 1, next); !done) {
                 return done;
+            }
+        }
         if (births && next) {
             auto found = parents_of(file, *next, *births);
-            if (!found)
+            if (!found) {
                 return found.error();
+            }
             next_parents = *std::move(found);
         }
         if (births &&
-            !told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents)))
+            !told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents))) {
             break;
+        }
         births = std::move(next);
         parents = std::move(next_parents);
     }
@@ -199,17 +217,20 @@ Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, 
     ParentPlaces next_parents;
     if (generation < file.last_generation() && is_in_reach(file, generation + 1)) {
         auto read = reader.read(generation + 1);
-        if (!read)
+        if (!read) {
             return read.error();
+        }
         next = *std::move(read);
     }
     auto births = reader.read(generation);
-    if (!births)
+    if (!births) {
         return births.error();
+    }
     if (next) {
         auto found = parents_of(file, *next, *births);
-        if (!found)
+        if (!found) {
             return found.error();
+        }
         next_parents = *std::move(found);
     }
     while (true) {
@@ -217,16 +238,19 @@ Result<void> each_generation_back_from(RunFile& file, std::uint64_t generation, 
         ParentPlaces parents;
         if (generation > file.identity().first_generation && is_in_reach(file, generation - 1)) {
             auto read = reader.read(generation - 1);
-            if (!read)
+            if (!read) {
                 return read.error();
+            }
             before = *std::move(read);
             auto found = parents_of(file, *births, *before);
-            if (!found)
+            if (!found) {
                 return found.error();
+            }
             parents = *std::move(found);
         }
-        if (!told(generation, families_of(*births, parents, next ? &*next : nullptr, next_parents)) || !before)
+        if (!told(generation, families_of(*births, parents, next ? &*next : nullptr, next_parents)) || !before) {
             return {};
+        }
         next = *std::move(births);
         births = *std::move(before);
         next_parents = std::move(parents);

@@ -57,8 +57,9 @@ std::string text_of(const base::StateHash& hash) {
 
 template <class T>
 Found compare(const std::string& part, const T& stored, const T& simulated) {
-    if (stored == simulated)
+    if (stored == simulated) {
         return std::nullopt;
+    }
     return Mismatch{part, text_of(stored), text_of(simulated)};
 }
 
@@ -67,26 +68,30 @@ Found compare(const std::string& part, const T& stored, const T& simulated) {
 template <class T>
 Found compare_each(const std::string& name, const std::string& of_island, std::span<const T> stored,
                    std::span<const T> simulated) {
-    if (stored.size() != simulated.size())
+    if (stored.size() != simulated.size()) {
         return compare(name + ": their number" + of_island, stored.size(), simulated.size());
+    }
     const auto [one, other] = std::ranges::mismatch(stored, simulated);
-    if (one == stored.end())
+    if (one == stored.end()) {
         return std::nullopt;
+    }
     return compare(name + " " + std::to_string(one - stored.begin()) + of_island, *one, *other);
 }
 /// name       "the fitness"
 template <class T>
 Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
                         std::span<const T> simulated) {
-    if (stored.size() != simulated.size())
+    if (stored.size() != simulated.size()) {
         return compare(std::string{name} + ": the number of organisms" + of_island, stored.size(), simulated.size());
+    }
     return compare_each(std::string{name} + " of organism", of_island, stored, simulated);
 }
 
 Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
     const auto differing = simulation::parameters_that_differ(stored, simulated);
-    if (differing.empty())
+    if (differing.empty()) {
         return std::nullopt;
+    }
     const simulation::ParameterDescription& parameter = *differing.front();
     return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which,
                     simulation::to_text(parameter.get(stored)), simulation::to_text(parameter.get(simulated))};
@@ -96,8 +101,9 @@ Found compare(const std::string& which, const simulation::Parameters& stored, co
 Found compare_account(const std::string& name, const std::string& of_island,
                       const std::optional<evolution::SelectionAccount>& stored,
                       const std::optional<evolution::SelectionAccount>& simulated) {
-    if (!stored)
+    if (!stored) {
         return std::nullopt;
+    }
     const auto texts_of = [](const std::optional<evolution::SelectionAccount>& account) {
         std::vector<std::string> texts;
         evolution::for_each_number(account, [&](const std::string&, std::optional<double> value) {
@@ -109,8 +115,9 @@ Found compare_account(const std::string& name, const std::string& of_island,
     Found found;
     std::size_t place = 0;
     evolution::for_each_number(stored, [&](const std::string& number, auto) {
-        if (!found && ours[place] != again[place])
+        if (!found && ours[place] != again[place]) {
             found = Mismatch{name + number + of_island, ours[place], again[place]};
+        }
         ++place;
     });
     return found;
@@ -121,24 +128,30 @@ Found compare_island(const std::string& of_island, const NextGeneration& stored,
         return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
     };
     const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
-    if (stored_genes.size() != simulated_genes.size())
+    if (stored_genes.size() != simulated_genes.size()) {
         return compare("the number of organisms" + of_island, static_cast<std::uint64_t>(stored.genes.cols()),
                        static_cast<std::uint64_t>(simulated.genes.cols()));
+    }
     if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
         const auto place = static_cast<std::size_t>(one - stored_genes.begin());
         return compare("the chromosomes: gene " + std::string{evolution::gene_names[place % evolution::gene_count]} +
                            " of organism " + std::to_string(place / evolution::gene_count) + of_island,
                        double{*one}, double{*other});
     }
-    if (auto found = compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents))
+    if (auto found =
+            compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents)) {
         return found;
-    if (auto found = compare("the number of the elite" + of_island, stored.elite_count, simulated.elite_count))
+    }
+    if (auto found = compare("the number of the elite" + of_island, stored.elite_count, simulated.elite_count)) {
         return found;
-    if (auto found = compare("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count))
+    }
+    if (auto found = compare("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count)) {
         return found;
+    }
     if (auto found = compare("the number of genes put onto their bounds" + of_island, stored.clamped_count,
-                             simulated.clamped_count))
+                             simulated.clamped_count)) {
         return found;
+    }
     return compare_account("the selection account: ", of_island, stored.account, simulated.account);
 }
 
@@ -148,11 +161,13 @@ Found compare_island(const std::string& of_island, const std::vector<std::uint32
 }
 
 Found compare_island(const std::string& of_island, const IslandOutcome& stored, const IslandOutcome& simulated) {
-    if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness))
+    if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
         return found;
+    }
     if (auto found =
-            compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks))
+            compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks)) {
         return found;
+    }
     return compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause, simulated.cause);
 }
 
@@ -165,8 +180,9 @@ Found compare_island(const std::string& of_island, const simulation::GenerationS
     auto simulated_text = again.begin();
     simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
         const std::string text = text_of(value); // exact
-        if (!found && text != *simulated_text)
+        if (!found && text != *simulated_text) {
             found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
+        }
         ++simulated_text;
     });
     return found ? found : compare_account("the statistics: ", of_island, stored.account, simulated.account);
@@ -176,65 +192,88 @@ Found compare_island(const std::string& of_island, const IslandState& stored, co
     using simulation::Items;
     const simulation::Fate &one = stored.fate, &other = simulated.fate;
     if (auto found =
-            compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause))
+            compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause)) {
         return found;
-    if (auto found = compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks))
+    }
+    if (auto found =
+            compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks)) {
         return found;
-    if (auto found = compare_organisms<std::uint32_t>("the food", of_island, one.food_eaten, other.food_eaten))
+    }
+    if (auto found = compare_organisms<std::uint32_t>("the food", of_island, one.food_eaten, other.food_eaten)) {
         return found;
-    if (auto found = compare_organisms<std::uint32_t>("the poison", of_island, one.poison_eaten, other.poison_eaten))
+    }
+    if (auto found = compare_organisms<std::uint32_t>("the poison", of_island, one.poison_eaten, other.poison_eaten)) {
         return found;
+    }
     if (auto found = compare_organisms<IslandState::Organism>("the place, velocity and health", of_island,
-                                                              stored.organisms, simulated.organisms))
+                                                              stored.organisms, simulated.organisms)) {
         return found;
+    }
     if (auto found = compare_each<IslandState::Crate>("the place and velocity of crate", of_island, stored.crates,
-                                                      simulated.crates))
+                                                      simulated.crates)) {
         return found;
-    if (auto found = compare_each<Items::Item>("the place of food", of_island, stored.food, simulated.food))
+    }
+    if (auto found = compare_each<Items::Item>("the place of food", of_island, stored.food, simulated.food)) {
         return found;
-    if (auto found = compare_each<Items::Item>("the place of poison", of_island, stored.poison, simulated.poison))
+    }
+    if (auto found = compare_each<Items::Item>("the place of poison", of_island, stored.poison, simulated.poison)) {
         return found;
-    if (stored.counts == simulated.counts)
+    }
+    if (stored.counts == simulated.counts) {
         return std::nullopt;
+    }
     return Mismatch{"the counts" + of_island, text_of(stored.counts), text_of(simulated.counts)};
 }
 
 template <class T>
 Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
-    if (auto found = compare("the number of islands", stored.size(), simulated.size()))
+    if (auto found = compare("the number of islands", stored.size(), simulated.size())) {
         return found;
-    for (std::size_t island = 0; island < stored.size(); ++island)
-        if (auto found = compare_island(" on island " + std::to_string(island), stored[island], simulated[island]))
+    }
+    for (std::size_t island = 0; island < stored.size(); ++island) {
+        if (auto found = compare_island(" on island " + std::to_string(island), stored[island], simulated[island])) {
             return found;
+        }
+    }
     return std::nullopt;
 }
 
 } // namespace
 
 Found compare(const simulation::Opening& stored, const simulation::Opening& simulated) {
-    if (auto found = compare("the first tick", stored.moment.tick, simulated.moment.tick))
+    if (auto found = compare("the first tick", stored.moment.tick, simulated.moment.tick)) {
         return found;
-    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s))
+    }
+    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
         return found;
-    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active))
+    }
+    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active)) {
         return found;
-    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested))
+    }
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
         return found;
+    }
     // A run that begins by a reset goes on counting revisions.
-    if (stored.moment.generation > 1)
+    if (stored.moment.generation > 1) {
         if (auto found =
-                compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision))
+                compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision)) {
             return found;
+        }
+    }
     const evolution::Progress &one = stored.progress, &other = simulated.progress;
-    if (auto found = compare("the progress: generations over", one.generations, other.generations))
+    if (auto found = compare("the progress: generations over", one.generations, other.generations)) {
         return found;
-    if (auto found = compare("the progress: generations without improvement", one.stagnant, other.stagnant))
+    }
+    if (auto found = compare("the progress: generations without improvement", one.stagnant, other.stagnant)) {
         return found;
-    if (auto found = compare("the progress: the best fitness so far", one.best_fitness, other.best_fitness))
+    }
+    if (auto found = compare("the progress: the best fitness so far", one.best_fitness, other.best_fitness)) {
         return found;
+    }
     if (auto found = compare("the progress: the best fitness of the generation before", one.last_best_fitness,
-                             other.last_best_fitness))
+                             other.last_best_fitness)) {
         return found;
+    }
     return compare("the progress: whether everyone had died", one.last_died_out, other.last_died_out);
 }
 
@@ -256,22 +295,29 @@ Found compare(const std::vector<simulation::GenerationStatistics>& stored,
 }
 
 Found compare(const simulation::WorldState& stored, const simulation::WorldState& simulated) {
-    if (auto found = compare("the generation", stored.moment.generation, simulated.moment.generation))
+    if (auto found = compare("the generation", stored.moment.generation, simulated.moment.generation)) {
         return found;
+    }
     if (auto found =
-            compare("the tick of the generation", stored.moment.generation_tick, simulated.moment.generation_tick))
+            compare("the tick of the generation", stored.moment.generation_tick, simulated.moment.generation_tick)) {
         return found;
-    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s))
+    }
+    if (auto found = compare("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
         return found;
-    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active))
+    }
+    if (auto found = compare("as it held", stored.parameters.active, simulated.parameters.active)) {
         return found;
-    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested))
+    }
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
         return found;
+    }
     if (auto found =
-            compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision))
+            compare("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision)) {
         return found;
-    if (auto found = compare_islands(stored.islands, simulated.islands))
+    }
+    if (auto found = compare_islands(stored.islands, simulated.islands)) {
         return found;
+    }
     return compare_islands(stored.ended, simulated.ended);
 }
 

@@ -36,8 +36,9 @@ void PackingThread::work() {
         {
             std::unique_lock lock{mutex_};
             changed_.wait(lock, [this] { return stopping_ || !jobs_.empty(); });
-            if (stopping_)
+            if (stopping_) {
                 return;
+            }
             job = std::move(jobs_.front());
             jobs_.pop_front();
         }

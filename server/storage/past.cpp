@@ -35,29 +35,34 @@ Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulat
     const auto generations = range_text(there.first_generation, there.last_generation);
     if (!wanted.generation) {
         const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
-        if (tick < there.first_tick || tick > there.last_tick)
+        if (tick < there.first_tick || tick > there.last_tick) {
             return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
+        }
         return PastMoment{file.generation_at(tick), tick};
     }
     const std::uint64_t generation = *wanted.generation;
-    if (generation < there.first_generation || generation > there.last_generation)
+    if (generation < there.first_generation || generation > there.last_generation) {
         return no_such("generation", generations, generation);
+    }
     const auto opening = file.opening_of(generation);
-    if (!opening)
+    if (!opening) {
         return opening.error();
+    }
     const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
     std::uint64_t last = there.last_tick;
     if (generation < there.last_generation) {
         const auto next = file.opening_of(generation + 1);
-        if (!next)
+        if (!next) {
             return next.error();
+        }
         last = *next ? (*next)->moment.tick : last;
     }
     // A fork may begin within its first generation.
     const std::uint64_t begins = std::max(first, there.first_tick) - first;
     const std::uint64_t tick = wanted.tick.value_or(begins);
-    if (tick < begins || tick > last - first)
+    if (tick < begins || tick > last - first) {
         return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
+    }
     return PastMoment{generation, first + tick};
 }
 
@@ -65,14 +70,18 @@ Result<PastMoment> find(RunFile& file, const WantedMoment& wanted, const simulat
 
 Result<Past> Past::of_file(const std::string& path) {
     const auto file = RunFile::open_checked(path);
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto refused = (*file)->other_model())
+    }
+    if (auto refused = (*file)->other_model()) {
         return *refused;
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held.error();
-    if (auto whole = (*file)->check_end_mark(); !whole)
+    }
+    if (auto whole = (*file)->check_end_mark(); !whole) {
         return whole.error();
+    }
     return Past{{path}, (*file)->identity().run_id};
 }
 
@@ -80,10 +89,12 @@ Result<std::unique_ptr<RunFile>> Past::open() const {
     std::optional<Refusal> refused;
     for (const std::string& path : paths_) {
         auto file = RunFile::open_read_only(path);
-        if (file && (*file)->identity().run_id == run_id_)
+        if (file && (*file)->identity().run_id == run_id_) {
             return file;
-        if (!file && (!refused || refused->code == RefusalCode::NotFound))
+        }
+        if (!file && (!refused || refused->code == RefusalCode::NotFound)) {
             refused = file.error();
+        }
     }
     return refused.value_or(
         Refusal{.code = RefusalCode::NotFound,
@@ -93,45 +104,53 @@ Result<std::unique_ptr<RunFile>> Past::open() const {
 
 Result<std::string> Past::world_name() const {
     const auto file = open();
-    if (!file)
+    if (!file) {
         return file.error();
+    }
     return (*file)->identity().name;
 }
 
 Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
                                base::Executor& executor) const {
     const auto file = open();
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held.error();
+    }
     simulation::Replay there = replay_of_file(**file);
     there.last_generation = std::max(there.last_generation, known.generation);
     there.last_tick = std::max(there.last_tick, known.tick);
     const auto to =
         find(**file, wanted.value_or(WantedMoment{.generation = there.first_generation, .tick = {}}), there);
-    if (!to)
+    if (!to) {
         return to.error();
+    }
     auto from = Rerun::before(**file, to->generation, to->tick, history_generations_known, executor);
-    if (!from)
+    if (!from) {
         return from.error();
+    }
     return Departure{std::move(there), *to, *std::move(from)};
 }
 
 Result<PastNews> Past::news(std::uint64_t after_entry) const {
     const auto file = open();
-    if (!file)
+    if (!file) {
         return file.error();
-    if (auto held = (*file)->hold_still(); !held)
+    }
+    if (auto held = (*file)->hold_still(); !held) {
         return held.error();
+    }
     PastNews news{.there = replay_of_file(**file),
                   .path = (*file)->path(),
                   .after_entry = after_entry,
                   .last_entry = std::max(after_entry, (*file)->last_journal_entry()),
                   .changes = {}};
     auto changes = parameter_changes(**file, after_entry);
-    if (!changes)
+    if (!changes) {
         return changes.error();
+    }
     news.changes = *std::move(changes);
     return news;
 }

@@ -43,7 +43,7 @@ struct KnownUntil {
 
 /// What a run that goes on has come to.
 struct PastNews {
-    simulation::Replay there;                   // replay_of is left empty
+    simulation::Replay there;                      // replay_of is left empty
     std::string path;                              // of its file
     std::uint64_t after_entry = 0, last_entry = 0; // of the journal, between which the changes were looked for
     std::vector<ParameterChange> changes;

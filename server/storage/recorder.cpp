@@ -29,14 +29,16 @@ std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& wo
     std::vector<StorageThread::Record> records;
     const std::uint64_t begun = news_.generations_begun();
     news_.tell(world, [&records](auto record) { records.emplace_back(std::move(record)); });
-    if (news_.generations_begun() != begun)
+    if (news_.generations_begun() != begun) {
         since_beginning_ = {};
+    }
     return records;
 }
 
 void RunRecorder::hand_over(const simulation::World& world) {
-    if (auto records = news(world); !records.empty())
+    if (auto records = news(world); !records.empty()) {
         thread_.write(number_, {std::move(records), {}});
+    }
 }
 
 bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent) {
@@ -91,8 +93,9 @@ StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::s
 
 std::optional<base::Refusal> Recorder::refusal() const {
     const auto why = trouble();
-    if (!why)
+    if (!why) {
         return std::nullopt;
+    }
     return base::Refusal{.code = base::RefusalCode::Unavailable,
                          .message = "nothing can be changed while it cannot be written down: " + *why +
                                     "; send it again once that is mended",
@@ -101,16 +104,18 @@ std::optional<base::Refusal> Recorder::refusal() const {
 
 std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world) const {
     const auto leaving = leaving_.find(world);
-    if (runs_.contains(world) || (leaving != leaving_.end() && *leaving->second > 0))
+    if (runs_.contains(world) || (leaving != leaving_.end() && *leaving->second > 0)) {
         return std::nullopt;
+    }
     const std::string path = folder_.file_of(world);
     for (const std::string& taken : {path, DataFolder::next_file_of(path)}) {
         std::error_code error; // where it cannot be looked at, making it fails, and is told
-        if (std::filesystem::exists(taken, error))
+        if (std::filesystem::exists(taken, error)) {
             return base::refusal(base::RefusalCode::AlreadyExists,
                                  "the run would be kept in " + taken +
                                      ", which is there already and belongs to no world of this "
                                      "server: move it away, or choose another name");
+        }
     }
     return std::nullopt;
 }
@@ -143,8 +148,9 @@ void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunI
     StorageThread::Batch first = run.first(entry.world, std::move(command));
     first.records.emplace_back(std::move(inherited));
     // Within a generation its beginning is not enough: what came since is known to the origin alone.
-    if (entry.world.moment().generation_tick > 0)
+    if (entry.world.moment().generation_tick > 0) {
         first.records.emplace_back(checkpoint_of(entry.world, 0, executor));
+    }
     run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity), std::move(first));
     add(entry.name, std::move(run));
 }
@@ -175,13 +181,15 @@ void Recorder::end(const std::string& world, const simulation::RunId& run_id, Co
     const std::uint64_t tick = command.tick;
     std::erase_if(leaving_, [](const auto& item) { return *item.second == 0; });
     auto& leaving = leaving_[world];
-    if (!leaving)
+    if (!leaving) {
         leaving = std::make_shared<Leaving>(0);
+    }
     ++*leaving;
     command.done = [leaving = leaving, done = std::move(command.done)] {
         --*leaving;
-        if (done)
+        if (done) {
             done();
+        }
     };
     thread_.close(run->second.number_,
                   run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command)));
@@ -189,9 +197,11 @@ void Recorder::end(const std::string& world, const simulation::RunId& run_id, Co
 }
 
 void Recorder::close_all(const simulation::Laboratory& laboratory) {
-    for (const auto& entry : laboratory.entries())
-        if (RunRecorder* run = of(entry->name))
+    for (const auto& entry : laboratory.entries()) {
+        if (RunRecorder* run = of(entry->name)) {
             thread_.close(run->number_, run->ending(entry->world.moment().tick, false));
+        }
+    }
     runs_.clear();
 }
 

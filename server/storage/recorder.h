@@ -44,8 +44,9 @@ class RunNews {
             write(storage::beginning_of(world));
             begun_ = moment.generation;
         }
-        if (moment.tick > tick_ && moment.tick % ticks_per_link == 0)
+        if (moment.tick > tick_ && moment.tick % ticks_per_link == 0) {
             write(HashLink{moment.tick, world.hash()});
+        }
         seen(moment.tick);
         if (world.generation_over() && ended_ != moment.generation) {
             write(storage::end_of(world));
@@ -83,8 +84,9 @@ class RunRecorder {
     void follow(const simulation::World& world) {
         const simulation::Moment& moment = world.moment();
         if (moment.generation != news_.generations_begun() || moment.tick % ticks_per_link == 0 ||
-            world.generation_over())
+            world.generation_over()) {
             hand_over(world);
+        }
     }
     void journal(CommandRecord command);
     /// done: called as StorageThread does, once everything that was handed over is on the disk.

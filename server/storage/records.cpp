@@ -6,8 +6,9 @@ namespace evod::storage {
 
 GenerationBegun beginning_of(const simulation::World& world) {
     GenerationBegun begun{.opening = world.opening(), .born = {}, .founders = world.founders()};
-    for (const simulation::Island& island : world.islands())
+    for (const simulation::Island& island : world.islands()) {
         begun.born.push_back(island.born());
+    }
     return begun;
 }
 
@@ -15,8 +16,9 @@ Inherited inherited_by(const simulation::World& world) {
     Inherited inherited{world.history()};
     // Of its own first generation, if that is over.
     while (!inherited.history.empty() &&
-           inherited.history.back().front().generation >= world.opening().moment.generation)
+           inherited.history.back().front().generation >= world.opening().moment.generation) {
         inherited.history.pop_back();
+    }
     return inherited;
 }
 

@@ -60,15 +60,17 @@ namespace {
 
 std::string listed(const std::vector<std::string>& columns) {
     std::string text;
-    for (const std::string& column : columns)
+    for (const std::string& column : columns) {
         text += column + ", ";
+    }
     return text + "checksum";
 }
 
 std::string insertion(const std::string& table, const std::vector<std::string>& columns) {
     std::string places;
-    for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t i = 0; i < columns.size(); ++i) {
         places += "?, ";
+    }
     return "INSERT OR REPLACE INTO " + table + " (" + listed(columns) + ") VALUES (" + places + "?)";
 }
 
@@ -84,8 +86,9 @@ RowWriter& RowWriter::integer(std::int64_t value) {
 }
 
 RowWriter& RowWriter::integer(std::optional<std::int64_t> value) {
-    if (value)
+    if (value) {
         return integer(*value);
+    }
     statement_.bind_nothing(column_++);
     checksum_.add_nothing();
     return *this;
@@ -98,8 +101,9 @@ RowWriter& RowWriter::real(double value) {
 }
 
 RowWriter& RowWriter::real(std::optional<double> value) {
-    if (value)
+    if (value) {
         return real(*value);
+    }
     statement_.bind_nothing(column_++);
     checksum_.add_nothing();
     return *this;
@@ -133,8 +137,9 @@ std::int64_t RowWriter::finish() {
 RowReader::RowReader(Database& database, const std::string& table, const std::vector<std::string>& columns,
                      const std::string& condition, const std::vector<std::int64_t>& where)
     : statement_{database, "SELECT " + listed(columns) + " FROM " + table + " WHERE " + condition}, checksum_{table} {
-    for (std::size_t i = 0; i < where.size(); ++i)
+    for (std::size_t i = 0; i < where.size(); ++i) {
         statement_.bind(static_cast<int>(i), where[i]);
+    }
 }
 
 bool RowReader::next() {
@@ -150,8 +155,9 @@ std::int64_t RowReader::integer() {
 }
 
 std::optional<std::int64_t> RowReader::optional_integer() {
-    if (!statement_.is_nothing(column_))
+    if (!statement_.is_nothing(column_)) {
         return integer();
+    }
     ++column_;
     checksum_.add_nothing();
     return std::nullopt;
@@ -164,8 +170,9 @@ double RowReader::real() {
 }
 
 std::optional<double> RowReader::optional_real() {
-    if (!statement_.is_nothing(column_))
+    if (!statement_.is_nothing(column_)) {
         return real();
+    }
     ++column_;
     checksum_.add_nothing();
     return std::nullopt;

@@ -25,13 +25,13 @@ using base::Result;
 using ColumnNames = std::vector<std::string>;
 
 const ColumnNames journal_columns = {"number", "tick",    "client",           "client_key", "request_id", "request",
-                                 "answer", "endless", "until_generation", "until_tick", "paused",     "speed"};
+                                     "answer", "endless", "until_generation", "until_tick", "paused",     "speed"};
 const ColumnNames parameters_columns = {"number", "revision", "active", "requested"};
 const ColumnNames generation_columns = {"generation",   "first_tick",        "simulated_s",
-                                    "parameters",   "generations_over",  "stagnant",
-                                    "best_fitness", "last_best_fitness", "last_died_out"};
+                                        "parameters",   "generations_over",  "stagnant",
+                                        "best_fitness", "last_best_fitness", "last_died_out"};
 const ColumnNames population_columns = {"generation",     "island",        "organism_count", "elite_count",
-                                    "survivor_count", "clamped_count", "chromosomes",    "parents"};
+                                        "survivor_count", "clamped_count", "chromosomes",    "parents"};
 const ColumnNames founders_columns = {"generation", "island", "founders"};
 const ColumnNames account_columns = [] {
     ColumnNames columns{"generation", "island"};
@@ -192,11 +192,13 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
 /// false if the bytes are no whole number of T.
 template <class T>
 bool read_into(std::vector<T>& values, const std::string& bytes) {
-    if (bytes.size() % sizeof(T) != 0)
+    if (bytes.size() % sizeof(T) != 0) {
         return false;
+    }
     values.resize(bytes.size() / sizeof(T));
-    if (!bytes.empty())
+    if (!bytes.empty()) {
         std::memcpy(values.data(), bytes.data(), bytes.size());
+    }
     return true;
 }
 
@@ -206,8 +208,9 @@ std::span<const std::byte> bytes_of(const evolution::GeneMatrix& genes) {
 
 /// false if the bytes are not those of so many chromosomes.
 bool read_into(evolution::GeneMatrix& genes, std::uint64_t organisms, const std::string& bytes) {
-    if (bytes.size() != organisms * evolution::gene_count * sizeof(float))
+    if (bytes.size() != organisms * evolution::gene_count * sizeof(float)) {
         return false;
+    }
     genes.resize(evolution::gene_count, static_cast<Eigen::Index>(organisms));
     std::memcpy(genes.data(), bytes.data(), bytes.size());
     return true;
@@ -221,8 +224,9 @@ std::optional<T> number_from(const std::string& text, int base = 10) {
 }
 
 std::optional<simulation::RunId> run_id_from(const std::string& text) {
-    if (text.size() != 32)
+    if (text.size() != 32) {
         return std::nullopt;
+    }
     const auto high = number_from<std::uint64_t>(text.substr(0, 16), 16);
     const auto low = number_from<std::uint64_t>(text.substr(16), 16);
     return high && low ? std::optional{simulation::RunId{*high, *low}} : std::nullopt;
@@ -238,10 +242,11 @@ std::optional<std::uint64_t> as_read(const std::optional<std::int64_t>& value) {
 
 void write_statistics(RowWriter& row, const simulation::GenerationStatistics& statistics) {
     simulation::for_each_number(statistics, [&](const std::string&, auto value) {
-        if constexpr (std::is_floating_point_v<decltype(value)>)
+        if constexpr (std::is_floating_point_v<decltype(value)>) {
             row.real(value);
-        else
+        } else {
             row.integer(static_cast<std::int64_t>(value));
+        }
     });
     row.finish();
 }
@@ -249,10 +254,11 @@ void write_statistics(RowWriter& row, const simulation::GenerationStatistics& st
 simulation::GenerationStatistics read_statistics(RowReader& row) {
     simulation::GenerationStatistics statistics;
     simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& value) {
-        if constexpr (std::is_floating_point_v<T>)
+        if constexpr (std::is_floating_point_v<T>) {
             value = row.real();
-        else
+        } else {
             value = static_cast<T>(row.integer());
+        }
     });
     return statistics;
 }
@@ -271,8 +277,9 @@ Refusal emptied(const std::string& path) {
 /// A file of no more than one byte is an empty database to SQLite, which then throws away the log beside it.
 Result<void> expect_bytes(const std::string& path) {
     std::error_code error;
-    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1)
+    if (const auto bytes = std::filesystem::file_size(path, error); !error && bytes <= 1) {
         return emptied(path);
+    }
     return {};
 }
 
@@ -315,8 +322,9 @@ struct RunFile::Writers {
 
 RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& options)
     : path_{path}, database_{path, mode, options.vfs}, options_{options} {
-    if (mode == Database::Mode::Read || mode == Database::Mode::ReadAtRest)
+    if (mode == Database::Mode::Read || mode == Database::Mode::ReadAtRest) {
         return;
+    }
     database_.run("PRAGMA journal_mode = WAL");
     database_.run("PRAGMA journal_size_limit = 16777216"); // it is cut back to so much once it begins anew
     database_.run(options.durability == Durability::Full ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL");
@@ -325,14 +333,16 @@ RunFile::RunFile(const std::string& path, Database::Mode mode, const Options& op
 RunFile::~RunFile() = default;
 
 Refusal RunFile::failure() const {
-    if (database_.damaged())
+    if (database_.damaged()) {
         return refusal(RefusalCode::DataLoss, path_ + " is damaged, or no run file: " + database_.error());
+    }
     return refusal(RefusalCode::Unavailable, path_ + ": " + database_.error());
 }
 
 Refusal RunFile::damaged(const std::string& what) const {
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + what + " is not as it was written");
 }
 
@@ -340,8 +350,9 @@ Result<std::unique_ptr<RunFile>> RunFile::begin_new(const std::string& path, con
                                                     const Options& options) {
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Create, options}};
     file->keep_every_ = options.keep_every;
-    if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0)
+    if (file->database_.number("SELECT count(*) FROM sqlite_schema") != 0) {
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    }
     file->identity_ = identity;
     file->begin();
     file->create_tables();
@@ -353,27 +364,36 @@ Result<std::unique_ptr<RunFile>> RunFile::create(const std::string& path, const 
                                                  const Options& options, const GenerationBegun* beginning,
                                                  const Checkpoint* checkpoint, const Inherited* inherited) {
     std::error_code error;
-    if (std::filesystem::exists(path, error))
+    if (std::filesystem::exists(path, error)) {
         return refusal(RefusalCode::AlreadyExists, path + " is there already");
+    }
     const std::string next = DataFolder::next_file_of(path);
-    if (auto swept = remove(next); !swept) // what somebody left who did not come to the end of it
+    if (auto swept = remove(next); !swept) { // what somebody left who did not come to the end of it
         return swept.error();
+    }
     auto file = begin_new(next, identity, options);
-    if (!file)
+    if (!file) {
         return file.error();
-    if (beginning != nullptr)
+    }
+    if (beginning != nullptr) {
         (*file)->write(*beginning);
-    if (checkpoint != nullptr)
+    }
+    if (checkpoint != nullptr) {
         (*file)->write(*checkpoint);
-    if (inherited != nullptr)
+    }
+    if (inherited != nullptr) {
         (*file)->write(*inherited);
-    if (auto committed = (*file)->commit(); !committed)
+    }
+    if (auto committed = (*file)->commit(); !committed) {
         return committed.error();
-    if (auto settled = (*file)->settle(); !settled)
+    }
+    if (auto settled = (*file)->settle(); !settled) {
         return settled.error();
+    }
     file->reset();
-    if (auto named = rename(next, path); !named)
+    if (auto named = rename(next, path); !named) {
         return named.error();
+    }
     return open(path, options);
 }
 
@@ -384,10 +404,12 @@ void RunFile::copy_log(const std::string& path, const Options& options) {
 }
 
 Result<void> RunFile::settle() {
-    if (database_.number("PRAGMA wal_checkpoint(TRUNCATE)") != 0)
+    if (database_.number("PRAGMA wal_checkpoint(TRUNCATE)") != 0) {
         return refusal(RefusalCode::Unavailable, path_ + " is being read by somebody");
-    if (database_.failed())
+    }
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
@@ -399,8 +421,9 @@ bool RunFile::holds_nothing() {
 Result<bool> RunFile::holds_nothing(const std::string& path) {
     RunFile file{path, Database::Mode::Write, {}};
     const bool nothing = file.holds_nothing();
-    if (file.database_.failed())
+    if (file.database_.failed()) {
         return file.failure();
+    }
     return nothing;
 }
 
@@ -410,41 +433,51 @@ namespace {
 /// a log of its own.
 Result<void> expect_file_with_one_name(const std::string& path) {
     struct stat status {};
-    if (::lstat(path.c_str(), &status) != 0)
+    if (::lstat(path.c_str(), &status) != 0) {
         return {}; // opening it says why
-    if (S_ISDIR(status.st_mode))
+    }
+    if (S_ISDIR(status.st_mode)) {
         return refusal(RefusalCode::InvalidArgument, path + ": this is a folder, not a run file; move it out of " +
                                                          std::filesystem::path{path}.parent_path().string() +
                                                          " to start without its world");
-    if (S_ISLNK(status.st_mode))
+    }
+    if (S_ISLNK(status.st_mode)) {
         return refusal(RefusalCode::FailedPrecondition,
                        path + " is a link, and what it leads to may be another server's: put a copy in its place, or "
                               "name the folder of the file itself with --data");
-    if (!S_ISREG(status.st_mode))
+    }
+    if (!S_ISREG(status.st_mode)) {
         return refusal(RefusalCode::InvalidArgument,
                        path + ": this is " + std::string{files::other_than_file(status.st_mode)} + ", not a run file");
-    if (status.st_nlink > 1)
+    }
+    if (status.st_nlink > 1) {
         return refusal(RefusalCode::FailedPrecondition,
                        path + " has another name, a hard link, under which another server may write to it: remove "
                               "that name, or put a copy in the place of this one");
+    }
     return {};
 }
 
 } // namespace
 
 Result<std::unique_ptr<RunFile>> RunFile::open(const std::string& path, const Options& options) {
-    if (auto there = expect_bytes(path); !there)
+    if (auto there = expect_bytes(path); !there) {
         return there.error();
-    if (auto one = expect_file_with_one_name(path); !one)
+    }
+    if (auto one = expect_file_with_one_name(path); !one) {
         return one.error();
-    if (auto sound = check_log(path, LogIndex::Unread); !sound) // past a damaged frame SQLite would read nothing
+    }
+    if (auto sound = check_log(path, LogIndex::Unread); !sound) { // past a damaged frame SQLite would read nothing
         return sound.error();
+    }
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Write, options}};
-    if (auto read = file->read_identity(); !read)
+    if (auto read = file->read_identity(); !read) {
         return read.error();
+    }
     file->marked_ = true;
-    if (file->thinning_.until_generation > 0) // perhaps not to its end
+    if (file->thinning_.until_generation > 0) { // perhaps not to its end
         file->sweep_ = Sweep{};
+    }
     return file;
 }
 
@@ -466,39 +499,47 @@ Result<void> RunFile::rename(const std::string& from, const std::string& to) {
     }
     fs::rename(from, to, error);
     if (error) {
-        for (const Companion& companion : companions)
+        for (const Companion& companion : companions) {
             fs::remove(to + companion.suffix, ignored);
+        }
         return refusal(RefusalCode::Unavailable, from + " cannot be renamed to " + to + ": " + error.message());
     }
-    for (const Companion& companion : companions)
-        if (companion.there && !companion.linked)
+    for (const Companion& companion : companions) {
+        if (companion.there && !companion.linked) {
             fs::rename(from + companion.suffix, to + companion.suffix, ignored);
-        else
+        } else {
             fs::remove(from + companion.suffix, ignored);
+        }
+    }
     return {};
 }
 
 Result<void> RunFile::remove(const std::string& path) {
     std::error_code error, ignored;
     std::filesystem::remove(path, error);
-    if (error)
+    if (error) {
         return refusal(RefusalCode::Unavailable, path + " cannot be removed: " + error.message());
-    for (const char* suffix : {"-wal", "-shm", "-journal"})
+    }
+    for (const char* suffix : {"-wal", "-shm", "-journal"}) {
         std::filesystem::remove(path + suffix, ignored);
+    }
     return {};
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!exists(status))
+    if (!exists(status)) {
         return refusal(RefusalCode::NotFound, path + ": there is no such file");
+    }
     struct stat about {};
-    if (::stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode))
+    if (::stat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode)) {
         return refusal(RefusalCode::InvalidArgument,
                        path + ": this is " + std::string{files::other_than_file(about.st_mode)} + ", not a run file");
-    if (auto there = expect_bytes(path); !there)
+    }
+    if (auto there = expect_bytes(path); !there) {
         return there.error();
+    }
     std::unique_ptr<RunFile> file{new RunFile{path, Database::Mode::Read, {}}};
     auto read = file->read_identity();
     // Whoever reads takes part in the log beside the file, so SQLite has to write there. Where that cannot be, a file
@@ -508,14 +549,16 @@ Result<std::unique_ptr<RunFile>> RunFile::open_read_only(const std::string& path
         file.reset(new RunFile{path, Database::Mode::ReadAtRest, {}});
         read = file->read_identity();
     }
-    if (!read)
+    if (!read) {
         return read.error();
+    }
     return file;
 }
 
 Result<std::unique_ptr<RunFile>> RunFile::open_checked(const std::string& path) {
-    if (auto sound = check_log(path, LogIndex::Read); !sound)
+    if (auto sound = check_log(path, LogIndex::Read); !sound) {
         return sound.error();
+    }
     return open_read_only(path);
 }
 
@@ -548,10 +591,12 @@ Result<void> RunFile::check_schema() {
 }
 
 void RunFile::bring_up_to_date() {
-    if (format_ == format_version)
+    if (format_ == format_version) {
         return;
-    if (format_ < 3)
+    }
+    if (format_ < 3) {
         bring_up_to_format_3();
+    }
     bring_up_to_format_4();
     database_.run(("PRAGMA user_version = " + std::to_string(format_version)).c_str());
     format_ = format_version;
@@ -567,8 +612,9 @@ void RunFile::bring_up_to_format_3() {
     run.text("inherited_generations").text("0").finish();
     database_.run(founders_table);
     RowWriter founders{database_, "founders", founders_columns};
-    for (Statement born{database_, "SELECT generation, island FROM population"}; born.row();)
+    for (Statement born{database_, "SELECT generation, island FROM population"}; born.row();) {
         founders.integer(born.integer(0)).integer(born.integer(1)).bytes({}).finish(); // nobody knows
+    }
 }
 
 void RunFile::bring_up_to_format_4() {
@@ -579,8 +625,9 @@ void RunFile::bring_up_to_format_4() {
     for (Statement known{database_, "SELECT generation, island FROM population "
                                     "UNION SELECT generation, island FROM statistics "
                                     "UNION SELECT generation, island FROM inherited_statistics"};
-         known.row();)
+         known.row();) {
         write_account(accounts, known.integer(0), known.integer(1), std::nullopt); // nobody knows
+    }
 }
 
 void RunFile::write_identity(const RunIdentity& identity) {
@@ -600,8 +647,9 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("inherited_generations", std::to_string(identity.inherited_generations));
     put("schedule", to_schedule_text(identity.schedule));
     put("keep_every", std::to_string(keep_every_));
-    if (!identity.first_population)
+    if (!identity.first_population) {
         return;
+    }
     RowWriter first_population{database_, "first_population", first_population_columns};
     for (std::size_t island = 0; island < identity.first_population->size(); ++island) {
         const evolution::GeneMatrix& genes = (*identity.first_population)[island];
@@ -613,16 +661,20 @@ Result<void> RunFile::read_identity() {
     database_.run("BEGIN"); // a server may bring the file to another format meanwhile
     const std::int64_t application = database_.number("PRAGMA application_id");
     const std::int64_t format = format_ = database_.number("PRAGMA user_version");
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (holds_nothing())
+    }
+    if (holds_nothing()) {
         return emptied(path_);
-    if (application != application_id)
+    }
+    if (application != application_id) {
         return refusal(RefusalCode::InvalidArgument, path_ + " is not a run file of evod");
-    if (format > format_version)
+    }
+    if (format > format_version) {
         return refusal(RefusalCode::FailedPrecondition, path_ + " was written by a newer evod: its format is version " +
                                                             std::to_string(format) + ", this evod reads up to " +
                                                             std::to_string(format_version));
+    }
     // Before anything else is read: a view or a trigger may have the name of a table, or hang on one.
     if (auto sound = check_schema(); !sound) {
         return sound;
@@ -635,15 +687,17 @@ Result<void> RunFile::read_identity() {
         return error ? 0 : static_cast<std::int64_t>(size);
     };
     const std::int64_t page_size = database_.number("PRAGMA page_size");
-    if (page_size > 0 && size_of(path_) % page_size != 0 && size_of(path_ + "-wal") == 0)
+    if (page_size > 0 && size_of(path_) % page_size != 0 && size_of(path_ + "-wal") == 0) {
         return damaged("its last page");
+    }
     RowReader run{database_, "run", run_columns};
     identity_.build.clear(); // older files do not tell
     std::size_t known = 0;
     while (run.next()) {
         const std::string key = run.text(), value = run.text();
-        if (!run.sound())
+        if (!run.sound()) {
             return damaged("the row \"" + key + "\" of its table run");
+        }
         bool good = true;
         const auto take = [&]<class T>(std::optional<T> read, T& to) {
             good = read.has_value();
@@ -667,13 +721,15 @@ Result<void> RunFile::read_identity() {
         } else if (key == "parameters") {
             const auto experiment = simulation::parse_experiment(value);
             good = experiment.has_value();
-            if (good)
+            if (good) {
                 identity_.parameters = experiment->parameters;
+            }
         } else if (key == "schedule") {
             const auto schedule = simulation::parse_schedule(value);
             good = schedule.has_value();
-            if (good)
+            if (good) {
                 identity_.schedule = *schedule;
+            }
         } else if (key == "evod_version") {
             identity_.evod_version = value;
         } else if (key == "build") {
@@ -685,56 +741,69 @@ Result<void> RunFile::read_identity() {
             take(number_from<std::int64_t>(value), identity_.began_unix_ms);
         } else if (key == "keep_every") { // not in files of before there was a choice
             take(number_from<std::uint64_t>(value), keep_every_);
-            if (!good || keep_every_ == 0)
+            if (!good || keep_every_ == 0) {
                 return damaged("the row \"" + key + "\" of its table run");
+            }
             continue;
         } else {
             continue;
         }
         ++known;
-        if (!good)
+        if (!good) {
             return damaged("the row \"" + key + "\" of its table run");
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     const std::size_t keys = format < 2 ? 9 : format < 3 ? 10 : format < 4 ? 11 : 12;
     if (known != keys || !begins_with_its_schedule(identity_) ||
-        identity_.inherited_generations >= std::max<std::uint64_t>(identity_.first_generation, 1))
+        identity_.inherited_generations >= std::max<std::uint64_t>(identity_.first_generation, 1)) {
         return damaged("its table run");
-    if (format < 2)
+    }
+    if (format < 2) {
         identity_.first_tick = static_cast<std::uint64_t>(database_.number(
             ("SELECT first_tick FROM generation WHERE generation = " + std::to_string(identity_.first_generation))
                 .c_str()));
-    if (auto read = read_first_population(); !read)
+    }
+    if (auto read = read_first_population(); !read) {
         return read;
-    if (auto read = read_thinning(); !read)
+    }
+    if (auto read = read_thinning(); !read) {
         return read;
+    }
     database_.run("COMMIT");
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
 Result<void> RunFile::read_first_population() {
-    if (database_.number("SELECT count(*) FROM sqlite_schema WHERE name = 'first_population'") == 0)
+    if (database_.number("SELECT count(*) FROM sqlite_schema WHERE name = 'first_population'") == 0) {
         return {};
+    }
     std::vector<evolution::GeneMatrix> islands;
     RowReader rows{database_, "first_population", first_population_columns, "1 ORDER BY island"};
     while (rows.next()) {
         const std::uint64_t island = rows.natural(), organisms = rows.natural();
         const std::string chromosomes = rows.bytes();
-        if (!rows.sound() || island != islands.size() || !read_into(islands.emplace_back(), organisms, chromosomes))
+        if (!rows.sound() || island != islands.size() || !read_into(islands.emplace_back(), organisms, chromosomes)) {
             return damaged(row_of("first_population", island));
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (islands.empty())
+    }
+    if (islands.empty()) {
         return {};
+    }
     identity_.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
     // A fork does not begin with it.
     if (identity_.first_generation == 1 &&
-        !faults_of(identity_.first_population, identity_.parameters, "first_population").empty())
+        !faults_of(identity_.first_population, identity_.parameters, "first_population").empty()) {
         return damaged("its table first_population");
+    }
     return {};
 }
 
@@ -745,18 +814,21 @@ Result<void> RunFile::read_thinning() {
         thinning_ = {
             .keep_every = thinned.natural(), .until_generation = thinned.natural(), .until_tick = thinned.natural()};
         constexpr std::uint64_t keep_every_max = std::uint64_t{1} << 40; // more than doublings can come to
-        if (!thinned.sound() || !in_order || thinning_.keep_every == 0 || thinning_.keep_every > keep_every_max)
+        if (!thinned.sound() || !in_order || thinning_.keep_every == 0 || thinning_.keep_every > keep_every_max) {
             return damaged(row_of("thinned", number));
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
 bool RunFile::is_held(std::uint64_t generation) {
     const std::uint64_t place = generation - identity_.first_generation;
-    if (generation <= thinning_.until_generation)
+    if (generation <= thinning_.until_generation) {
         return place % thinning_.keep_every == 0;
+    }
     return place % keep_every_ == 0 || generation >= last_generation();
 }
 
@@ -772,14 +844,16 @@ std::uint64_t RunFile::next_link_held(std::uint64_t after) const {
 }
 
 std::uint64_t RunFile::held_at_or_before(std::uint64_t generation) {
-    if (is_held(generation))
+    if (is_held(generation)) {
         return generation;
+    }
     const auto step_back = [&](std::uint64_t keep_every) {
         generation -= (generation - identity_.first_generation) % keep_every;
     };
     step_back(keep_every_);
-    if (generation <= thinning_.until_generation)
+    if (generation <= thinning_.until_generation) {
         step_back(thinning_.keep_every);
+    }
     return generation;
 }
 
@@ -789,14 +863,16 @@ std::uint64_t RunFile::held_at_or_after(std::uint64_t generation) {
         return first + (from - first + keep_every - 1) / keep_every * keep_every;
     };
     std::uint64_t held = generation <= until ? step_on(generation, thinning_.keep_every) : generation;
-    if (held > until)
+    if (held > until) {
         held = step_on(std::max(generation, until + 1), keep_every_);
+    }
     return std::min(held, last_generation());
 }
 
 std::optional<Refusal> RunFile::other_model() const {
-    if (identity_.model_version == simulation::model_version)
+    if (identity_.model_version == simulation::model_version) {
         return std::nullopt;
+    }
     return refusal(RefusalCode::FailedPrecondition,
                    path_ + " was made with evod " + identity_.evod_version + ", which followed version " +
                        std::to_string(identity_.model_version) + " of the model; this evod " + EVOD_VERSION +
@@ -815,40 +891,49 @@ Result<std::optional<EndMark>> RunFile::end_mark() {
         mark->journal_entries = end.natural();
         mark->generations = end.natural();
         mark->links = end.natural();
-        if (!end.sound())
+        if (!end.sound()) {
             return damaged("its end mark");
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return mark;
 }
 
 Result<void> RunFile::check_tree(const std::string& of) {
     Statement integrity{database_, "PRAGMA integrity_check(" + of + ")"};
-    if (integrity.row())
-        if (const std::string verdict = integrity.text(0); verdict != "ok")
+    if (integrity.row()) {
+        if (const std::string verdict = integrity.text(0); verdict != "ok") {
             return refusal(RefusalCode::DataLoss, path_ + " is damaged: " + verdict);
+        }
+    }
     return {};
 }
 
 Result<void> RunFile::check_end_mark() {
     const auto mark = end_mark();
-    if (!mark)
+    if (!mark) {
         return mark.error();
+    }
     const EndMark found = contents();
     if (*mark && ((*mark)->tick != found.tick || (*mark)->generations != found.generations ||
-                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries))
+                  (*mark)->links != found.links || (*mark)->journal_entries != found.journal_entries)) {
         return damaged("what stands before its end mark");
-    if (database_.failed())
+    }
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
 Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uint32_t count) {
     // That the last entries are gone, no other row tells.
-    if (first == 1)
-        if (auto sound = check_tree("journal"); !sound)
+    if (first == 1) {
+        if (auto sound = check_tree("journal"); !sound) {
             return sound.error();
+        }
+    }
     std::vector<JournalEntry> entries;
     RowReader reader{database_,
                      "journal",
@@ -871,12 +956,14 @@ Result<std::vector<JournalEntry>> RunFile::journal(std::uint64_t first, std::uin
         entry.control.paused = paused != 0;
         entry.control.leased = paused == 2;
         entry.control.speed = reader.optional_real();
-        if (!reader.sound() || entry.number != first + entries.size())
+        if (!reader.sound() || entry.number != first + entries.size()) {
             return damaged(row_of("journal", first + entries.size()));
+        }
         entries.push_back(std::move(entry));
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return entries;
 }
 
@@ -891,8 +978,9 @@ std::uint64_t RunFile::last_journal_entry() {
 
 Result<void> RunFile::copy_to(const std::string& path) {
     database_.copy_to(path);
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
@@ -907,19 +995,22 @@ std::uint64_t RunFile::generation_at(std::uint64_t tick) {
 
 Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
     // Most generations have those of the one before.
-    if (read_parameters_ && read_parameters_number_ == number)
+    if (read_parameters_ && read_parameters_number_ == number) {
         return *read_parameters_;
+    }
     RowReader reader{database_, "parameters", parameters_columns, "number = ?", {number}};
     const auto bad = [&] { return damaged(row_of("parameters", static_cast<std::uint64_t>(number))); };
-    if (!reader.next())
+    if (!reader.next()) {
         return bad();
+    }
     (void)reader.integer();
     simulation::ParameterSet set;
     set.revision = reader.natural();
     const auto active = simulation::parse_experiment(reader.text());
     const auto requested = simulation::parse_experiment(reader.text());
-    if (!reader.sound() || !active || !requested)
+    if (!reader.sound() || !active || !requested) {
         return bad();
+    }
     set.active = active->parameters;
     set.requested = requested->parameters;
     read_parameters_ = set;
@@ -931,8 +1022,9 @@ Result<std::optional<simulation::Opening>> RunFile::opening_of(std::uint64_t gen
     RowReader reader{
         database_, "generation", generation_columns, "generation = ?", {static_cast<std::int64_t>(generation)}};
     if (!reader.next()) {
-        if (database_.failed())
+        if (database_.failed()) {
             return failure();
+        }
         return std::optional<simulation::Opening>{};
     }
     simulation::Opening opening;
@@ -945,11 +1037,13 @@ Result<std::optional<simulation::Opening>> RunFile::opening_of(std::uint64_t gen
     opening.progress.best_fitness = reader.real();
     opening.progress.last_best_fitness = reader.real();
     opening.progress.last_died_out = reader.integer() != 0;
-    if (!reader.sound())
+    if (!reader.sound()) {
         return damaged(row_of("generation", generation));
+    }
     const auto set = parameter_set(parameters);
-    if (!set)
+    if (!set) {
         return set.error();
+    }
     opening.parameters = *set;
     return opening;
 }
@@ -975,21 +1069,25 @@ Result<std::vector<evolution::NextGeneration>> RunFile::born_in(const simulation
         const std::string genes = rows.bytes(), parents = rows.bytes();
         if (!rows.sound() || island != islands.size() || !read_into(born.genes, organisms, genes) ||
             !read_into(born.parents, parents) ||
-            (!born.parents.empty() && born.parents.size() != organisms)) // the first generation has none
+            (!born.parents.empty() && born.parents.size() != organisms)) { // the first generation has none
             return bad();
+        }
         islands.push_back(std::move(born));
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (islands.size() != opening.parameters.active.island_count)
+    }
+    if (islands.size() != opening.parameters.active.island_count) {
         return bad();
+    }
     return islands;
 }
 
 Result<simulation::Founders> RunFile::founders_of(const GenerationBegun& begun) {
     simulation::Founders islands;
-    if (format_ < 3)
+    if (format_ < 3) {
         return islands;
+    }
     const std::uint64_t generation = begun.opening.moment.generation;
     const auto bad = [&] { return damaged("the founders of generation " + std::to_string(generation)); };
     RowReader rows{database_,
@@ -1003,23 +1101,28 @@ Result<simulation::Founders> RunFile::founders_of(const GenerationBegun& begun) 
         const std::uint64_t island = rows.natural();
         const std::string founders = rows.bytes();
         if (!rows.sound() || island != islands.size() || island >= begun.born.size() ||
-            !read_into(islands.emplace_back(), founders))
+            !read_into(islands.emplace_back(), founders)) {
             return bad();
+        }
         known &= islands.back().size() == static_cast<std::size_t>(begun.born[island].genes.cols());
-        if (!known && !founders.empty())
+        if (!known && !founders.empty()) {
             return bad();
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (islands.size() != begun.born.size())
+    }
+    if (islands.size() != begun.born.size()) {
         return bad();
+    }
     return known ? std::move(islands) : simulation::Founders{};
 }
 
 Result<RunFile::Accounts> RunFile::accounts_of(std::uint64_t generation, std::size_t island_count) {
     Accounts islands;
-    if (format_ < 4)
+    if (format_ < 4) {
         return Accounts(island_count);
+    }
     const auto bad = [&] { return damaged(accounts_of_generation(generation)); };
     RowReader rows{database_,
                    account_table,
@@ -1030,35 +1133,44 @@ Result<RunFile::Accounts> RunFile::accounts_of(std::uint64_t generation, std::si
         (void)rows.integer();
         const std::uint64_t island = rows.natural();
         islands.push_back(evolution::account_from([&] { return rows.optional_real(); }));
-        if (!rows.sound() || island + 1 != islands.size())
+        if (!rows.sound() || island + 1 != islands.size()) {
             return bad();
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (islands.size() != island_count)
+    }
+    if (islands.size() != island_count) {
         return bad();
+    }
     return islands;
 }
 
 Result<std::optional<GenerationBegun>> RunFile::beginning_of(std::uint64_t generation) {
     auto opening = opening_of(generation);
-    if (!opening)
+    if (!opening) {
         return opening.error();
-    if (!*opening || !is_held(generation))
+    }
+    if (!*opening || !is_held(generation)) {
         return std::optional<GenerationBegun>{};
+    }
     auto born = born_in(**opening);
-    if (!born)
+    if (!born) {
         return born.error();
+    }
     GenerationBegun begun{.opening = **opening, .born = *std::move(born)};
     auto founders = founders_of(begun);
-    if (!founders)
+    if (!founders) {
         return founders.error();
+    }
     begun.founders = *std::move(founders);
     const auto accounts = accounts_of(generation, begun.born.size());
-    if (!accounts)
+    if (!accounts) {
         return accounts.error();
-    for (std::size_t island = 0; island < accounts->size(); ++island)
+    }
+    for (std::size_t island = 0; island < accounts->size(); ++island) {
         begun.born[island].account = (*accounts)[island];
+    }
     return std::optional{std::move(begun)};
 }
 
@@ -1074,22 +1186,28 @@ Result<std::optional<GenerationEnded>> RunFile::outcome_of(std::uint64_t generat
         const std::string fitness = rows.bytes(), lived = rows.bytes(), cause = rows.bytes();
         if (!rows.sound() || island != ended.outcomes.size() || !read_into(outcome.fitness, fitness) ||
             !read_into(outcome.lived_ticks, lived) || !read_into(outcome.cause, cause) ||
-            outcome.lived_ticks.size() != outcome.fitness.size() || outcome.cause.size() != outcome.fitness.size())
+            outcome.lived_ticks.size() != outcome.fitness.size() || outcome.cause.size() != outcome.fitness.size()) {
             return bad();
+        }
         ended.outcomes.push_back(std::move(outcome));
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (ended.outcomes.empty() && !is_held(generation))
+    }
+    if (ended.outcomes.empty() && !is_held(generation)) {
         return std::optional<GenerationEnded>{};
+    }
     auto statistics = statistics_of(generation);
-    if (!statistics)
+    if (!statistics) {
         return statistics.error();
+    }
     ended.statistics = *std::move(statistics);
-    if (ended.outcomes.size() != ended.statistics.size())
+    if (ended.outcomes.size() != ended.statistics.size()) {
         return bad();
-    if (ended.outcomes.empty())
+    }
+    if (ended.outcomes.empty()) {
         return std::optional<GenerationEnded>{};
+    }
     return ended;
 }
 
@@ -1102,19 +1220,24 @@ Result<std::vector<simulation::GenerationStatistics>> RunFile::statistics_of(std
                    {static_cast<std::int64_t>(generation)}};
     while (rows.next()) {
         const simulation::GenerationStatistics island = read_statistics(rows);
-        if (!rows.sound() || island.island != statistics.size())
+        if (!rows.sound() || island.island != statistics.size()) {
             return damaged("a row of the statistics of generation " + std::to_string(generation));
+        }
         statistics.push_back(island);
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (statistics.empty())
+    }
+    if (statistics.empty()) {
         return statistics;
+    }
     const auto accounts = accounts_of(generation, statistics.size());
-    if (!accounts)
+    if (!accounts) {
         return accounts.error();
-    for (std::size_t island = 0; island < statistics.size(); ++island)
+    }
+    for (std::size_t island = 0; island < statistics.size(); ++island) {
         statistics[island].account = (*accounts)[island];
+    }
     return statistics;
 }
 
@@ -1124,15 +1247,19 @@ Result<simulation::World::History> RunFile::history(std::uint64_t before, std::s
     const std::uint64_t first =
         std::max(own - identity_.inherited_generations, before - std::min<std::uint64_t>(before, count));
     if (first < own) {
-        if (auto read = read_history(inherited_statistics, first, std::min(own, before), history); !read)
+        if (auto read = read_history(inherited_statistics, first, std::min(own, before), history); !read) {
             return read.error();
-        if (first + history.size() < std::min(own, before))
+        }
+        if (first + history.size() < std::min(own, before)) {
             return damaged(row_of(inherited_statistics, first + history.size()));
+        }
     }
-    if (auto read = read_history("statistics", std::max(first, own), before, history); !read)
+    if (auto read = read_history("statistics", std::max(first, own), before, history); !read) {
         return read.error();
-    if (first + history.size() < std::min(before, last_generation())) // all before the last have ended
+    }
+    if (first + history.size() < std::min(before, last_generation())) { // all before the last have ended
         return damaged(row_of("statistics", first + history.size()));
+    }
     return history;
 }
 
@@ -1145,10 +1272,11 @@ Result<void> RunFile::read_history(const char* table, std::uint64_t first, std::
                       {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)}};
     // Beside it, the accounts of the same generations, and of one more if the last has not ended.
     std::optional<RowReader> accounts;
-    if (format_ >= 4)
+    if (format_ >= 4) {
         accounts.emplace(database_, account_table, account_columns,
                          "generation >= ? AND generation < ? ORDER BY generation, island",
                          std::vector{static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)});
+    }
     std::uint64_t expected = first;
     std::vector<simulation::GenerationStatistics> rows; // of that generation
     while (numbers.next()) {
@@ -1157,22 +1285,27 @@ Result<void> RunFile::read_history(const char* table, std::uint64_t first, std::
             history.emplace_back(std::exchange(rows, {}));
             ++expected;
         }
-        if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size())
+        if (!numbers.sound() || statistics.generation != expected || statistics.island != rows.size()) {
             return damaged(row_of(table, expected));
+        }
         if (accounts) {
             const bool there =
                 accounts->next() && accounts->natural() == expected && accounts->natural() == statistics.island;
-            if (there)
+            if (there) {
                 statistics.account = evolution::account_from([&] { return accounts->optional_real(); });
-            if (!there || !accounts->sound())
+            }
+            if (!there || !accounts->sound()) {
                 return damaged(accounts_of_generation(expected));
+            }
         }
         rows.push_back(statistics);
     }
-    if (!rows.empty())
+    if (!rows.empty()) {
         history.emplace_back(std::move(rows));
-    if (database_.failed())
+    }
+    if (database_.failed()) {
         return failure();
+    }
     return {};
 }
 
@@ -1188,20 +1321,24 @@ Result<std::vector<HashLink>> RunFile::links(std::uint64_t after, std::uint64_t 
         link.tick = reader.natural();
         link.hash.low = reader.natural();
         link.hash.high = reader.natural();
-        if (!reader.sound())
+        if (!reader.sound()) {
             return damaged(row_of("state_hash", link.tick));
-        if (is_link_held(link.tick)) // or it is about to be taken out
+        }
+        if (is_link_held(link.tick)) { // or it is about to be taken out
             links.push_back(link);
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return links;
 }
 
 Result<std::string> RunFile::parts_of(std::uint64_t tick, std::vector<std::int64_t>& checksums) {
     std::string bytes;
-    if (format_ < 4)
+    if (format_ < 4) {
         return bytes;
+    }
     RowReader parts{
         database_, "checkpoint_part", part_columns, "tick = ? ORDER BY part", {static_cast<std::int64_t>(tick)}};
     while (parts.next()) {
@@ -1209,19 +1346,22 @@ Result<std::string> RunFile::parts_of(std::uint64_t tick, std::vector<std::int64
         const std::uint64_t part = parts.natural(), expected = checksums.size() + 1;
         bytes += parts.bytes();
         checksums.push_back(parts.checksum());
-        if (!parts.sound() || part != expected)
+        if (!parts.sound() || part != expected) {
             return damaged("part " + std::to_string(expected) + " of " + row_of("checkpoint", tick));
+        }
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return bytes;
 }
 
 Result<std::vector<StoredCheckpoint>> RunFile::checkpoints_where(const std::string& condition,
                                                                  const std::vector<std::int64_t>& where) {
     std::vector<StoredCheckpoint> found;
-    if (format_ < 2)
+    if (format_ < 2) {
         return found;
+    }
     RowReader reader{database_, "checkpoint", checkpoint_columns, condition, where};
     while (reader.next()) {
         StoredCheckpoint checkpoint;
@@ -1236,21 +1376,26 @@ Result<std::vector<StoredCheckpoint>> RunFile::checkpoints_where(const std::stri
         // As long as its row is being read, a server takes none of its parts away.
         std::vector<std::int64_t> checksums;
         auto parts = parts_of(checkpoint.moment.tick, checksums);
-        if (!parts)
+        if (!parts) {
             return parts.error();
-        for (const std::int64_t checksum : checksums)
+        }
+        for (const std::int64_t checksum : checksums) {
             reader.covers(checksum);
+        }
         checkpoint.state = *std::move(parts) + reader.bytes();
-        if (!reader.sound())
+        if (!reader.sound()) {
             return damaged(row_of("checkpoint", checkpoint.moment.tick));
+        }
         const auto set = parameter_set(parameters);
-        if (!set)
+        if (!set) {
             return set.error();
+        }
         checkpoint.parameters = *set;
         found.push_back(std::move(checkpoint));
     }
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     return found;
 }
 
@@ -1261,8 +1406,9 @@ Result<std::vector<StoredCheckpoint>> RunFile::checkpoints(std::uint64_t after, 
 
 Result<std::optional<StoredCheckpoint>> RunFile::last_checkpoint(std::uint64_t until) {
     auto found = checkpoints_where("tick <= ? ORDER BY tick DESC LIMIT 1", {static_cast<std::int64_t>(until)});
-    if (!found)
+    if (!found) {
         return found.error();
+    }
     return found->empty() ? std::nullopt : std::optional{std::move(found->front())};
 }
 
@@ -1273,10 +1419,12 @@ std::uint64_t RunFile::last_tick() {
         "SELECT max(first_tick + 1) FROM generation WHERE generation > " + std::to_string(identity_.first_generation);
     for (const char* sql : {"SELECT tick FROM journal ORDER BY number DESC LIMIT 1", "SELECT max(tick) FROM state_hash",
                             "SELECT max(first_tick) FROM generation", bred.c_str(),
-                            "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"})
+                            "SELECT max(end_tick) FROM statistics", "SELECT max(tick) FROM end_mark"}) {
         last = std::max(last, database_.number(sql));
-    if (format_ >= 2)
+    }
+    if (format_ >= 2) {
         last = std::max(last, database_.number("SELECT max(tick) FROM checkpoint"));
+    }
     return static_cast<std::uint64_t>(last);
 }
 
@@ -1294,102 +1442,126 @@ std::uint64_t RunFile::last_generation_ended() {
 }
 
 Result<void> RunFile::check(base::FunctionRef<void(std::uint64_t)> told) {
-    if (auto sound = check_tree("1"); !sound)
+    if (auto sound = check_tree("1"); !sound) {
         return sound;
-    if (auto entries = journal(); !entries)
+    }
+    if (auto entries = journal(); !entries) {
         return entries.error();
-    if (auto inherited = history(identity_.first_generation, identity_.inherited_generations); !inherited)
+    }
+    if (auto inherited = history(identity_.first_generation, identity_.inherited_generations); !inherited) {
         return inherited.error();
+    }
     const std::uint64_t last = last_generation();
     for (std::uint64_t generation = identity_.first_generation; generation <= last; ++generation) {
         told(generation);
         const auto begun = beginning_of(generation);
-        if (!begun)
+        if (!begun) {
             return begun.error();
+        }
         const auto ended = outcome_of(generation);
-        if (!ended)
+        if (!ended) {
             return ended.error();
+        }
         if (is_held(generation)) {
-            if (!*begun)
+            if (!*begun) {
                 return damaged(row_of("generation", generation));
-            if (!*ended && generation < last)
+            }
+            if (!*ended && generation < last) {
                 return damaged("the outcome of generation " + std::to_string(generation));
+            }
             continue;
         }
         const auto opening = opening_of(generation);
-        if (!opening)
+        if (!opening) {
             return opening.error();
-        if (!*opening)
+        }
+        if (!*opening) {
             return damaged(row_of("generation", generation));
+        }
         const auto statistics = statistics_of(generation);
-        if (!statistics)
+        if (!statistics) {
             return statistics.error();
-        if (statistics->size() != (*opening)->parameters.active.island_count)
+        }
+        if (statistics->size() != (*opening)->parameters.active.island_count) {
             return damaged("the statistics of generation " + std::to_string(generation));
+        }
     }
     const EndMark found = contents();
     constexpr std::uint64_t ticks_at_once = 100'000 * ticks_per_link;
     for (std::uint64_t next = next_link_held(identity_.first_tick); next <= found.tick;) {
         const auto chain = links(next - 1, std::min(found.tick, next + ticks_at_once));
-        if (!chain)
+        if (!chain) {
             return chain.error();
+        }
         if (chain->empty()) {
-            if (database_.number("SELECT max(tick) FROM state_hash") >= static_cast<std::int64_t>(next))
+            if (database_.number("SELECT max(tick) FROM state_hash") >= static_cast<std::int64_t>(next)) {
                 return damaged(row_of("state_hash", next));
+            }
             break; // whether the last are missing, the end mark tells
         }
         for (const HashLink& link : *chain) {
-            if (link.tick != next)
+            if (link.tick != next) {
                 return damaged(row_of("state_hash", next));
+            }
             next = next_link_held(next);
         }
     }
-    if (auto checked = check_checkpoints(found); !checked)
+    if (auto checked = check_checkpoints(found); !checked) {
         return checked;
+    }
     return check_end_mark();
 }
 
 Result<void> RunFile::check_checkpoints(const EndMark& found) {
-    if (format_ < 2)
+    if (format_ < 2) {
         return {};
+    }
     bool begins_with_one = false;
     const std::int64_t newest = database_.number("SELECT max(tick) FROM checkpoint");
     for (std::int64_t after = -1; after < newest && !database_.failed();) {
         // One at a time, as they may be large.
         const auto next = checkpoints_where("tick > ? ORDER BY tick LIMIT 1", {after});
-        if (!next)
+        if (!next) {
             return next.error();
-        if (next->empty())
+        }
+        if (next->empty()) {
             break;
+        }
         const StoredCheckpoint& checkpoint = next->front();
         after = static_cast<std::int64_t>(checkpoint.moment.tick);
         const auto opening = opening_of(checkpoint.moment.generation);
-        if (!opening)
+        if (!opening) {
             return opening.error();
+        }
         if (!*opening || !is_held(checkpoint.moment.generation) || checkpoint.moment.tick < identity_.first_tick ||
             (*opening)->moment.tick + checkpoint.moment.generation_tick != checkpoint.moment.tick ||
-            checkpoint.moment.generation_tick == 0 || checkpoint.journal_entries > found.journal_entries)
+            checkpoint.moment.generation_tick == 0 || checkpoint.journal_entries > found.journal_entries) {
             return damaged(row_of("checkpoint", checkpoint.moment.tick));
+        }
         begins_with_one |= checkpoint.moment.tick == identity_.first_tick;
     }
     const auto first = opening_of(identity_.first_generation);
-    if (!first)
+    if (!first) {
         return first.error();
-    if (*first && (*first)->moment.tick < identity_.first_tick && !begins_with_one)
+    }
+    if (*first && (*first)->moment.tick < identity_.first_tick && !begins_with_one) {
         return damaged(row_of("checkpoint", identity_.first_tick));
+    }
     return {};
 }
 
 RunFile::Writers& RunFile::writers() {
-    if (!writers_)
+    if (!writers_) {
         writers_ = std::make_unique<Writers>(database_);
+    }
     return *writers_;
 }
 
 void RunFile::begin() {
     database_.run("BEGIN IMMEDIATE");
-    if (marked_)
+    if (marked_) {
         database_.run("DELETE FROM end_mark");
+    }
     bring_up_to_date();
 }
 
@@ -1411,11 +1583,13 @@ void RunFile::write(const JournalEntry& entry) {
 }
 
 std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
-    if (parameter_sets_ == 0)
+    if (parameter_sets_ == 0) {
         parameter_sets_ = database_.number("SELECT max(number) FROM parameters");
+    }
     if (last_parameters_ && last_parameters_->revision == parameters.revision &&
-        last_parameters_->active == parameters.active && last_parameters_->requested == parameters.requested)
+        last_parameters_->active == parameters.active && last_parameters_->requested == parameters.requested) {
         return parameter_sets_;
+    }
     using simulation::Written;
     writers()
         .parameters.integer(++parameter_sets_)
@@ -1429,12 +1603,13 @@ std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
 
 void RunFile::write(const Inherited& inherited) {
     RowWriter statistics{database_, inherited_statistics, statistics_columns()};
-    for (const simulation::GenerationRows& generation : inherited.history)
+    for (const simulation::GenerationRows& generation : inherited.history) {
         for (const simulation::GenerationStatistics& island : generation) {
             write_statistics(statistics, island);
             write_account(writers().account, static_cast<std::int64_t>(island.generation), island.island,
                           island.account);
         }
+    }
 }
 
 void RunFile::write(const GenerationBegun& begun) {
@@ -1473,10 +1648,12 @@ void RunFile::write(const GenerationBegun& begun) {
     }
     // The one before is the last no more.
     const std::uint64_t before = opening.moment.generation - 1;
-    if (before <= identity_.first_generation || (before - identity_.first_generation) % keep_every_ == 0)
+    if (before <= identity_.first_generation || (before - identity_.first_generation) % keep_every_ == 0) {
         return;
-    for (const char* table : tables_of_held_generations)
+    }
+    for (const char* table : tables_of_held_generations) {
         database_.run(("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(before)).c_str());
+    }
     tidy_ = false;
 }
 
@@ -1491,8 +1668,9 @@ void RunFile::write(const GenerationEnded& ended) {
             .bytes(bytes_of(outcome.cause))
             .finish();
     }
-    for (const simulation::GenerationStatistics& statistics : ended.statistics)
+    for (const simulation::GenerationStatistics& statistics : ended.statistics) {
         write_statistics(writers().statistics, statistics);
+    }
 }
 
 void RunFile::write(const HashLink& link) {
@@ -1500,13 +1678,15 @@ void RunFile::write(const HashLink& link) {
 }
 
 void RunFile::write(const Checkpoint& checkpoint) {
-    if (!database_.failed() && is_held(checkpoint.state.moment.generation)) // or packing would be for nothing
+    if (!database_.failed() && is_held(checkpoint.state.moment.generation)) { // or packing would be for nothing
         write(pack(checkpoint));
+    }
 }
 
 void RunFile::write(const StoredCheckpoint& checkpoint) {
-    if (database_.failed() || !is_held(checkpoint.moment.generation))
+    if (database_.failed() || !is_held(checkpoint.moment.generation)) {
         return;
+    }
     HalfWritten half{.tick = checkpoint.moment.tick};
     while (!write_next(checkpoint, half)) {
     }
@@ -1523,25 +1703,30 @@ Result<bool> RunFile::write_part(const StoredCheckpoint& checkpoint) {
     if (!is_held(checkpoint.moment.generation) || (!begun && format_ >= 2 && has_checkpoint(tick))) {
         half_written_.reset();
         tidy_ = false;
-        if (database_.failed())
+        if (database_.failed()) {
             return failure();
+        }
         return true;
     }
     begin();
-    if (!begun)
+    if (!begun) {
         half_written_ = HalfWritten{.tick = tick};
+    }
     const bool last = write_next(checkpoint, *half_written_);
-    if (auto committed = commit(); !committed)
+    if (auto committed = commit(); !committed) {
         return committed.error();
-    if (last)
+    }
+    if (last) {
         half_written_.reset();
+    }
     return last;
 }
 
 bool RunFile::write_next(const StoredCheckpoint& checkpoint, HalfWritten& half) {
     const simulation::Moment& moment = checkpoint.moment;
-    if (half.checksums.empty()) // what a server left that was killed, or one that is replaced
+    if (half.checksums.empty()) { // what a server left that was killed, or one that is replaced
         database_.run(("DELETE FROM checkpoint_part WHERE tick = " + std::to_string(half.tick)).c_str());
+    }
     const std::size_t size = options_.part_bytes;
     const auto left = std::as_bytes(std::span{checkpoint.state}).subspan(half.checksums.size() * size);
     if (left.size() > size) {
@@ -1559,8 +1744,9 @@ bool RunFile::write_next(const StoredCheckpoint& checkpoint, HalfWritten& half) 
         .natural(checkpoint.journal_entries)
         .natural(checkpoint.hash.low)
         .natural(checkpoint.hash.high);
-    for (const std::int64_t checksum : half.checksums)
+    for (const std::int64_t checksum : half.checksums) {
         row.covers(checksum);
+    }
     row.bytes(left).finish();
     database_.run(("DELETE FROM checkpoint WHERE tick != " + std::to_string(identity_.first_tick) +
                    " AND tick NOT IN (SELECT tick FROM checkpoint ORDER BY tick DESC LIMIT " +
@@ -1571,28 +1757,34 @@ bool RunFile::write_next(const StoredCheckpoint& checkpoint, HalfWritten& half) 
 }
 
 Result<bool> RunFile::tidy() {
-    if (marked_ || (tidy_ && !sweep_))
+    if (marked_ || (tidy_ && !sweep_)) {
         return false;
+    }
     if (tidy_) {
-        if (auto swept = sweep(); !swept)
+        if (auto swept = sweep(); !swept) {
             return swept.error();
+        }
         return true;
     }
     std::string where = belonging_to_none;
-    if (half_written_)
+    if (half_written_) {
         where += " AND tick != " + std::to_string(half_written_->tick);
+    }
     tidy_ = database_.number(("SELECT count(*) FROM checkpoint_part WHERE " + where).c_str()) == 0;
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
-    if (tidy_)
+    }
+    if (tidy_) {
         return sweep_.has_value();
+    }
     begin();
     constexpr int parts_at_once = 2;
     database_.run(("DELETE FROM checkpoint_part WHERE rowid IN (SELECT rowid FROM checkpoint_part WHERE " + where +
                    " LIMIT " + std::to_string(parts_at_once) + ")")
                       .c_str());
-    if (auto committed = commit(); !committed)
+    if (auto committed = commit(); !committed) {
         return committed.error();
+    }
     return true;
 }
 
@@ -1615,8 +1807,9 @@ void RunFile::write(EndMark mark) {
 
 Result<void> RunFile::commit() {
     database_.run("COMMIT");
-    if (database_.failed())
+    if (database_.failed()) {
         return failure();
+    }
     marked_ = false;
     return {};
 }
@@ -1630,8 +1823,9 @@ bool RunFile::is_large() {
 Result<void> RunFile::thin_if_large() {
     const std::uint64_t last = last_generation();
     // The last two may still be written to.
-    if (sweep_ || !is_large() || last < identity_.first_generation + 2 || last - 2 <= thinning_.until_generation)
+    if (sweep_ || !is_large() || last < identity_.first_generation + 2 || last - 2 <= thinning_.until_generation) {
         return {};
+    }
     // Once only the first is left of the older ones, there is nothing to halve.
     const std::uint64_t twice = thinning_.keep_every > last ? 1 : 2;
     Thinning next{.keep_every = twice * std::max(thinning_.keep_every, keep_every_),
@@ -1650,8 +1844,9 @@ Result<void> RunFile::thin_if_large() {
         .natural(next.until_generation)
         .natural(next.until_tick)
         .finish();
-    if (auto committed = commit(); !committed)
+    if (auto committed = commit(); !committed) {
         return committed;
+    }
     thinning_ = next;
     tidy_ = false;
     sweep_ = Sweep{};
@@ -1669,8 +1864,9 @@ Result<void> RunFile::sweep() {
                                            std::to_string(sweep_->generation) +
                                            " AND generation <= " + std::to_string(until) + " AND (generation - " +
                                            first + ") % " + every + " != 0 ORDER BY generation LIMIT 64"};
-             left.row();)
+             left.row();) {
             generations.push_back(left.integer(0));
+        }
         if (generations.empty()) {
             sweep_->generation = until;
             return {};
@@ -1678,13 +1874,16 @@ Result<void> RunFile::sweep() {
         begin();
         const auto free_pages = [this] { return database_.number("PRAGMA freelist_count"); };
         const std::int64_t enough = free_pages() + pages_at_once;
-        for (std::size_t i = 0; i < generations.size() && free_pages() < enough; ++i)
+        for (std::size_t i = 0; i < generations.size() && free_pages() < enough; ++i) {
             // The population last: by it a generation is found again of which not all has been taken out.
-            for (const char* table : {"outcome", "founders", "population"})
-                if (free_pages() < enough)
+            for (const char* table : {"outcome", "founders", "population"}) {
+                if (free_pages() < enough) {
                     database_.run(
                         ("DELETE FROM " + std::string{table} + " WHERE generation = " + std::to_string(generations[i]))
                             .c_str());
+                }
+            }
+        }
         return commit();
     }
     if (sweep_->tick < thinning_.until_tick) {

@@ -57,22 +57,28 @@ class StretchCheck {
     Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> told) {
         const StoredGeneration& first = stretch_.front();
         agrees_with_beginning_of(first);
-        if (first.opening.moment.generation == file_.identity().first_generation)
+        if (first.opening.moment.generation == file_.identity().first_generation) {
             check_beginning_of_run();
-        if (!done_.difference && !can_be_simulated(first))
+        }
+        if (!done_.difference && !can_be_simulated(first)) {
             differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
-        if (done_.difference)
+        }
+        if (done_.difference) {
             return done_;
+        }
         auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born, .founders = first.founders},
                                  beginning(), changes, {}, executor_);
-        if (!rerun)
+        if (!rerun) {
             return rerun.error();
+        }
         const double began_s = rerun->world().moment().simulated_s;
         const std::uint64_t began_tick = rerun->world().moment().tick;
-        for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i)
+        for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i) {
             check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, told);
-        if (const auto& fault = rerun->changes().fault())
+        }
+        if (const auto& fault = rerun->changes().fault()) {
             return *fault;
+        }
         done_.ticks = rerun->world().moment().tick - began_tick;
         done_.simulated_s = rerun->world().moment().simulated_s - began_s;
         return done_;
@@ -89,8 +95,9 @@ class StretchCheck {
     }
     /// Whether nothing was found.
     bool same(const StoredMoment& moment, std::optional<Mismatch> mismatch) {
-        if (mismatch)
+        if (mismatch) {
             differ(moment, *std::move(mismatch));
+        }
         return !mismatch;
     }
     bool same_births(const StoredMoment& moment, const StoredGeneration& stored, const GenerationBegun& simulated) {
@@ -121,8 +128,9 @@ class StretchCheck {
             const simulation::ParameterSet& set = within ? within->parameters : first.opening.parameters;
             (void)same(agrees_, compare_requested(set.requested, identity.parameters));
         }
-        if (done_.difference)
+        if (done_.difference) {
             done_.difference->agrees.reset();
+        }
     }
 
     void check_generation(Rerun& rerun, const StoredGeneration& stored, const StoredGeneration* next,
@@ -130,10 +138,12 @@ class StretchCheck {
         ++done_.generations;
         agrees_with_beginning_of(stored);
         check_hashes(rerun, stored, told);
-        if (!done_.difference)
+        if (!done_.difference) {
             check_end(rerun.world(), stored, next != nullptr);
-        if (!done_.difference && next != nullptr)
+        }
+        if (!done_.difference && next != nullptr) {
             check_next(rerun, *next);
+        }
     }
 
     void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> told) {
@@ -145,22 +155,27 @@ class StretchCheck {
         while (world.moment().tick < stored.last_tick && !world.generation_over()) {
             if (checkpoint != stored.checkpoints.end() && checkpoint->moment.tick == world.moment().tick + 1) {
                 rerun.advance_tick(executor_, checkpoint->journal_entries);
-                if (!check_checkpoint(world, *checkpoint++))
+                if (!check_checkpoint(world, *checkpoint++)) {
                     return;
+                }
                 rerun.make_changes();
             } else {
                 rerun.advance_tick(executor_);
             }
             const StoredMoment now{world.moment().generation, world.moment().tick};
-            if (now.tick % ticks_per_link != 0)
+            if (now.tick % ticks_per_link != 0) {
                 continue;
+            }
             told(now.tick - std::exchange(told_tick, now.tick));
-            if (!file_.is_link_held(now.tick))
+            if (!file_.is_link_held(now.tick)) {
                 continue;
-            if (link == stored.links.end() || link->tick != now.tick)
+            }
+            if (link == stored.links.end() || link->tick != now.tick) {
                 return differ(now, {"the state hash", "none", to_text(world.hash())});
-            if (!same(now, compare(link->hash, world.hash())))
+            }
+            if (!same(now, compare(link->hash, world.hash()))) {
                 return;
+            }
             agrees_ = now;
             agreeing_part_ = "the state hash";
             ++done_.hashes;
@@ -174,13 +189,16 @@ class StretchCheck {
         const StoredMoment now{world.moment().generation, world.moment().tick};
         simulation::WorldState state{
             .moment = stored.moment, .parameters = stored.parameters, .islands = {}, .ended = {}};
-        if (const auto unpacked = unpack(stored.state, world.shapes(), state); !unpacked)
+        if (const auto unpacked = unpack(stored.state, world.shapes(), state); !unpacked) {
             return same(now, Mismatch{"the checkpoint", unpacked.error().message, "a state of this world"});
+        }
         std::optional<Mismatch> found = compare(state, world.state(executor_));
-        if (found)
+        if (found) {
             found->part = "the checkpoint: " + found->part;
-        if (!same(now, found ? std::move(found) : compare(stored.hash, world.hash())))
+        }
+        if (!same(now, found ? std::move(found) : compare(stored.hash, world.hash()))) {
             return false;
+        }
         agrees_ = now;
         agreeing_part_ = "the checkpoint";
         ++done_.checkpoints;
@@ -190,17 +208,22 @@ class StretchCheck {
     void check_end(const World& world, const StoredGeneration& stored, bool goes_on) {
         const StoredMoment now{world.moment().generation, world.moment().tick};
         const bool ended = !stored.statistics.empty();
-        if (now.tick < stored.last_tick)
+        if (now.tick < stored.last_tick) {
             return differ(now, {"the generation's end", "later", "at this tick"});
-        if ((ended || goes_on) && !world.generation_over())
+        }
+        if ((ended || goes_on) && !world.generation_over()) {
             return differ(now, {"the generation's end", "at this tick", "later"});
-        if (!ended)
+        }
+        if (!ended) {
             return;
+        }
         const GenerationEnded again = end_of(world);
-        if (!stored.outcomes.empty() && !same(now, compare(stored.outcomes, again.outcomes)))
+        if (!stored.outcomes.empty() && !same(now, compare(stored.outcomes, again.outcomes))) {
             return;
-        if (!same(now, compare(stored.statistics, again.statistics)))
+        }
+        if (!same(now, compare(stored.statistics, again.statistics))) {
             return;
+        }
         agrees_ = now;
         agreeing_part_ = "the end of the generation";
     }
@@ -208,12 +231,14 @@ class StretchCheck {
     void check_next(Rerun& rerun, const StoredGeneration& next) {
         const World& world = rerun.world();
         const StoredMoment moment{world.moment().generation + 1, world.moment().tick};
-        if (world.outcome() != evolution::Outcome::Running)
+        if (world.outcome() != evolution::Outcome::Running) {
             return differ(moment, {"the run's end", "later", "before this generation"});
+        }
         rerun.turn_over(executor_);
         const GenerationBegun again = beginning_of(world);
-        if (same(moment, compare(next.opening, again.opening)) && !next.born.empty())
+        if (same(moment, compare(next.opening, again.opening)) && !next.born.empty()) {
             (void)same_births(moment, next, again);
+        }
     }
 
     const RunFile& file_;
@@ -234,20 +259,25 @@ class Reader {
 
     /// The next stretches: at most `count`, and no more once there are `organisms` in them; none after the last.
     Result<std::vector<Stretch>> read(std::size_t count, std::size_t organisms) {
-        if (!following_ && next_ <= contents_.generations)
-            if (auto read = read_following(); !read)
+        if (!following_ && next_ <= contents_.generations) {
+            if (auto read = read_following(); !read) {
                 return read.error();
+            }
+        }
         std::vector<Stretch> stretches;
         for (std::size_t held = 0; following_ && stretches.size() < count && held < organisms;) {
-            for (const NextGeneration& born : following_->born)
+            for (const NextGeneration& born : following_->born) {
                 held += static_cast<std::size_t>(born.genes.cols());
+            }
             Stretch& stretch = stretches.emplace_back();
             do {
                 stretch.push_back(*std::move(following_));
-                if (auto read = read_following(); !read)
+                if (auto read = read_following(); !read) {
                     return read.error();
-                if (auto read = read_links(stretch.back()); !read)
+                }
+                if (auto read = read_links(stretch.back()); !read) {
                     return read.error();
+                }
             } while (following_ && following_->born.empty());
         }
         return stretches;
@@ -258,32 +288,38 @@ class Reader {
   private:
     Result<void> read_following() {
         following_.reset();
-        if (next_ > contents_.generations)
+        if (next_ > contents_.generations) {
             return {};
+        }
         const std::uint64_t number = next_++;
         // check() has seen that each is there which must be.
         StoredGeneration& generation = following_.emplace();
         auto begun = file_.beginning_of(number);
-        if (!begun)
+        if (!begun) {
             return begun.error();
+        }
         if (*begun) {
             generation.opening = (*begun)->opening;
             generation.born = std::move((*begun)->born);
             generation.founders = std::move((*begun)->founders);
         } else {
             const auto opening = file_.opening_of(number);
-            if (!opening)
+            if (!opening) {
                 return opening.error();
+            }
             generation.opening = opening->value();
         }
         auto ended = file_.outcome_of(number);
-        if (!ended)
+        if (!ended) {
             return ended.error();
-        if (*ended)
+        }
+        if (*ended) {
             generation.outcomes = std::move((*ended)->outcomes);
+        }
         auto statistics = file_.statistics_of(number);
-        if (!statistics)
+        if (!statistics) {
             return statistics.error();
+        }
         generation.statistics = *std::move(statistics);
         return {};
     }
@@ -294,12 +330,14 @@ class Reader {
         // A fork may begin within a generation, and at a tick that has a link in its origin.
         const std::uint64_t first_tick = std::max(generation.opening.moment.tick, file_.identity().first_tick);
         auto links = file_.links(first_tick, generation.last_tick);
-        if (!links)
+        if (!links) {
             return links.error();
+        }
         generation.links = *std::move(links);
         auto checkpoints = file_.checkpoints(generation.opening.moment.tick, generation.last_tick);
-        if (!checkpoints)
+        if (!checkpoints) {
             return checkpoints.error();
+        }
         generation.checkpoints = *std::move(checkpoints);
         return {};
     }
@@ -322,20 +360,24 @@ void add(Verified& sum, const Verified& stretch) {
 } // namespace
 
 Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionRef<void(const VerifyProgress&)> told) {
-    if (auto held = file.hold_still(); !held)
+    if (auto held = file.hold_still(); !held) {
         return held.error();
+    }
     const std::uint64_t before = file.identity().first_generation - 1;
     const std::uint64_t generations = std::max(file.last_generation(), before) - before;
     const auto tell_read = [&](std::uint64_t generation) {
         told({.generations = generation - before - 1, .generations_in_all = generations});
     };
-    if (auto sound = file.check(tell_read); !sound)
+    if (auto sound = file.check(tell_read); !sound) {
         return sound.error();
-    if (auto refused = file.other_model())
+    }
+    if (auto refused = file.other_model()) {
         return *refused;
+    }
     const auto changes = parameter_changes(file);
-    if (!changes)
+    if (!changes) {
         return changes.error();
+    }
 
     // Enough for every thread to be busy though some take longer, and no more than memory should hold.
     const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
@@ -355,10 +397,12 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
     Verified verified;
     while (!verified.difference) {
         const auto stretches = reader.read(stretches_at_once, organisms_at_once);
-        if (!stretches)
+        if (!stretches) {
             return stretches.error();
-        if (stretches->empty())
+        }
+        if (stretches->empty()) {
             break;
+        }
         std::vector<Result<Verified>> results(stretches->size(), Result<Verified>{Verified{}});
         const auto check = [&](std::size_t i, base::Executor& within) {
             const Stretch& stretch = (*stretches)[i];
@@ -370,19 +414,23 @@ Result<Verified> verify(RunFile& file, base::Executor& executor, base::FunctionR
         if (stretches->size() >= threads) {
             executor.parallel_for(stretches->size(), 1, [&](base::Range range) {
                 base::InlineExecutor alone;
-                for (std::size_t i = range.begin; i < range.end; ++i)
+                for (std::size_t i = range.begin; i < range.end; ++i) {
                     check(i, alone);
+                }
             });
         } else {
-            for (std::size_t i = 0; i < stretches->size(); ++i)
+            for (std::size_t i = 0; i < stretches->size(); ++i) {
                 check(i, executor);
+            }
         }
         for (const Result<Verified>& result : results) {
-            if (!result)
+            if (!result) {
                 return result.error();
+            }
             add(verified, *result);
-            if (verified.difference)
+            if (verified.difference) {
                 break;
+            }
         }
     }
     return verified;

@@ -23,24 +23,29 @@ Result<void> for_each_generation(RunFile& file, const std::ostream& out, OfGener
     const std::uint64_t last = file.last_generation();
     for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
         const auto opening = file.opening_of(generation);
-        if (!opening)
+        if (!opening) {
             return opening.error();
-        if (!*opening) // each has one: that of the last must be wrong, and may be very far away
+        }
+        if (!*opening) { // each has one: that of the last must be wrong, and may be very far away
             return Refusal{.code = base::RefusalCode::DataLoss,
                            .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
                                       ", and not of generation " + std::to_string(generation),
                            .violations = {}};
-        if (Result<void> done = of_generation(generation); !done)
+        }
+        if (Result<void> done = of_generation(generation); !done) {
             return done;
+        }
     }
     return {};
 }
 
 const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, std::uint32_t survivors) {
-    if (initial)
+    if (initial) {
         return "initial";
-    if (organism < elite)
+    }
+    if (organism < elite) {
         return "elite";
+    }
     return organism < survivors ? "survivor" : "child";
 }
 
@@ -51,13 +56,15 @@ struct EndedIsland {
 };
 void write_organism(Table& table, const evolution::NextGeneration& born, std::size_t organism, double tick_s,
                     const std::optional<EndedIsland>& ended) {
-    if (born.parents.empty())
+    if (born.parents.empty()) {
         table.nothing().nothing();
-    else
+    } else {
         table.number(born.parents[organism].first).number(born.parents[organism].second);
+    }
     table.text(origin_of(born.parents.empty(), organism, born.elite_count, born.survivor_count));
-    for (const float gene : evolution::column(born.genes, static_cast<std::uint32_t>(organism)))
+    for (const float gene : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
         table.number(gene);
+    }
     if (ended) {
         const storage::IslandOutcome& outcome = ended->outcome;
         const bool alive = outcome.cause[organism] == simulation::CauseOfDeath::Alive;
@@ -79,8 +86,9 @@ Refusal no_such(base::Violation violation) {
 
 /// Why a generation that has begun cannot be told of; nothing if it can.
 std::optional<Refusal> out_of_reach(RunFile& file, const char* field, std::uint64_t generation) {
-    if (is_in_reach(file, generation))
+    if (is_in_reach(file, generation)) {
         return std::nullopt;
+    }
     Refusal refused = *file.other_model();
     refused.violations.push_back({field,
                                   "what is held, nearest to it " + std::to_string(file.held_at_or_before(generation)) +
@@ -90,13 +98,15 @@ std::optional<Refusal> out_of_reach(RunFile& file, const char* field, std::uint6
 }
 
 std::optional<base::Violation> wrong_place(const OrganismName& name, const std::vector<storage::Family>& families) {
-    if (name.island >= families.size())
+    if (name.island >= families.size()) {
         return base::Violation{"of.island", "an island from 0 to " + std::to_string(families.size() - 1),
                                std::to_string(name.island)};
+    }
     const std::uint32_t count = families[name.island].organism_count;
-    if (name.organism >= count)
+    if (name.organism >= count) {
         return base::Violation{"of.organism", "an organism from 0 to " + std::to_string(count - 1),
                                std::to_string(name.organism)};
+    }
     return std::nullopt;
 }
 
@@ -108,23 +118,28 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<st
     for (std::size_t island = 0; island < families.size(); ++island) {
         const storage::Family& family = families[island];
         for (std::size_t organism = 0; organism < family.organism_count; ++organism) {
-            if (wanted != nullptr && !(*wanted)[island][organism])
+            if (wanted != nullptr && !(*wanted)[island][organism]) {
                 continue;
+            }
             table.number(generation).number(island).number(organism);
-            if (family.parents.empty())
+            if (family.parents.empty()) {
                 table.nothing().nothing().nothing().nothing().nothing().nothing();
-            else
-                for (const storage::Place& parent : family.parents[organism])
+            } else {
+                for (const storage::Place& parent : family.parents[organism]) {
                     table.number(generation - 1).number(parent.island).number(parent.organism);
+                }
+            }
             table.text(origin_of(family.initial, organism, family.elite_count, family.survivor_count));
-            if (family.fitness.empty())
+            if (family.fitness.empty()) {
                 table.nothing();
-            else
+            } else {
                 table.number(family.fitness[organism]);
-            if (family.child_count.empty())
+            }
+            if (family.child_count.empty()) {
                 table.nothing().nothing();
-            else
+            } else {
                 table.number(family.child_count[organism]).number(family.kept_count[organism]);
+            }
             table.end_row();
         }
     }
@@ -133,10 +148,11 @@ void write_families(Table& table, std::uint64_t generation, const std::vector<st
 /// Those who bred the wanted.
 Wanted parents_of(const Wanted& wanted, const std::vector<storage::Family>& families) {
     Wanted parents;
-    for (std::size_t island = 0; island < families.size(); ++island)
+    for (std::size_t island = 0; island < families.size(); ++island) {
         for (std::size_t organism = 0; organism < families[island].parents.size(); ++organism) {
-            if (!wanted[island][organism])
+            if (!wanted[island][organism]) {
                 continue;
+            }
             for (const storage::Place& parent : families[island].parents[organism]) {
                 parents.resize(std::max<std::size_t>(parents.size(), parent.island + 1));
                 std::vector<bool>& there = parents[parent.island];
@@ -144,6 +160,7 @@ Wanted parents_of(const Wanted& wanted, const std::vector<storage::Family>& fami
                 there[parent.organism] = true;
             }
         }
+    }
     return parents;
 }
 
@@ -158,10 +175,12 @@ Result<void> write_generations(const RunSource& run, std::ostream& out, Table::F
     Table table{out, format, statistics_columns()};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
         const auto statistics = run.file.statistics_of(generation);
-        if (!statistics)
+        if (!statistics) {
             return statistics.error();
-        for (const simulation::GenerationStatistics& island : *statistics)
+        }
+        for (const simulation::GenerationStatistics& island : *statistics) {
             write_row(table, island);
+        }
         return {};
     });
 }
@@ -173,17 +192,20 @@ Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::For
     Table table{out, format, std::move(columns)};
     storage::GenerationReader reader{run.file, run.executor, run.stop};
     return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
-        if (!is_in_reach(run.file, generation))
+        if (!is_in_reach(run.file, generation)) {
             return {};
+        }
         const auto whole = reader.read(generation);
-        if (!whole)
+        if (!whole) {
             return whole.error();
+        }
         const auto& [begun, ended] = *whole;
         for (std::size_t i = 0; i < begun.born.size(); ++i) {
             const evolution::NextGeneration& born = begun.born[i];
             std::optional<EndedIsland> island;
-            if (ended)
+            if (ended) {
                 island.emplace(EndedIsland{ended->outcomes[i], ended->statistics[i]});
+            }
             for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()); ++organism) {
                 table.number(generation).number(i).number(organism);
                 write_organism(table, born, organism, begun.opening.parameters.active.tick_s, island);
@@ -200,58 +222,68 @@ Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Forma
                 {"generation", "island", "organism", "parent_first_generation", "parent_first_island", "parent_first",
                  "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness",
                  "child_count", "kept_count"}};
-    if (!of)
+    if (!of) {
         return storage::each_generation(run.file, run.executor, run.stop,
                                         [&](std::uint64_t generation, const auto& families) {
                                             write_families(table, generation, families, nullptr);
                                             return out.good();
                                         });
+    }
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
-    if (of->generation < first || of->generation > last)
+    if (of->generation < first || of->generation > last) {
         return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
                         std::to_string(of->generation)});
-    if (auto refused = out_of_reach(run.file, "of.generation", of->generation))
+    }
+    if (auto refused = out_of_reach(run.file, "of.generation", of->generation)) {
         return *refused;
+    }
     std::optional<base::Violation> wrong;
     Wanted wanted;
     const auto done = storage::each_generation_back_from(
         run.file, of->generation, run.executor, run.stop, [&](std::uint64_t generation, const auto& families) {
             if (generation == of->generation) {
                 wrong = wrong_place(*of, families);
-                if (wrong)
+                if (wrong) {
                     return false;
+                }
                 wanted.resize(of->island + 1);
                 wanted[of->island].resize(of->organism + 1);
                 wanted[of->island][of->organism] = true;
             }
             wanted.resize(families.size());
-            for (std::size_t island = 0; island < families.size(); ++island)
+            for (std::size_t island = 0; island < families.size(); ++island) {
                 wanted[island].resize(families[island].organism_count);
+            }
             write_families(table, generation, families, &wanted);
             wanted = parents_of(wanted, families);
             return !wanted.empty() && out.good();
         });
-    if (wrong)
+    if (wrong) {
         return no_such(*wrong);
+    }
     return done;
 }
 
 Result<void> write_population(const RunSource& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
     const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
-    if (generation < first || generation > last)
+    if (generation < first || generation > last) {
         return Refusal{.code = base::RefusalCode::NotFound,
                        .message = run.file.path() + " does not hold the beginning of that generation",
                        .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
                                        std::to_string(generation)}},
                        .reason = base::Reason::MomentNotFound};
-    if (auto refused = out_of_reach(run.file, "generation", generation))
+    }
+    if (auto refused = out_of_reach(run.file, "generation", generation)) {
         return *refused;
+    }
     const auto whole = storage::GenerationReader{run.file, run.executor, run.stop}.read(generation);
-    if (!whole)
+    if (!whole) {
         return whole.error();
+    }
     std::vector<evolution::GeneMatrix> population;
-    for (const evolution::NextGeneration& born : whole->begun.born)
+    for (const evolution::NextGeneration& born : whole->begun.born) {
         population.push_back(born.genes);
+    }
     write_population(population, format, out);
     return {};
 }
@@ -263,8 +295,9 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
     Table table{out, format, {"number", "tick", "client", "kind", "request"}};
     for (std::uint64_t first = 1; out; first += entries_at_once) {
         const auto entries = run.file.journal(first, entries_at_once);
-        if (!entries)
+        if (!entries) {
             return entries.error();
+        }
         for (const storage::JournalEntry& entry : *entries) {
             v1::Request request;
             std::string json;
@@ -272,11 +305,12 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
             // Who knows them could send the client's next command in its place.
             request.clear_client_key();
             request.clear_request_id();
-            if (!parsed || !MessageToJsonString(request, &json, json_options).ok())
+            if (!parsed || !MessageToJsonString(request, &json, json_options).ok()) {
                 return Refusal{.code = base::RefusalCode::DataLoss,
                                .message = run.file.path() + " is damaged: entry " + std::to_string(entry.number) +
                                           " of its journal is no request",
                                .violations = {}};
+            }
             table.number(entry.number)
                 .number(entry.tick)
                 .text(only_users ? storage::user_of(entry.origin) : entry.origin.client)
@@ -284,8 +318,9 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
                 .json(json)
                 .end_row();
         }
-        if (entries->size() < entries_at_once)
+        if (entries->size() < entries_at_once) {
             break;
+        }
     }
     return {};
 }
@@ -295,13 +330,15 @@ Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format
 std::uint64_t generations_out_of_reach(RunFile& file) {
     std::uint64_t count = 0;
     const std::uint64_t last = file.last_generation();
-    if (file.other_model())
+    if (file.other_model()) {
         for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
             const auto opening = file.opening_of(generation);
-            if (!opening || !*opening)
+            if (!opening || !*opening) {
                 break; // damaged: whoever reads on is told
+            }
             count += !is_in_reach(file, generation);
         }
+    }
     return count;
 }
 
@@ -311,8 +348,9 @@ void write_population(const std::vector<evolution::GeneMatrix>& population, Tabl
         const evolution::GeneMatrix& genes = population[island];
         for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
             table.number(island).number(organism);
-            for (const float gene : evolution::column(genes, organism))
+            for (const float gene : evolution::column(genes, organism)) {
                 table.number(gene);
+            }
             table.end_row();
         }
     }

@@ -15,11 +15,13 @@ std::string json_text(std::string_view text) {
 }
 
 std::string csv_text(std::string_view text) {
-    if (text.find_first_of("\",\r\n") == std::string_view::npos)
+    if (text.find_first_of("\",\r\n") == std::string_view::npos) {
         return std::string{text};
+    }
     std::string quoted = "\"";
-    for (const char c : text)
+    for (const char c : text) {
         quoted.append(c == '"' ? 2 : 1, c);
+    }
     return quoted + '"';
 }
 
@@ -28,21 +30,25 @@ std::string csv_text(std::string_view text) {
 Table::Table(std::ostream& out, Format format, std::vector<std::string> columns)
     : out_{out}, format_{format}, columns_{std::move(columns)} {
     if (format_ == Format::Csv) {
-        for (const std::string& column : columns_)
+        for (const std::string& column : columns_) {
             text(column);
+        }
         end_row();
     } else {
-        for (std::string& column : columns_)
+        for (std::string& column : columns_) {
             column = json_text(column) + ':';
+        }
     }
 }
 
 void Table::begin_field() {
     EVOD_ASSERT(column_ < columns_.size());
-    if (column_ > 0)
+    if (column_ > 0) {
         line_ += ',';
-    if (format_ == Format::JsonLines)
+    }
+    if (format_ == Format::JsonLines) {
         line_ += (column_ == 0 ? "{" : "") + columns_[column_];
+    }
     ++column_;
 }
 
@@ -53,8 +59,9 @@ Table& Table::text(std::string_view value) {
 }
 
 Table& Table::json(std::string_view value) {
-    if (format_ == Format::Csv)
+    if (format_ == Format::Csv) {
         return text(value);
+    }
     begin_field();
     line_ += value;
     return *this;

@@ -24,9 +24,11 @@ class Table {
     /// The shortest text that reads back as the same number.
     template <class T>
     requires std::is_arithmetic_v<T> Table& number(T value) {
-        if constexpr (std::is_floating_point_v<T>)
-            if (format_ == Format::JsonLines && !std::isfinite(value))
+        if constexpr (std::is_floating_point_v<T>) {
+            if (format_ == Format::JsonLines && !std::isfinite(value)) {
                 return nothing(); // JSON has no word for it
+            }
+        }
         char digits[32];
         begin_field();
         line_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);

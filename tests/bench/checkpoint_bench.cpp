@@ -43,8 +43,9 @@ int main(int argc, char** argv) {
 
     const auto executor = runtime::make_executor(threads);
     const std::string path = folder + "/checkpoint_bench.evod";
-    for (const char* suffix : {"", "-wal", "-shm"})
+    for (const char* suffix : {"", "-wal", "-shm"}) {
         std::filesystem::remove(path + suffix);
+    }
     simulation::World world{bench::bench_world(organisms), base::Seed{1}};
     std::vector<double> plain_ms, with_checkpoint_ms, copying_ms;
     {
@@ -53,8 +54,9 @@ int main(int argc, char** argv) {
             path, {.name = "w", .run_id = {}, .seed = {1}, .parameters = world.parameters().requested}, {});
         storage::RunRecorder recorder{thread, number, {}, 0};
         recorder.follow(world);
-        for (std::uint32_t tick = 0; tick < 60; ++tick)
+        for (std::uint32_t tick = 0; tick < 60; ++tick) {
             world.advance_tick(*executor);
+        }
         for (std::uint32_t made = 0; made < checkpoints; ++made) {
             for (std::uint32_t tick = 0; tick <= ticks_between; ++tick) {
                 const bench::Stopwatch whole;
@@ -82,6 +84,7 @@ int main(int argc, char** argv) {
                                      {"packed_bytes", packed.size()},
                                      {"run_file_bytes", std::filesystem::file_size(path)}}
               << '\n';
-    for (const char* suffix : {"", "-wal", "-shm"})
+    for (const char* suffix : {"", "-wal", "-shm"}) {
         std::filesystem::remove(path + suffix);
+    }
 }

@@ -87,15 +87,17 @@ Parameters many_islands() {
 void ticks(benchmark::State& state, Parameters (*world_of)(), int measured_ticks) {
     constexpr int warm_up_ticks = 60; // as in workload_bench
     const Parameters parameters = world_of();
-    if (!simulation::validate(parameters).empty())
+    if (!simulation::validate(parameters).empty()) {
         throw std::runtime_error{"density_bench: no valid world"};
+    }
     base::InlineExecutor executor;
     std::uint64_t organism_ticks = 0;
     double measured_s = 0;
     for (auto _ : state) {
         simulation::World world{parameters, base::Seed{1}};
-        for (int tick = 0; tick < warm_up_ticks; ++tick)
+        for (int tick = 0; tick < warm_up_ticks; ++tick) {
             world.advance_tick(executor);
+        }
         const auto begin = std::chrono::steady_clock::now();
         for (int tick = 0; tick < measured_ticks; ++tick) {
             organism_ticks += world.alive_count();
@@ -119,11 +121,12 @@ const bool registered = [] {
     for (const NamedWorld& world :
          {NamedWorld{"as it is", unscaled_world}, NamedWorld{"far-sighted", far_sighted}, NamedWorld{"thin", thin},
           NamedWorld{"default density", default_density}, NamedWorld{"crowded", crowded},
-          NamedWorld{"few organisms", few_organisms, 600}, NamedWorld{"many islands", many_islands}})
+          NamedWorld{"few organisms", few_organisms, 600}, NamedWorld{"many islands", many_islands}}) {
         benchmark::RegisterBenchmark(world.name, ticks, world.parameters, world.measured_ticks)
             ->Iterations(8)
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
+    }
     return true;
 }();
 

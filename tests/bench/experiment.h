@@ -15,8 +15,9 @@ namespace evod::bench {
 inline simulation::Parameters experiment(const std::string& name) {
     const std::string path = EVOD_EXPERIMENTS "/" + name + ".json";
     std::ifstream file{path};
-    if (!file)
+    if (!file) {
         throw std::runtime_error{"cannot read " + path};
+    }
     std::ostringstream text;
     text << file.rdbuf();
     return simulation::parse_experiment(text.str()).value().parameters;

@@ -34,8 +34,9 @@ using Work = std::function<std::uint64_t()>;
 std::uint64_t ticks() {
     base::InlineExecutor executor;
     simulation::World world{bench_world(2'000), base::Seed{1}};
-    for (int tick = 0; tick < 60; ++tick)
+    for (int tick = 0; tick < 60; ++tick) {
         world.advance_tick(executor);
+    }
     std::uint64_t organism_ticks = 0;
     counted_work([&] {
         for (int tick = 0; tick < 60; ++tick) {
@@ -50,8 +51,9 @@ std::uint64_t ticks() {
 std::uint64_t generation() {
     base::InlineExecutor executor;
     simulation::World world{experiment("default"), base::Seed{1}};
-    while (!world.generation_over())
+    while (!world.generation_over()) {
         world.advance_tick(executor);
+    }
     std::uint64_t organism_ticks = 0;
     counted_work([&] {
         do {
@@ -70,8 +72,9 @@ std::uint64_t breeding() {
     const evolution::GeneMatrix genes = evolution::initial_population(count, parameters, base::Seed{1}, 0);
     base::RandomStream random{{base::Seed{1}, base::Purpose::ScenarioTest, 0, 1}, 0};
     std::vector<double> fitness(count);
-    for (double& value : fitness)
+    for (double& value : fitness) {
         value = random.uniform(0, 300);
+    }
     counted_work(
         [&] { evolution::next_generation(fitness, genes, parameters, count, {.seed = base::Seed{1}}, executor); });
     return count;
@@ -87,9 +90,11 @@ int run(int argc, char** argv) {
     add_instructions_option(app);
     CLI11_PARSE(app, argc, argv);
     if (list) {
-        for (const auto& [name, instructions] : instructions_by_name)
-            if (instructions <= base::widest_instructions())
+        for (const auto& [name, instructions] : instructions_by_name) {
+            if (instructions <= base::widest_instructions()) {
                 std::cout << name << '\n';
+            }
+        }
         return 0;
     }
     std::cout << boost::json::object{{"work", work},

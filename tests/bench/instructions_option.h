@@ -17,8 +17,9 @@ inline const std::map<std::string, base::Instructions> instructions_by_name = {
 inline void add_instructions_option(CLI::App& app) {
     const auto use = [](const std::string& name) {
         const base::Instructions asked = instructions_by_name.at(name);
-        if (asked > base::widest_instructions())
+        if (asked > base::widest_instructions()) {
             throw CLI::ValidationError{"--instructions", "this processor has no " + name};
+        }
         base::use_instructions(asked);
     };
     app.add_option_function<std::string>("--instructions", use, "baseline or avx2; the widest there are unless given")
@@ -27,9 +28,11 @@ inline void add_instructions_option(CLI::App& app) {
 
 /// Of those in use.
 inline std::string instructions_name() {
-    for (const auto& [name, instructions] : instructions_by_name)
-        if (instructions == base::instructions())
+    for (const auto& [name, instructions] : instructions_by_name) {
+        if (instructions == base::instructions()) {
             return name;
+        }
+    }
     return {};
 }
 

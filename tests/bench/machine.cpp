@@ -28,13 +28,14 @@ double at_once(unsigned threads, Work&& work) {
     std::barrier ready{threads};
     {
         std::vector<std::jthread> pool;
-        for (unsigned thread = 0; thread < threads; ++thread)
+        for (unsigned thread = 0; thread < threads; ++thread) {
             pool.emplace_back([&, thread] {
                 ready.arrive_and_wait();
                 spans[thread].begin = Clock::now();
                 work(thread);
                 spans[thread].end = Clock::now();
             });
+        }
     }
     const auto first = std::ranges::min_element(spans, {}, &Span::begin)->begin;
     const auto last = std::ranges::max_element(spans, {}, &Span::end)->end;
@@ -58,8 +59,9 @@ double triad(unsigned threads, std::size_t array_bytes) {
         const double seconds = at_once(threads, [&](unsigned thread) {
             double *a = arrays[thread].a.data(), *b = arrays[thread].b.data(), *c = arrays[thread].c.data();
             for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
-                for (std::size_t i = 0; i < n; ++i)
+                for (std::size_t i = 0; i < n; ++i) {
                     a[i] = b[i] + 3.0 * c[i];
+                }
                 std::swap(a, b); // so that no pass can be left out
             }
         });
@@ -104,10 +106,11 @@ int main() {
     using namespace evod::bench;
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     boost::json::object line{{"cores", cores}};
-    for (const auto& [threads, name] : {std::pair{1u, "one_thread"}, std::pair{2u, "two_threads"}})
+    for (const auto& [threads, name] : {std::pair{1u, "one_thread"}, std::pair{2u, "two_threads"}}) {
         line[name] = {{"memory_gb_per_s", triad(threads, std::size_t{256} << 20)},
                       {"cache_8_mib_gb_per_s", triad(threads, (std::size_t{8} << 20) / 3)},
                       {"cache_192_kib_gb_per_s", triad(threads, std::size_t{64} << 10)},
                       {"instructions_g_per_s", instructions_g_per_s(threads)}};
+    }
     std::cout << line << '\n';
 }

@@ -22,8 +22,9 @@ void breed(benchmark::State& state, const Parameters& parameters) {
     const GeneMatrix genes = initial_population(count, parameters, seed, 0);
     base::RandomStream random{{seed, base::Purpose::ScenarioTest, 0, 1}, 0};
     std::vector<double> fitness(count);
-    for (double& value : fitness)
+    for (double& value : fitness) {
         value = random.uniform(0, 300);
+    }
     std::uint64_t generation = 0;
     for (auto _ : state) {
         const BreedingKey key{.seed = seed, .island = 0, .generation = ++generation};
@@ -43,31 +44,35 @@ void account(benchmark::State& state, bool migrants_came) {
     bred_from.leftCols(count / 100) += 1;
     base::RandomStream random{{seed, base::Purpose::ScenarioTest, 0, 1}, 0};
     std::vector<double> fitness(count);
-    for (double& value : fitness)
+    for (double& value : fitness) {
         value = random.uniform(0, 300);
+    }
     const NextGeneration next =
         next_generation(fitness, before, parameters, count, {.seed = seed, .island = 0, .generation = 1}, executor);
-    for (auto _ : state)
+    for (auto _ : state) {
         benchmark::DoNotOptimize(
             account_for(before, migrants_came ? bred_from : before, next.genes, next.parents, executor));
+    }
     state.SetItemsProcessed(state.iterations() * count);
 }
 
 const bool registered = [] {
-    for (const bool migrants_came : {false, true})
+    for (const bool migrants_came : {false, true}) {
         benchmark::RegisterBenchmark(migrants_came ? "account_for/migrants" : "account_for", account, migrants_came)
             ->ArgNames({"chromosomes", "threads"})
             ->ArgsProduct({{100'000, 1'000'000}, {1, 2}})
             ->Unit(benchmark::kMillisecond)
             ->MeasureProcessCPUTime()
             ->UseRealTime();
-    for (const StageChoice& choice : stage_choices())
+    }
+    for (const StageChoice& choice : stage_choices()) {
         benchmark::RegisterBenchmark(("next_generation/" + choice.name).c_str(), breed, choice)
             ->ArgNames({"chromosomes", "threads"})
             ->ArgsProduct({{100'000, 1'000'000}, {1, 2}})
             ->Unit(benchmark::kMillisecond)
             ->MeasureProcessCPUTime()
             ->UseRealTime();
+    }
     return true;
 }();
 

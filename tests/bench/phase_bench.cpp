@@ -97,8 +97,9 @@ class OpenIsland {
         ++tick_;
         times.organism_ticks += alive_count_;
         Laps laps{times};
-        if (stepper_.near().worn(bodies_, boxes_))
+        if (stepper_.near().worn(bodies_, boxes_)) {
             renew_near_pairs();
+        }
         laps.lap(NearPairsRenewed);
         food_.reappear(tick_, {}, executor_);
         poison_.reappear(tick_, {}, executor_);
@@ -117,8 +118,9 @@ class OpenIsland {
                                                             physics::damping_rate(parameters_.damping)),
                         .restitution = static_cast<float>(parameters_.restitution),
                         .max_speed_px_s = static_cast<float>(parameters_.max_speed_px_s)});
-        for (std::size_t block = 0; block < block_count; ++block)
+        for (std::size_t block = 0; block < block_count; ++block) {
             act(rules, block, laps);
+        }
         stepper_.collide(bodies_, boxes_, executor_);
         laps.lap(ResolveContacts);
 
@@ -126,8 +128,9 @@ class OpenIsland {
         poison_feeding_.begin(block_count);
         dying_.resize(block_count);
         hash_ = {};
-        for (std::size_t block = 0; block < block_count; ++block)
+        for (std::size_t block = 0; block < block_count; ++block) {
             move(block, laps);
+        }
         stepper_.finish(boxes_);
         laps.lap(Move);
         feed_and_bury(block_count);
@@ -147,8 +150,9 @@ class OpenIsland {
             living_.reorder(reordering);
             sight_.reorder(reordering);
             near.follow_reordering(bodies_, executor_);
-            for (std::size_t i = 0; i < bodies_.size(); ++i)
+            for (std::size_t i = 0; i < bodies_.size(); ++i) {
                 body_of_[bodies_.id[i]] = static_cast<std::uint32_t>(i);
+            }
         }
         near.list(bodies_, boxes_, executor_);
     }
@@ -186,7 +190,7 @@ class OpenIsland {
         food_feeding_.award();
         poison_feeding_.award();
         for (std::size_t block = 0; block < block_count; ++block) {
-            for (const Touch& touch : food_feeding_.touches(block))
+            for (const Touch& touch : food_feeding_.touches(block)) {
                 if (touch.gets_it) {
                     const float cap = health_cap(chromosomes_.col(static_cast<Eigen::Index>(touch.id)), parameters_);
                     change_health(
@@ -195,17 +199,22 @@ class OpenIsland {
                     food_.add_to_hash(food_.set_due(touch.item, tick_));
                     ++fate_.food_eaten[touch.id];
                 }
-            for (const Touch& touch : poison_feeding_.touches(block))
+            }
+            for (const Touch& touch : poison_feeding_.touches(block)) {
                 if (touch.gets_it) {
                     change_health(touch.body, living_.health[touch.body] - static_cast<float>(parameters_.poison_harm));
                     poison_.add_to_hash(poison_.set_due(touch.item, tick_));
                     ++fate_.poison_eaten[touch.id];
                 }
-            for (const Touch& touch : poison_feeding_.touches(block))
-                if (touch.gets_it)
+            }
+            for (const Touch& touch : poison_feeding_.touches(block)) {
+                if (touch.gets_it) {
                     bury_if_dying(touch.body, CauseOfDeath::Poisoned);
-            for (const std::uint32_t body : dying_[block])
+                }
+            }
+            for (const std::uint32_t body : dying_[block]) {
                 bury_if_dying(body, CauseOfDeath::Starved);
+            }
         }
         take_out(food_, food_feeding_, block_count);
         take_out(poison_, poison_feeding_, block_count);
@@ -213,11 +222,14 @@ class OpenIsland {
 
     static void take_out(Items& items, const Feeding& feeding, std::size_t block_count) {
         for (std::size_t block = 0; block < block_count; ++block) {
-            for (const Touch& touch : feeding.touches(block))
+            for (const Touch& touch : feeding.touches(block)) {
                 items.prefetch_place(touch.place);
-            for (const Touch& touch : feeding.touches(block))
-                if (touch.gets_it)
+            }
+            for (const Touch& touch : feeding.touches(block)) {
+                if (touch.gets_it) {
                     items.take_out(touch.item, touch.place);
+                }
+            }
         }
     }
 
@@ -228,8 +240,9 @@ class OpenIsland {
     }
 
     void bury_if_dying(std::uint32_t body, CauseOfDeath cause) {
-        if (bodies_.is_void(body) || living_.health[body] > 0)
+        if (bodies_.is_void(body) || living_.health[body] > 0) {
             return;
+        }
         const std::uint32_t id = bodies_.id[body];
         fate_.cause[id] = cause;
         fate_.lived_ticks[id] = tick_;
@@ -266,30 +279,36 @@ void measure(const Parameters& parameters, base::Seed seed, Times& times) {
     base::InlineExecutor executor;
     std::optional<World> world{std::in_place, parameters, seed};
     OpenIsland open{parameters, world->islands()[0]};
-    for (std::uint32_t tick = 0; tick < warm_up_ticks; ++tick)
+    for (std::uint32_t tick = 0; tick < warm_up_ticks; ++tick) {
         world->advance_tick(executor);
+    }
     Laps laps{times};
-    for (std::uint32_t tick = 0; tick < measured_ticks; ++tick)
+    for (std::uint32_t tick = 0; tick < measured_ticks; ++tick) {
         world->advance_tick(executor);
+    }
     laps.lap(WholeTick);
     const base::StateHash expected = world->islands()[0].hash();
     world.reset();
 
     Times warm_up;
-    for (std::uint32_t tick = 0; tick < warm_up_ticks; ++tick)
+    for (std::uint32_t tick = 0; tick < warm_up_ticks; ++tick) {
         open.advance_tick(warm_up);
-    for (std::uint32_t tick = 0; tick < measured_ticks; ++tick)
+    }
+    for (std::uint32_t tick = 0; tick < measured_ticks; ++tick) {
         open.advance_tick(times);
-    if (open.hash() != expected)
+    }
+    if (open.hash() != expected) {
         throw std::runtime_error{"phase_bench: its ticks are not those of an island any more"};
+    }
 }
 
 /// The same of as many worlds as make the measured time long enough.
 Times measure(std::uint32_t organisms) {
     Times times;
     const std::uint64_t worlds = std::max(1u, 200'000 / organisms);
-    for (std::uint64_t seed = 1; seed <= worlds; ++seed)
+    for (std::uint64_t seed = 1; seed <= worlds; ++seed) {
         measure(bench_world(organisms), base::Seed{seed}, times);
+    }
     return times;
 }
 
@@ -300,8 +319,9 @@ void show(benchmark::State& state, Phase phase, std::uint32_t organisms) {
     std::vector<Times>& known = measurements[organisms];
     const std::size_t k = shown[{phase, organisms}]++;
     for (auto _ : state) {
-        if (k == known.size())
+        if (k == known.size()) {
             known.push_back(measure(organisms));
+        }
         state.SetIterationTime(known[k].s[phase]);
         state.SetItemsProcessed(static_cast<std::int64_t>(known[k].organism_ticks));
         state.counters["ns"] = 1e9 * known[k].s[phase] / static_cast<double>(known[k].organism_ticks);
@@ -309,13 +329,15 @@ void show(benchmark::State& state, Phase phase, std::uint32_t organisms) {
 }
 
 const bool registered = [] {
-    for (const std::uint32_t organisms : {1'000u, 20'000u, 200'000u, 1'000'000u})
-        for (std::size_t phase = 0; phase < phase_count; ++phase)
+    for (const std::uint32_t organisms : {1'000u, 20'000u, 200'000u, 1'000'000u}) {
+        for (std::size_t phase = 0; phase < phase_count; ++phase) {
             benchmark::RegisterBenchmark((std::string{phase_names[phase]} + "/" + std::to_string(organisms)).c_str(),
                                          show, static_cast<Phase>(phase), organisms)
                 ->Iterations(1)
                 ->UseManualTime()
                 ->Unit(benchmark::kMillisecond);
+        }
+    }
     return true;
 }();
 

@@ -50,14 +50,16 @@ std::vector<runtime::SnapshotPtr> snapshots_of(const Kind& kind) {
     simulation::Entry entry{
         .name = "w", .run_id = {1, 2}, .control = {}, .world = simulation::World{kind.parameters, base::Seed{1}}};
     base::InlineExecutor executor;
-    for (int tick = 0; tick < warm_up_ticks; ++tick)
+    for (int tick = 0; tick < warm_up_ticks; ++tick) {
         entry.world.advance_tick(executor);
+    }
     runtime::SnapshotPool pool;
     std::vector<runtime::SnapshotPtr> snapshots;
     for (int i = 0; i < snapshot_count; ++i) {
         snapshots.push_back(pool.take(entry, {0}, false));
-        for (int tick = 0; tick < kind.ticks_between + i % kind.spread; ++tick)
+        for (int tick = 0; tick < kind.ticks_between + i % kind.spread; ++tick) {
             entry.world.advance_tick(executor);
+        }
     }
     return snapshots;
 }
@@ -85,8 +87,9 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             const network::SharedBytes frame = picture->after(i, compression);
             benchmark::DoNotOptimize(frame->data());
             const auto done = Clock::now();
-            if (i == 0) // a keyframe
+            if (i == 0) { // a keyframe
                 continue;
+            }
             scene += ready - began;
             delta += told - ready;
             bytes += done - told;
@@ -107,11 +110,13 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
 const bool registered = [] {
     const simulation::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
     for (const Kind& kind : {Kind{"half move", half}, Kind{"a tenth moves", world_of(2'300, 8'000, 12'700, 10'000)},
-                             Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300, 3}})
+                             Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300, 3}}) {
         for (const auto& [name, compression] :
-             {std::pair{"none", v1::COMPRESSION_NONE}, std::pair{"zstd", v1::COMPRESSION_ZSTD}})
+             {std::pair{"none", v1::COMPRESSION_NONE}, std::pair{"zstd", v1::COMPRESSION_ZSTD}}) {
             benchmark::RegisterBenchmark((std::string{kind.name} + '/' + name).c_str(), pictures, kind, compression)
                 ->Unit(benchmark::kMillisecond);
+        }
+    }
     return true;
 }();
 

@@ -35,8 +35,9 @@ simulation::Parameters parameters_of(std::int64_t world, std::int64_t organisms)
         parameters.island_width_px *= shrink;
         parameters.island_height_px *= shrink;
     }
-    if (world == Obstructed)
+    if (world == Obstructed) {
         parameters.obstacle_count = parameters.crate_count = 1000;
+    }
     return parameters;
 }
 
@@ -79,9 +80,10 @@ void place_circles(benchmark::State& state) {
         std::sqrt(base::pi * 400 * 100 / static_cast<double>(state.range(1)) * static_cast<double>(state.range(0))) +
         40);
     std::uint64_t generation = 0;
-    for (auto _ : state)
+    for (auto _ : state) {
         benchmark::DoNotOptimize(
             simulation::place_circles(radius, base::Seed{1}, 0, ++generation, {side, side}, {}, executor));
+    }
 }
 BENCHMARK(place_circles)
     ->ArgNames({"organisms", "covered", "threads"})

@@ -54,8 +54,9 @@ Measured run_engine(const Options& options) {
         options.window,
         [&](base::Seed seed) {
             StartState start = start_state(simulation::World{parameters, seed});
-            if (options.spatial_order)
+            if (options.spatial_order) {
                 start = in_spatial_order(std::move(start));
+            }
             return EngineScene<Engine>{start, seed};
         },
         *executor);
@@ -127,8 +128,9 @@ int run(int argc, char** argv) {
     add_instructions_option(app);
     CLI11_PARSE(app, argc, argv);
     if (list) {
-        for (const auto& [name, program] : programs())
+        for (const auto& [name, program] : programs()) {
             std::cout << name << '\n';
+        }
         return 0;
     }
     std::cout << report(options, programs().at(options.program)(options)) << '\n';

@@ -73,15 +73,17 @@ TEST_P(AnyScenario, DoesNotDependOnWhoLooksOn) {
         watched.advance(executor);
         const simulation::World& world = watched.world();
         seen += world.alive_count() + world.history().size() + world.parameters().revision;
-        if (tick % 10 == 0) // costly
+        if (tick % 10 == 0) { // costly
             for (const simulation::Island& island : world.islands()) {
                 const auto now = static_cast<std::uint32_t>(world.moment().generation_tick);
                 seen += island.live_statistics().alive_count;
                 seen += island.fitness(world.parameters().active, now, other_executor).size();
                 seen += island.body_of(3).value_or(0);
-                if (world.has_bodies())
+                if (world.has_bodies()) {
                     seen += island.food().two_nearest(99, 99, 200).place;
+                }
             }
+        }
         ASSERT_EQ(watched.world().hash(), alone.world().hash()) << "states part at tick " << tick;
     }
     EXPECT_GT(seen, 0u);
@@ -104,8 +106,9 @@ TEST(AWorld, DoesNotDependOnTheOthersOfItsLaboratory) {
     for (std::uint64_t tick = 1; tick <= 300; ++tick) {
         alone.advance(executor);
         crowded.advance(executor);
-        for (std::size_t i = 1; i < crowded.laboratory().entries().size(); ++i)
+        for (std::size_t i = 1; i < crowded.laboratory().entries().size(); ++i) {
             crowded.laboratory().advance(*crowded.laboratory().entries()[i], executor);
+        }
         if (tick == 150) {
             ASSERT_TRUE(crowded.laboratory().apply(simulation::DeleteWorld{.world = "a"}).has_value());
         }
@@ -115,12 +118,14 @@ TEST(AWorld, DoesNotDependOnTheOthersOfItsLaboratory) {
 
 TEST_P(AnyScenario, ResetGivesTheFirstRunsHashesAgain) {
     const Scenario& scenario = GetParam();
-    if (!scenario.changes.empty())
+    if (!scenario.changes.empty()) {
         return; // a reset keeps the parameters last asked for
+    }
     Play fresh{scenario}, used{scenario};
     base::InlineExecutor executor;
-    for (int tick = 0; tick < 50; ++tick)
+    for (int tick = 0; tick < 50; ++tick) {
         used.advance(executor);
+    }
     ASSERT_TRUE(used.laboratory().apply(simulation::ResetWorld{.world = "w", .seed = {}, .run_id = {}}).has_value());
     ASSERT_TRUE(used.laboratory().apply(simulation::Run{.world = "w", .generations = {}}).has_value());
     ASSERT_EQ(used.world().hash(), fresh.world().hash());

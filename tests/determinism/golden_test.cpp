@@ -36,8 +36,9 @@ INSTANTIATE_TEST_SUITE_P(All, GoldenHash, testing::ValuesIn(all()), testing::Pri
 void expect_golden_hash(const Scenario& scenario) {
     Play run{scenario};
     base::InlineExecutor executor;
-    for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick)
+    for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
         run.advance(executor);
+    }
     const auto known = golden_hashes.find(scenario.name);
     EXPECT_EQ(base::to_text(run.world().hash()), known == golden_hashes.end() ? "unknown" : known->second)
         << scenario.name;
@@ -49,8 +50,9 @@ TEST_P(GoldenHash, IsTheSameInEveryBuild) {
 
 TEST_P(GoldenHash, IsTheSameWithTheInstructionsOfEveryProcessor) {
     const base::Instructions widest = base::widest_instructions();
-    if (widest == base::Instructions::Baseline)
+    if (widest == base::Instructions::Baseline) {
         GTEST_SKIP() << "this processor has no others";
+    }
     base::use_instructions(base::Instructions::Baseline);
     expect_golden_hash(GetParam());
     base::use_instructions(widest);
@@ -65,9 +67,10 @@ TEST(TheScenarios, UseWhatTheyAreFor) {
     std::uint64_t limited = 0, deaths = 0, poisoned = 0, clamped = 0, generations = 0, extinct = 0;
     for (const Scenario& scenario : all()) {
         Play run{scenario};
-        for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick)
+        for (std::uint64_t tick = 1; tick <= scenario.ticks; ++tick) {
             run.advance(executor);
-        for (const auto& generation : run.world().history())
+        }
+        for (const auto& generation : run.world().history()) {
             for (const simulation::GenerationStatistics& s : generation) {
                 limited += s.speed_limit_count;
                 deaths += s.starved_count;
@@ -76,6 +79,7 @@ TEST(TheScenarios, UseWhatTheyAreFor) {
                 extinct += s.alive_count == 0;
                 ++generations;
             }
+        }
         EXPECT_GE(run.world().moment().generation, 2u) << scenario.name;
     }
     EXPECT_GT(limited, 0u);

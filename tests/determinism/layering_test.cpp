@@ -53,7 +53,8 @@ const std::map<std::string, std::set<std::string>> arrows = {
       "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/console",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/files",
-      "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/codec", "proto/evod"}},
+      "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/codec",
+      "proto/evod"}},
     {"server/network",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/metrics",
       "server/log", "server/simulation", "server/evolution", "server/base", "proto/codec", "proto/evod"}},
@@ -69,7 +70,8 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"client/viewer/drawing", {"client/viewer/text"}},
     {"client/viewer/watch", {"client/viewer/text", "client/core", "proto/codec", "proto/evod"}},
     {"client/viewer/scene",
-     {"client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/core", "proto/codec", "proto/evod"}},
+     {"client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/core", "proto/codec",
+      "proto/evod"}},
     {"client/viewer/panels",
      {"client/viewer/scene", "client/viewer/watch", "client/viewer/drawing", "client/viewer/text", "client/core",
       "proto/codec", "proto/evod"}},
@@ -98,15 +100,20 @@ std::string without_comments(const std::string& text) {
 
 /// The longest folder of the table that a path begins with; empty for none.
 std::string folder_of(const std::string& path) {
-    if (path.starts_with("evod/v1/"))
+    if (path.starts_with("evod/v1/")) {
         return "proto/evod"; // made by protoc
-    if (path.starts_with("tests/support/"))
+    }
+    if (path.starts_with("tests/support/")) {
         return "tests/support";
-    if (path.starts_with("server/") && path.find('/', 7) == std::string::npos)
+    }
+    if (path.starts_with("server/") && path.find('/', 7) == std::string::npos) {
         return "server";
-    for (const auto& [folder, allowed] : arrows)
-        if (folder != "server" && path.starts_with(folder + "/"))
+    }
+    for (const auto& [folder, allowed] : arrows) {
+        if (folder != "server" && path.starts_with(folder + "/")) {
             return folder;
+        }
+    }
     return "";
 }
 
@@ -114,11 +121,12 @@ const std::vector<Source>& sources() {
     static const std::vector<Source> all = [] {
         static const std::regex include{R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])"};
         std::vector<Source> found;
-        for (const char* top : {"server", "client", "proto", "tests"})
+        for (const char* top : {"server", "client", "proto", "tests"}) {
             for (const fs::directory_entry& entry : fs::recursive_directory_iterator{root / top}) {
                 const std::string extension = entry.path().extension().string();
-                if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp"))
+                if (!entry.is_regular_file() || (extension != ".h" && extension != ".cpp")) {
                     continue;
+                }
                 std::ifstream file{entry.path()};
                 std::stringstream text;
                 text << file.rdbuf();
@@ -127,11 +135,14 @@ const std::vector<Source>& sources() {
                 source.folder = folder_of(source.path);
                 source.code = without_comments(text.str());
                 std::istringstream lines{source.code};
-                for (std::string line; std::getline(lines, line);)
-                    if (std::smatch match; std::regex_search(line, match, include))
+                for (std::string line; std::getline(lines, line);) {
+                    if (std::smatch match; std::regex_search(line, match, include)) {
                         (match[1] == "\"" ? source.ours : source.libraries).push_back(match[2]);
+                    }
+                }
                 found.push_back(std::move(source));
             }
+        }
         return found;
     }();
     return all;
@@ -148,15 +159,17 @@ TEST(Layering, FindsTheSources) {
 }
 
 TEST(Layering, KnowsEveryFolderOfServerAndClient) {
-    for (const Source& source : sources())
+    for (const Source& source : sources()) {
         EXPECT_FALSE(source.folder.empty() && !source.path.starts_with("tests/"))
             << source.path << " is in a folder that has no arrows yet";
+    }
 }
 
 TEST(Layering, EveryIncludeFollowsAnArrow) {
     for (const Source& source : sources()) {
-        if (source.path.starts_with("tests/") || source.folder.empty())
+        if (source.path.starts_with("tests/") || source.folder.empty()) {
             continue;
+        }
         for (const std::string& include : source.ours) {
             const std::string target = folder_of(include);
             EXPECT_TRUE(target == source.folder || arrows.at(source.folder).contains(target))
@@ -166,49 +179,58 @@ TEST(Layering, EveryIncludeFollowsAnArrow) {
 }
 
 TEST(Layering, ArrowsGoNeverRound) {
-    for (const auto& [folder, allowed] : arrows)
-        for (const std::string& target : allowed)
+    for (const auto& [folder, allowed] : arrows) {
+        for (const std::string& target : allowed) {
             EXPECT_FALSE(arrows.contains(target) && arrows.at(target).contains(folder)) << folder << " and " << target;
+        }
+    }
 }
 
 TEST(Layering, ServerNeverIncludesTestsButTheWorkerPoolOfTsan) {
-    for (const Source& source : sources())
+    for (const Source& source : sources()) {
         if (source.path.starts_with("server/") || source.path.starts_with("client/")) {
-            for (const std::string& include : source.ours)
+            for (const std::string& include : source.ours) {
                 EXPECT_TRUE(!include.starts_with("tests/") || include == "tests/support/thread_executor.h")
                     << source.path << " includes " << include;
+            }
         }
+    }
 }
 
 TEST(Core, IncludesNothingThatHasATimeADiskAThreadOrADevice) {
-    static const std::set<std::string> forbidden = {
-        "thread",    "chrono",    "fstream",    "iostream",      "random",       "mutex",
-        "future",    "atomic",    "stop_token", "shared_mutex",  "filesystem",   "condition_variable",
-        "ctime",     "time.h",    "unistd.h",   "semaphore",     "barrier",      "latch",
-        "coroutine", "execution", "regex",      "unordered_map", "unordered_set"}; // the last two: their order is the
-                                                                                   // library's
+    static const std::set<std::string> forbidden =
+        {"thread",    "chrono",    "fstream",    "iostream",      "random",       "mutex",
+         "future",    "atomic",    "stop_token", "shared_mutex",  "filesystem",   "condition_variable",
+         "ctime",     "time.h",    "unistd.h",   "semaphore",     "barrier",      "latch",
+         "coroutine", "execution", "regex",      "unordered_map", "unordered_set"}; // the last two: their order is the
+                                                                                    // library's
     static const std::vector<std::string> forbidden_beginnings = {"google/", "evod/",   "boost/asio", "boost/beast",
                                                                   "sys/",    "spdlog/", "fmt/",       "tbb/",
                                                                   "oneapi/", "sqlite",  "zstd",       "proto/"};
     for (const Source& source : sources()) {
-        if (!is_core(source))
+        if (!is_core(source)) {
             continue;
+        }
         for (const std::string& include : source.libraries) {
-            if (include == "atomic" && source.path == "server/base/commutative.h")
+            if (include == "atomic" && source.path == "server/base/commutative.h") {
                 continue; // whose order of arrival cannot be told from the outcome
-            if (include == "sys/mman.h" && source.path == "server/base/column.cpp")
+            }
+            if (include == "sys/mman.h" && source.path == "server/base/column.cpp") {
                 continue; // advice on memory, which changes nothing but how long it takes
+            }
             EXPECT_FALSE(forbidden.contains(include)) << source.path << " includes <" << include << ">";
-            for (const std::string& beginning : forbidden_beginnings)
+            for (const std::string& beginning : forbidden_beginnings) {
                 EXPECT_FALSE(include.starts_with(beginning)) << source.path << " includes <" << include << ">";
+            }
         }
     }
 }
 
 void expect_nowhere_in_core(const std::regex& pattern, const char* why) {
     for (const Source& source : sources()) {
-        if (!is_core(source))
+        if (!is_core(source)) {
             continue;
+        }
         std::istringstream lines{source.code};
         std::size_t number = 0;
         for (std::string line; std::getline(lines, line);) {
@@ -248,13 +270,15 @@ TEST(Core, AsksNoReductionOfTheStandardLibraryForFloats) {
 }
 
 TEST(ProtocolAndStorage, OpenNoSockets) {
-    for (const Source& source : sources())
+    for (const Source& source : sources()) {
         if (source.folder == "server/protocol" || source.folder == "server/storage" || source.folder == "proto/codec") {
-            for (const std::string& include : source.libraries)
+            for (const std::string& include : source.libraries) {
                 EXPECT_FALSE(include.starts_with("boost/asio") || include.starts_with("boost/beast") ||
                              include.starts_with("sys/socket"))
                     << source.path << " includes <" << include << ">";
+            }
         }
+    }
 }
 
 } // namespace

@@ -121,8 +121,9 @@ const std::vector<Scenario>& all() {
 
 simulation::Parameters parameters_of(std::string_view experiment) {
     auto parsed = simulation::parse_experiment(experiment);
-    if (!parsed)
+    if (!parsed) {
         std::fputs(to_text(parsed.error()).c_str(), stderr);
+    }
     EVOD_ASSERT(parsed.has_value());
     return parsed->parameters;
 }
@@ -137,18 +138,22 @@ Play::Play(const Scenario& scenario, base::Seed seed) : scenario_{scenario} {
 void Play::advance(base::Executor& executor) {
     simulation::Entry& entry = *laboratory_.entries().front();
     for (const Change& change : scenario_.changes) {
-        if (change.tick != entry.world.moment().tick + 1)
+        if (change.tick != entry.world.moment().tick + 1) {
             continue;
+        }
         // What the text names is what is assigned, whatever value it has by default.
         std::vector<simulation::Assignment> assignments;
         const simulation::Parameters values = parameters_of(change.parameters);
-        for (const simulation::ParameterDescription& description : simulation::parameter_registry())
-            if (change.parameters.find("\"" + std::string{description.name} + "\":") != std::string_view::npos)
+        for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
+            if (change.parameters.find("\"" + std::string{description.name} + "\":") != std::string_view::npos) {
                 assignments.push_back({std::string{description.name}, description.get(values)});
+            }
+        }
         auto changed = laboratory_.apply(simulation::SetParameters{
             .world = "w", .assignments = assignments, .dry_run = false, .expected_revision = {}});
-        if (!changed)
+        if (!changed) {
             std::fputs(to_text(changed.error()).c_str(), stderr);
+        }
         EVOD_ASSERT(changed.has_value());
     }
     EVOD_ASSERT(entry.wants_tick());

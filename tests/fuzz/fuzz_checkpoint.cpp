@@ -28,8 +28,9 @@ simulation::World beginning() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const simulation::World first = beginning();
     static const std::vector<simulation::IslandShape> shapes = first.shapes();
-    if (size == 0)
+    if (size == 0) {
         return 0;
+    }
     const std::string_view bytes{reinterpret_cast<const char*>(data) + 1, size - 1};
     const std::uint64_t tick = data[0] % 128 % 62;
     simulation::WorldState state{.moment = {.tick = tick, .generation = 1, .generation_tick = tick, .simulated_s = 1},
@@ -38,21 +39,25 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                  .ended = {}};
     const bool packed = data[0] >= 128;
     if (const auto read = packed ? storage::unpack(bytes, shapes, state) : storage::read_columns(bytes, shapes, state);
-        !read)
+        !read) {
         return 0;
+    }
     base::InlineExecutor executor;
     simulation::World world = first;
     if (const auto restored = world.restore(state, executor); !restored) {
-        if (restored.error().message.empty() || world.hash() != first.hash())
+        if (restored.error().message.empty() || world.hash() != first.hash()) {
             std::abort();
+        }
         return 0;
     }
     // Packed again and unpacked it is the same.
     simulation::WorldState again;
     if (!storage::unpack(storage::pack(world.state(executor)), shapes, again) ||
-        again.islands != world.state(executor).islands)
+        again.islands != world.state(executor).islands) {
         std::abort();
-    for (int ticks = 0; ticks < 3; ++ticks)
+    }
+    for (int ticks = 0; ticks < 3; ++ticks) {
         world.advance_tick(executor);
+    }
     return 0;
 }

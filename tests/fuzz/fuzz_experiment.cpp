@@ -6,16 +6,20 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod::simulation;
     const auto experiment = parse_experiment({reinterpret_cast<const char*>(data), size});
-    if (!experiment)
+    if (!experiment) {
         return 0;
-    if (!validate(experiment->parameters).empty())
+    }
+    if (!validate(experiment->parameters).empty()) {
         std::abort();
+    }
     const auto again =
         parse_experiment(to_experiment_text(experiment->parameters, Written::Differences, experiment->schedule));
-    if (!again || !(again->parameters == experiment->parameters) || again->schedule != experiment->schedule)
+    if (!again || !(again->parameters == experiment->parameters) || again->schedule != experiment->schedule) {
         std::abort();
+    }
     const auto alone = parse_schedule(to_schedule_text(experiment->schedule));
-    if (!alone || *alone != experiment->schedule || !faults_of(*alone, experiment->parameters).empty())
+    if (!alone || *alone != experiment->schedule || !faults_of(*alone, experiment->parameters).empty()) {
         std::abort();
+    }
     return 0;
 }

@@ -21,8 +21,9 @@ using namespace evod::codec;
 using Bytes = std::span<const std::byte>;
 
 void require(bool holds) {
-    if (!holds)
+    if (!holds) {
         std::abort();
+    }
 }
 
 /// A frame ends here, `bytes` from the beginning; its body is the last of them.
@@ -48,8 +49,9 @@ Whole read_whole(Bytes bytes, const FrameLimits& limits) {
             require(!whole.damage.empty());
             return whole;
         }
-        if (!*frame)
+        if (!*frame) {
             return whole;
+        }
         whole.frames.push_back({(*frame)->channel, bytes.size() - reader.buffered_bytes(), (*frame)->body.size()});
     }
 }
@@ -70,8 +72,9 @@ class InPieces {
                 damage_ = frame.error().what;
                 return;
             }
-            if (!*frame)
+            if (!*frame) {
                 break;
+            }
             require(next_ < whole_.frames.size());
             const Found& expected = whole_.frames[next_++];
             const auto body = (*frame)->body;
@@ -98,9 +101,11 @@ void cut_in_every_way(Bytes bytes, const FrameLimits& limits, const Whole& whole
     if (size <= 8) {
         for (std::uint32_t cuts = 0; size > 0 && cuts < 1u << (size - 1); ++cuts) {
             InPieces pieces{bytes, limits, whole};
-            for (std::size_t at = 1; at < size; ++at)
-                if ((cuts >> (at - 1) & 1) != 0)
+            for (std::size_t at = 1; at < size; ++at) {
+                if ((cuts >> (at - 1) & 1) != 0) {
                     pieces.feed_to(at);
+                }
+            }
             pieces.finish();
         }
         return;
@@ -128,32 +133,38 @@ void cut_by(Bytes bytes, const FrameLimits& limits, const Whole& whole, auto nex
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    if (size == 0)
+    if (size == 0) {
         return 0;
+    }
     constexpr FrameLimits limits_of[] = {hello_limits, server_limits, client_limits};
     const FrameLimits& limits = limits_of[data[0] % std::size(limits_of)];
     const Bytes bytes = std::as_bytes(std::span{data, size}).subspan(1);
     std::uint32_t draw = data[0];
-    for (const std::byte byte : bytes)
+    for (const std::byte byte : bytes) {
         draw = (draw ^ static_cast<std::uint32_t>(byte)) * 16777619u;
+    }
     const Whole whole = read_whole(bytes, limits);
-    if (draw >> 27 == 0)
+    if (draw >> 27 == 0) {
         cut_in_every_way(bytes, limits, whole);
-    if (bytes.size() <= 64)
+    }
+    if (bytes.size() <= 64) {
         cut_by(bytes, limits, whole, [] { return 1; });
-    for (const std::size_t longest : {12, 1000})
+    }
+    for (const std::size_t longest : {12, 1000}) {
         cut_by(bytes, limits, whole, [longest, &draw] {
             draw = draw * 1664525u + 1013904223u;
             return 1 + (draw >> 16) % longest;
         });
+    }
 
     for (const auto& [channel, end, body_bytes] : whole.frames) {
         const Bytes body = bytes.subspan(end - body_bytes, body_bytes);
         (void)parse_body<evod::v1::ClientMessage>(body);
-        if (channel == Channel::Control)
+        if (channel == Channel::Control) {
             (void)parse_body<evod::v1::ServerMessage>(body);
-        else
+        } else {
             (void)parse_body<evod::v1::SnapshotFrame>(body);
+        }
     }
     return 0;
 }

@@ -12,18 +12,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::istringstream in{text};
     const auto islands = read_population(in);
     if (!islands) {
-        if (islands.error().what.empty())
+        if (islands.error().what.empty()) {
             std::abort();
+        }
         return 0;
     }
     std::size_t organisms = 0;
     for (const auto& genes : *islands) {
-        if (genes.empty() || genes.size() % population_genes != 0)
+        if (genes.empty() || genes.size() % population_genes != 0) {
             std::abort();
+        }
         organisms += genes.size() / population_genes;
     }
     const auto lines = std::count(text.begin(), text.end(), '\n') + (text.ends_with('\n') ? 0 : 1);
-    if (organisms != static_cast<std::size_t>(lines) - 1)
+    if (organisms != static_cast<std::size_t>(lines) - 1) {
         std::abort();
+    }
     return 0;
 }

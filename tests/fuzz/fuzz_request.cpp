@@ -10,29 +10,35 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod;
     const auto message = codec::parse_body<v1::ClientMessage>(std::as_bytes(std::span{data, size}));
-    if (!message || !message->has_request())
+    if (!message || !message->has_request()) {
         return 0;
+    }
     const v1::Request& request = message->request();
     base::Refusal refusal;
     if (protocol::kind_of(request) == protocol::RequestKind::Command) {
         const auto command = protocol::to_command(request, {.seed = {1}, .run_id = {2, 3}});
         if (command) {
             // What the core is given must be right in itself.
-            if (const auto* create = std::get_if<simulation::CreateWorld>(&*command))
-                if (!simulation::is_world_name(create->name) || !simulation::validate(create->parameters).empty())
+            if (const auto* create = std::get_if<simulation::CreateWorld>(&*command)) {
+                if (!simulation::is_world_name(create->name) || !simulation::validate(create->parameters).empty()) {
                     std::abort();
-            if (const auto* set = std::get_if<simulation::SetParameters>(&*command))
+                }
+            }
+            if (const auto* set = std::get_if<simulation::SetParameters>(&*command)) {
                 (void)simulation::assign({}, set->assignments);
+            }
             return 0;
         }
         refusal = command.error();
-        if (refusal.violations.empty())
+        if (refusal.violations.empty()) {
             std::abort();
+        }
     } else {
         refusal = {
             .code = base::RefusalCode::InvalidArgument, .message = "", .violations = protocol::faults_of(request)};
     }
-    if (protocol::refusing(request.request_id(), refusal).ByteSizeLong() > (1u << 20))
+    if (protocol::refusing(request.request_id(), refusal).ByteSizeLong() > (1u << 20)) {
         std::abort();
+    }
     return 0;
 }

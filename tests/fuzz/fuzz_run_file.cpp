@@ -26,8 +26,9 @@ using namespace evod;
 using Bytes = std::span<const std::uint8_t>;
 
 void require(bool holds) {
-    if (!holds)
+    if (!holds) {
         std::abort();
+    }
 }
 
 /// The first `count` of `bytes`, which lose them.
@@ -73,8 +74,9 @@ struct Place {
         base::InlineExecutor executor;
         simulation::World world{identity.parameters, identity.seed};
         if (fork) {
-            while (world.moment().generation < 3 || world.moment().generation_tick < 10)
+            while (world.moment().generation < 3 || world.moment().generation_tick < 10) {
                 world.advance_tick(executor);
+            }
             world.become_fork();
             identity.forked_from = simulation::RunId{3, 4};
             identity.first_generation = world.moment().generation;
@@ -98,12 +100,15 @@ struct Place {
         while (world.moment().generation < identity.first_generation + 2) {
             const std::uint64_t generation = world.moment().generation;
             world.advance_tick(executor);
-            if (world.moment().generation != generation)
+            if (world.moment().generation != generation) {
                 (*file)->write(storage::beginning_of(world));
-            if (world.moment().tick % storage::ticks_per_link == 0)
+            }
+            if (world.moment().tick % storage::ticks_per_link == 0) {
                 (*file)->write(storage::HashLink{world.moment().tick, world.hash()});
-            if (world.generation_over())
+            }
+            if (world.generation_over()) {
                 (*file)->write(storage::end_of(world));
+            }
         }
         (*file)->write(storage::EndMark{.tick = world.moment().tick});
         require((*file)->commit().has_value());
@@ -130,8 +135,9 @@ struct Place {
 
     /// Puts a file there, and nothing else.
     void put(const char* bytes, std::size_t count) const {
-        for (const char* suffix : {"-wal", "-shm", "-journal"})
+        for (const char* suffix : {"-wal", "-shm", "-journal"}) {
             std::filesystem::remove(path + suffix);
+        }
         std::ofstream{path, std::ios::binary}.write(bytes, static_cast<std::streamsize>(count));
     }
 
@@ -146,14 +152,16 @@ void change_row(sqlite3* database, Bytes& bytes) {
         "state_hash", "end_mark", "thinned",    "founders",   "inherited_statistics", "checkpoint", "checkpoint_part"};
     const std::string table = tables[take<std::uint8_t>(bytes) % std::size(tables)];
     const int row = take<std::uint8_t>(bytes), wanted = take<std::uint8_t>(bytes);
-    if (table == "thinned")
+    if (table == "thinned") {
         sqlite3_exec(database, "INSERT INTO thinned VALUES (1, 2, 1, 60, 0)", nullptr, nullptr, nullptr);
+    }
     sqlite3_stmt* read = nullptr;
     // The format before has not all of them.
     if (sqlite3_prepare_v2(database,
                            ("SELECT rowid, * FROM " + table + " LIMIT 1 OFFSET " + std::to_string(row % 16)).c_str(),
-                           -1, &read, nullptr) != SQLITE_OK)
+                           -1, &read, nullptr) != SQLITE_OK) {
         return;
+    }
     if (sqlite3_step(read) == SQLITE_ROW) {
         const int columns = sqlite3_column_count(read) - 2; // without rowid and checksum
         storage::RowChecksum checksum{table};
@@ -167,15 +175,17 @@ void change_row(sqlite3* database, Bytes& bytes) {
             case SQLITE_INTEGER: {
                 const std::int64_t value = changed ? take<std::int64_t>(bytes) : sqlite3_column_int64(read, i);
                 checksum.add(value);
-                if (changed)
+                if (changed) {
                     sqlite3_bind_int64(write, 2, value);
+                }
                 break;
             }
             case SQLITE_FLOAT: {
                 const double value = changed ? take<double>(bytes) : sqlite3_column_double(read, i);
                 checksum.add(value);
-                if (changed)
+                if (changed) {
                     sqlite3_bind_double(write, 2, value);
+                }
                 break;
             }
             case SQLITE_NULL:
@@ -221,8 +231,9 @@ bool add_to_schema(sqlite3* database, Bytes& bytes) {
     std::string sql = kinds[take<std::uint8_t>(bytes) % std::size(kinds)];
     sql.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     sqlite3_stmt* statement = nullptr; // the first of the text alone
-    if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK)
+    if (sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK) {
         sqlite3_step(statement);
+    }
     sqlite3_finalize(statement);
     return count() != before;
 }
@@ -253,10 +264,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         place.put(sound.data(), sound.size());
         sqlite3* database = nullptr;
         require(sqlite3_open(place.path.c_str(), &database) == SQLITE_OK);
-        if (kind >= 128)
+        if (kind >= 128) {
             foreign = add_to_schema(database, bytes);
-        while (!foreign && !bytes.empty())
+        }
+        while (!foreign && !bytes.empty()) {
             change_row(database, bytes);
+        }
         sqlite3_close(database);
     }
     }
@@ -266,7 +279,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)(*file)->history((*file)->last_generation() + 1, simulation::World::history_generations_kept);
         (void)(*file)->journal((*file)->contents().journal_entries);
     }
-    for (const char* what : {"generations", "organisms", "events"})
+    for (const char* what : {"generations", "organisms", "events"}) {
         (void)console::export_run({.run = place.path, .what = what, .format = "jsonl", .output = "/dev/null"});
+    }
     return 0;
 }

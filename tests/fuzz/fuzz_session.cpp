@@ -34,16 +34,19 @@ void make_light(v1::CreateWorld& create, Script& script) {
          {Given{"population_size", 2u + script.take() % 4}, Given{"food_count", 4}, Given{"poison_count", 3},
           Given{"generation_s", 1}, Given{"island_width_px", 200}, Given{"island_height_px", 150}}) {
         bool given = false;
-        for (const v1::ParameterAssignment& there : create.parameters())
+        for (const v1::ParameterAssignment& there : create.parameters()) {
             given = given || there.name() == name;
-        if (given)
+        }
+        if (given) {
             continue;
+        }
         v1::ParameterAssignment& assignment = *create.add_parameters();
         assignment.set_name(name);
         assignment.mutable_value()->set_count(value);
     }
-    for (v1::IslandPopulation& population : *create.mutable_population())
+    for (v1::IslandPopulation& population : *create.mutable_population()) {
         population.mutable_genes()->Resize(6 * (2 + script.take() % 4), 100);
+    }
 }
 
 class Play {
@@ -61,8 +64,9 @@ class Play {
   private:
     void act() {
         const auto what = script_.take();
-        if (clients_.empty() || what % 16 == 0)
+        if (clients_.empty() || what % 16 == 0) {
             return open();
+        }
         WatchingClient& client = *clients_[what / 16 % clients_.size()];
         switch (what % 16) {
         case 1:
@@ -81,16 +85,18 @@ class Play {
             client.hear(1 + 16 * script_.take());
             return;
         case 12:
-            if (script_.take() % 2 == 0)
+            if (script_.take() % 2 == 0) {
                 client.finish();
-            else
+            } else {
                 std::erase_if(clients_, [&](const auto& one) { return one.get() == &client; });
+            }
             return;
         case 13:
             return clock().advance(script_.one_of({1ms, 8ms, 17ms, 50ms, 300ms, 1000ms, 2500ms, 6000ms, 11'000ms}));
         case 14:
-            for (int passes = script_.take() % 8; passes > 0; --passes)
+            for (int passes = script_.take() % 8; passes > 0; --passes) {
                 server_.pass();
+            }
             return;
         }
     }
@@ -98,25 +104,30 @@ class Play {
     /// Unless the script says otherwise, everything is sent, read, minded, answered and heard.
     void go_on() {
         const auto how = script_.take();
-        for (const auto& client : clients_)
+        for (const auto& client : clients_) {
             client->send((how & 1) != 0 ? how >> 4 : SIZE_MAX);
-        if ((how & 2) == 0)
+        }
+        if ((how & 2) == 0) {
             server_.poll();
-        if ((how & 4) == 0)
+        }
+        if ((how & 4) == 0) {
             server_.pass();
+        }
         if ((how & 8) == 0) {
             server_.poll();
-            for (const auto& client : clients_)
+            for (const auto& client : clients_) {
                 while (client->hear(SIZE_MAX)) {
                 }
+            }
         }
     }
 
     void open() {
         constexpr std::size_t clients_max = 8;
         const auto how = script_.take();
-        if (clients_.size() == clients_max)
+        if (clients_.size() == clients_max) {
             return;
+        }
         const bool refused = how % 16 == 15 || server_.going_away();
         std::array<int, 2> ends{};
         require(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()) == 0);
@@ -125,10 +136,11 @@ class Play {
             require(::setsockopt(ends[1], SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes) == 0); // the least there is
         }
         clients_.push_back(std::make_unique<WatchingClient>(ends[0], answers_, refused));
-        if (refused)
+        if (refused) {
             server_.accept(ends[1], base::refusal(base::RefusalCode::Unavailable, "not now"));
-        else
+        } else {
             server_.accept(ends[1]);
+        }
         constexpr const char* tokens[] = {"admin", "controller", "viewer", "admin", "nobody"};
         if (how / 16 < std::size(tokens)) {
             v1::ClientMessage message;
@@ -149,10 +161,12 @@ class Play {
         v1::Request& request = *message.mutable_request();
         const auto how = script_.take();
         const auto& kinds = *v1::Request::descriptor()->FindOneofByName("kind");
-        if (const int kind = script_.take() % (kinds.field_count() + 1); kind < kinds.field_count())
+        if (const int kind = script_.take() % (kinds.field_count() + 1); kind < kinds.field_count()) {
             fill(*request.GetReflection()->MutableMessage(&request, kinds.field(kind)), script_);
-        if (request.has_create_world() && how / 64 != 3)
+        }
+        if (request.has_create_world() && how / 64 != 3) {
             make_light(*request.mutable_create_world(), script_);
+        }
         const std::string keys[] = {"k1", "k2", "k3", "", std::string(65, 'k')};
         request.set_client_key(keys[how % 8 % std::size(keys)]);
         request.set_request_id(how / 8 % 8 < 6 ? client.next_request_id() : script_.take() % 4);
@@ -165,10 +179,11 @@ class Play {
         v1::ClientMessage message;
         if (const auto newest = client.newest_picture(which / 4)) {
             *message.mutable_acknowledge_snapshot() = *newest;
-            if (which % 4 == 1)
+            if (which % 4 == 1) {
                 message.mutable_acknowledge_snapshot()->set_sequence(newest->sequence() + 1);
-            else if (which % 4 == 2)
+            } else if (which % 4 == 2) {
                 message.mutable_acknowledge_snapshot()->set_sequence(newest->sequence() - 1);
+            }
         } else {
             fill(*message.mutable_acknowledge_snapshot(), script_);
         }
@@ -197,8 +212,9 @@ class Play {
                 quiet = quiet && (client->closed() || client->finished() || client->unsent_bytes() == 0) &&
                         is_through(*client);
             }
-            if (quiet)
+            if (quiet) {
                 break;
+            }
         }
         server_.compare_with_twins();
         clients_.clear();
@@ -215,8 +231,9 @@ class Play {
                     (client.finished() && (client.refused() || client.all_answered())));
             return true;
         }
-        if (client.told_of_end() || server_.going_away() || client.refused() || client.finished())
+        if (client.told_of_end() || server_.going_away() || client.refused() || client.finished()) {
             return false; // its end has yet to come
+        }
         return client.all_answered();
     }
 

@@ -7,32 +7,40 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace evod;
     const std::string_view text{reinterpret_cast<const char*>(data), size};
     const console::LoadExperiment load = [](const std::string& path) -> base::Result<simulation::Experiment> {
-        if (path == "../default.json")
+        if (path == "../default.json") {
             return simulation::Experiment{};
+        }
         return refusal(base::RefusalCode::NotFound, path + ": there is none");
     };
     const auto sweep = console::parse_sweep(text, load);
     if (!sweep) {
         const base::Refusal refused = sweep.error();
-        if (refused.message.empty() || refused.violations.size() > console::violations_max)
+        if (refused.message.empty() || refused.violations.size() > console::violations_max) {
             std::abort();
+        }
         return 0;
     }
-    if (sweep->cells.empty() || sweep->replicates == 0 || sweep->run_count() > console::Sweep::runs_max)
+    if (sweep->cells.empty() || sweep->replicates == 0 || sweep->run_count() > console::Sweep::runs_max) {
         std::abort();
+    }
     for (std::size_t cell = 0; cell < sweep->cells.size(); ++cell) {
         const simulation::Parameters parameters = sweep->parameters_of(cell);
-        if (!validate(parameters).empty())
+        if (!validate(parameters).empty()) {
             std::abort();
+        }
         if (parameters.generation_limit == 0 && parameters.stagnation_limit == 0 &&
-            !parameters.stop_at_target_fitness && !parameters.stop_at_extinction)
+            !parameters.stop_at_target_fitness && !parameters.stop_at_extinction) {
             std::abort();
-        for (std::size_t i = 0; i < sweep->swept.size(); ++i) // is what the tables say it is
-            if (sweep->swept[i]->get(parameters) != sweep->cells[cell][i])
+        }
+        for (std::size_t i = 0; i < sweep->swept.size(); ++i) { // is what the tables say it is
+            if (sweep->swept[i]->get(parameters) != sweep->cells[cell][i]) {
                 std::abort();
+            }
+        }
     }
     const auto again = console::parse_sweep(text, load);
-    if (!again || again->cells != sweep->cells)
+    if (!again || again->cells != sweep->cells) {
         std::abort();
+    }
     return 0;
 }

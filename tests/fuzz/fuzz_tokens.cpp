@@ -6,10 +6,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod::access;
     const auto tokens = parse_tokens({reinterpret_cast<const char*>(data), size});
-    if (!tokens)
+    if (!tokens) {
         return 0;
+    }
     const auto again = parse_tokens(to_text(*tokens));
-    if (!again || !(*again == *tokens))
+    if (!again || !(*again == *tokens)) {
         std::abort();
+    }
     return 0;
 }

@@ -51,8 +51,9 @@ const std::string texts[] = {
     "default", "a", "b", "", "default@1", "no such", std::string(65, 'x'), "life", "k1", "rastrigin", "generational"};
 
 std::string text_for(const FieldDescriptor& field, Script& script) {
-    if (field.containing_type()->name() != "ParameterAssignment")
+    if (field.containing_type()->name() != "ParameterAssignment") {
         return script.one_of(texts);
+    }
     const auto parameters = simulation::parameter_registry();
     const std::size_t wanted = script.take() % (parameters.size() + 1);
     return wanted < parameters.size() ? std::string{parameters[wanted].name} : "none";
@@ -97,15 +98,18 @@ void fill(Message& message, Script& script) {
     for (int i = 0; i < type.real_oneof_decl_count(); ++i) {
         const auto& choice = *type.oneof_decl(i);
         const int chosen = script.take() % (choice.field_count() + 1);
-        if (chosen < choice.field_count())
+        if (chosen < choice.field_count()) {
             fill(message, *choice.field(chosen), script);
+        }
     }
     for (int i = 0; i < type.field_count(); ++i) {
         const FieldDescriptor& field = *type.field(i);
-        if (field.real_containing_oneof() != nullptr)
+        if (field.real_containing_oneof() != nullptr) {
             continue;
-        for (int count = script.take() % (field.is_repeated() ? 4 : 2); count > 0; --count)
+        }
+        for (int count = script.take() % (field.is_repeated() ? 4 : 2); count > 0; --count) {
             fill(message, field, script);
+        }
     }
 }
 

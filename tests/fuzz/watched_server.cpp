@@ -58,18 +58,20 @@ constexpr Bound bounds[] = {{"population_size", 8},    {"island_count", 3},     
 bool beyond(const Bound& bound, const simulation::ParameterValue& value) {
     return std::visit(
         [&](const auto& given) {
-            if constexpr (std::is_arithmetic_v<std::decay_t<decltype(given)>>)
+            if constexpr (std::is_arithmetic_v<std::decay_t<decltype(given)>>) {
                 return static_cast<double>(given) > bound.max;
-            else
+            } else {
                 return false;
+            }
         },
         value);
 }
 
 bool too_large(const simulation::Command& command) {
     return std::ranges::any_of(bounds, [&](const Bound& bound) {
-        if (const auto* create = std::get_if<simulation::CreateWorld>(&command))
+        if (const auto* create = std::get_if<simulation::CreateWorld>(&command)) {
             return beyond(bound, simulation::find_parameter(bound.parameter)->get(create->parameters));
+        }
         const auto* set = std::get_if<simulation::SetParameters>(&command);
         return set != nullptr && std::ranges::any_of(set->assignments, [&](const simulation::Assignment& assignment) {
                    return assignment.name == bound.parameter && beyond(bound, assignment.value);
@@ -88,8 +90,9 @@ bool is_run_control(const simulation::Command& command) {
 } // namespace
 
 base::Result<access::Visitor> admit(const std::string& token) {
-    if (const auto role = access::role_named(token))
+    if (const auto role = access::role_named(token)) {
         return access::Visitor{.name = token, .role = *role};
+    }
     return base::refusal(base::RefusalCode::Unauthenticated, "the token is not known");
 }
 
@@ -132,8 +135,9 @@ void WatchedServer::accept(int descriptor, const std::optional<base::Refusal>& r
     socket.assign(network::tcp::v4(), descriptor); // of another family, which nobody asks for
     const auto session = std::make_shared<network::Session>(std::move(socket), host_, ++session_number_);
     ++connection_count_;
-    if (!refusal)
+    if (!refusal) {
         sessions_.emplace(session->number(), session);
+    }
     session->start(refusal);
 }
 
@@ -141,21 +145,24 @@ void WatchedServer::poll() {
     context_.restart();
     context_.poll();
     const auto now = clock().now();
-    for (const auto& [number, session] : sessions_)
+    for (const auto& [number, session] : sessions_) {
         session->mind_progress(now - polled_);
+    }
     polled_ = now;
 }
 
 void WatchedServer::pass() {
-    if (going_away_)
+    if (going_away_) {
         return;
+    }
     watch_mail();
     loop_.pass();
 }
 
 void WatchedServer::watch_mail() {
-    if (!mailbox_.pending())
+    if (!mailbox_.pending()) {
         return;
+    }
     std::vector<runtime::Mail> waiting = mailbox_.drain();
     mailbox_.wake();
     for (runtime::Mail& mail : waiting) {
@@ -173,10 +180,11 @@ void WatchedServer::watch_mail() {
             command->reply = [this, before, reply = std::move(command->reply)](
                                  const simulation::Laboratory& laboratory, const simulation::Command& carried_out,
                                  const base::Result<simulation::Applied>& applied) {
-                if (applied)
+                if (applied) {
                     follow(carried_out, *applied);
-                else
+                } else {
                     require(state_of_all() == *before);
+                }
                 return reply(laboratory, carried_out, applied);
             };
         }
@@ -189,10 +197,12 @@ std::string WatchedServer::state_of_all() const {
 }
 
 void WatchedServer::follow(const simulation::Command& command, const simulation::Applied& applied) {
-    if (is_run_control(command))
+    if (is_run_control(command)) {
         return;
-    if (const auto* set = std::get_if<simulation::SetParameters>(&command); set != nullptr && set->dry_run)
+    }
+    if (const auto* set = std::get_if<simulation::SetParameters>(&command); set != nullptr && set->dry_run) {
         return;
+    }
     // What stays is caught up with first.
     const auto* fork = std::get_if<simulation::ForkWorld>(&command);
     if (fork != nullptr || std::holds_alternative<simulation::SetParameters>(command)) {
@@ -212,8 +222,9 @@ simulation::Entry& WatchedServer::catch_up(const simulation::Entry& entry) {
     const auto twin = twins_.find(entry.name);
     require(twin && (*twin)->run_id == entry.run_id);
     simulation::World& world = (*twin)->world;
-    while (world.moment().tick < entry.world.moment().tick)
+    while (world.moment().tick < entry.world.moment().tick) {
         world.advance_tick(executor_);
+    }
     return **twin;
 }
 
@@ -233,8 +244,9 @@ void WatchedServer::deliver() {
 }
 
 void WatchedServer::go_away() {
-    if (std::exchange(going_away_, true))
+    if (std::exchange(going_away_, true)) {
         return;
+    }
     dispatcher_.refuse_all();
     watch_mail();
     loop_.close();

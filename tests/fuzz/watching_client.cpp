@@ -39,8 +39,9 @@ bool is_right(const v1::Hello& hello) {
 
 WatchingClient::WatchingClient(int descriptor, Answers& answers, bool refused)
     : descriptor_{descriptor}, answers_{answers}, all_heard_{clock().now()} {
-    if (refused)
+    if (refused) {
         refused_since_ = clock().now();
+    }
 }
 
 WatchingClient::~WatchingClient() {
@@ -51,11 +52,13 @@ WatchingClient::~WatchingClient() {
 
 void WatchingClient::send(std::size_t count) {
     count = std::min(count, unsent_.size());
-    if (count == 0 || finished_ || closed_)
+    if (count == 0 || finished_ || closed_) {
         return;
+    }
     const ssize_t sent = ::send(descriptor_, unsent_.data(), count, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent <= 0)
+    if (sent <= 0) {
         return; // not now, or nobody is there any more
+    }
     said(std::as_bytes(std::span{unsent_}.first(static_cast<std::size_t>(sent))));
     unsent_.erase(0, static_cast<std::size_t>(sent));
 }
@@ -69,12 +72,13 @@ void WatchingClient::said(std::span<const std::byte> bytes) {
     said_.feed(bytes);
     while (!refused()) {
         const auto frame = said_.next();
-        if (!frame)
+        if (!frame) {
             refused_since_ = clock().now();
-        else if (*frame)
+        } else if (*frame) {
             said(**frame);
-        else
+        } else {
             return;
+        }
     }
 }
 
@@ -82,22 +86,24 @@ void WatchingClient::said(const codec::Frame& frame) {
     const auto message = codec::parse_body<v1::ClientMessage>(frame.body);
     if (!greeted_) {
         greeted_ = message && message->has_hello() && is_right(message->hello());
-        if (!greeted_)
+        if (!greeted_) {
             refused_since_ = clock().now();
-        else {
+        } else {
             role_ = admit(message->hello().token())->role;
             said_.set_limits(codec::server_limits);
         }
         return;
     }
     if (!message || message->kind_case() == v1::ClientMessage::kHello ||
-        message->kind_case() == v1::ClientMessage::KIND_NOT_SET)
+        message->kind_case() == v1::ClientMessage::KIND_NOT_SET) {
         return owed(0, {});
+    }
     if (message->has_acknowledge_snapshot()) {
         const v1::AcknowledgeSnapshot& acknowledged = message->acknowledge_snapshot();
         const auto watch = watches_.find(acknowledged.subscription_id());
-        if (watch == watches_.end())
+        if (watch == watches_.end()) {
             return;
+        }
         Island& island = watch->second.islands[acknowledged.island()];
         island.acknowledged_up_to = std::max<std::uint64_t>(island.acknowledged_up_to, acknowledged.sequence());
         island.unacknowledged.erase(island.unacknowledged.begin(),
@@ -105,8 +111,9 @@ void WatchingClient::said(const codec::Frame& frame) {
         return;
     }
     const v1::Request& request = message->request();
-    if (protocol::kind_of(request) == protocol::RequestKind::Command)
+    if (protocol::kind_of(request) == protocol::RequestKind::Command) {
         ++answers_.times_sent[{request.client_key(), request.request_id()}];
+    }
     owed(request.request_id(), {.request = request, .place = ++place_});
 }
 
@@ -119,8 +126,9 @@ void WatchingClient::owed(std::uint64_t request_id, Asked asked) {
 
 bool WatchingClient::hear(std::size_t count) {
     static std::array<std::byte, 65536> bytes; // not on the stack, where the sanitizer looks after each of them anew
-    if (closed_ || count == 0)
+    if (closed_ || count == 0) {
         return false;
+    }
     const ssize_t heard_bytes = ::recv(descriptor_, bytes.data(), std::min(count, bytes.size()), MSG_DONTWAIT);
     if (heard_bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
         all_heard_ = clock().now();
@@ -140,8 +148,9 @@ bool WatchingClient::hear(std::size_t count) {
     for (;;) {
         const auto frame = heard_.next();
         require(frame.has_value());
-        if (!*frame)
+        if (!*frame) {
             return true;
+        }
         heard(**frame);
     }
 }
@@ -184,10 +193,11 @@ void WatchingClient::heard(const v1::Response& response) {
     }
     const Asked asked = std::move(found->second);
     outstanding_.erase(found);
-    if (response.status().code() != v1::CODE_UNSPECIFIED)
+    if (response.status().code() != v1::CODE_UNSPECIFIED) {
         require(response.answer_case() == v1::Response::ANSWER_NOT_SET && !response.has_applied_tick());
-    else if (!ids_are_mixed_)
+    } else if (!ids_are_mixed_) {
         granted(asked, response);
+    }
 }
 
 void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
@@ -207,27 +217,32 @@ void WatchingClient::granted(const Asked& asked, const v1::Response& response) {
         last_place_answered_ = asked.place;
     }
     const std::uint32_t subscription = response.subscription().subscription_id();
-    if (request.has_subscribe_snapshots())
+    if (request.has_subscribe_snapshots()) {
         require(watches_.emplace(subscription, Watch{.asked = request.subscribe_snapshots(), .islands = {}}).second);
-    if (request.has_subscribe_events())
+    }
+    if (request.has_subscribe_events()) {
         require(event_subscriptions_.insert(subscription).second);
-    if (request.has_unsubscribe())
+    }
+    if (request.has_unsubscribe()) {
         require(watches_.erase(request.unsubscribe().subscription_id()) +
                     event_subscriptions_.erase(request.unsubscribe().subscription_id()) ==
                 1);
+    }
 }
 
 void WatchingClient::heard(const v1::Event& event) {
-    if (event.has_server_going_away())
+    if (event.has_server_going_away()) {
         told_of_end_ = true;
-    else
+    } else {
         require(ids_are_mixed_ || !event_subscriptions_.empty());
+    }
 }
 
 void WatchingClient::heard(v1::SnapshotFrame frame) {
     const auto found = watches_.find(frame.subscription_id());
-    if (found == watches_.end())
+    if (found == watches_.end()) {
         return require(ids_are_mixed_);
+    }
     Watch& watch = found->second;
     require(!watch.asked.has_island() || watch.asked.island() == frame.island());
     require(frame.sequence() != 0);
@@ -247,8 +262,9 @@ void WatchingClient::heard(v1::SnapshotFrame frame) {
 
 std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_picture(std::size_t wanted) const {
     const auto watch = watches_.find(subscription(wanted));
-    if (watch == watches_.end() || watch->second.islands.empty())
+    if (watch == watches_.end() || watch->second.islands.empty()) {
         return std::nullopt;
+    }
     const auto& [island, of] =
         *std::next(watch->second.islands.begin(), static_cast<std::ptrdiff_t>(wanted % watch->second.islands.size()));
     v1::AcknowledgeSnapshot acknowledgement;
@@ -259,8 +275,9 @@ std::optional<v1::AcknowledgeSnapshot> WatchingClient::newest_picture(std::size_
 }
 
 std::uint32_t WatchingClient::subscription(std::size_t wanted) const {
-    if (watches_.empty())
+    if (watches_.empty()) {
         return event_subscriptions_.empty() ? 0 : *event_subscriptions_.begin();
+    }
     return std::next(watches_.begin(), static_cast<std::ptrdiff_t>(wanted % watches_.size()))->first;
 }
 

@@ -30,12 +30,14 @@ inline double p_value(double statistic, std::size_t degrees_of_freedom) {
 /// The same for cells that are all equally likely.
 inline double p_value_of_equal_cells(std::span<const std::uint64_t> observed) {
     std::uint64_t total = 0;
-    for (const std::uint64_t count : observed)
+    for (const std::uint64_t count : observed) {
         total += count;
+    }
     const double expected = static_cast<double>(total) / static_cast<double>(observed.size());
     double sum = 0;
-    for (const std::uint64_t count : observed)
+    for (const std::uint64_t count : observed) {
         sum += (static_cast<double>(count) - expected) * (static_cast<double>(count) - expected) / expected;
+    }
     return p_value(sum, observed.size() - 1);
 }
 

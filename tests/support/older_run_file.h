@@ -11,11 +11,13 @@ namespace evod::support {
 inline std::string as_of_format(int format) {
     std::string sql = "DROP TABLE checkpoint_part; DROP TABLE selection_account;"
                       "DELETE FROM run WHERE key = 'schedule';";
-    if (format < 3)
+    if (format < 3) {
         sql += "DROP TABLE founders; DROP TABLE inherited_statistics;"
                "DELETE FROM run WHERE key = 'inherited_generations';";
-    if (format < 2)
+    }
+    if (format < 2) {
         sql += "DROP TABLE checkpoint; DELETE FROM run WHERE key = 'first_tick';";
+    }
     return sql + "PRAGMA user_version = " + std::to_string(format);
 }
 

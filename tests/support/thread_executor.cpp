@@ -11,8 +11,9 @@ thread_local bool inside_a_piece = false;
 
 ThreadExecutor::ThreadExecutor(std::size_t thread_count) {
     EVOD_ASSERT(thread_count >= 1);
-    for (std::size_t i = 1; i < thread_count; ++i)
+    for (std::size_t i = 1; i < thread_count; ++i) {
         threads_.emplace_back([this] { work(); });
+    }
 }
 
 ThreadExecutor::~ThreadExecutor() {
@@ -21,14 +22,16 @@ ThreadExecutor::~ThreadExecutor() {
         stopping_ = true;
     }
     work_available_.notify_all();
-    for (std::thread& thread : threads_)
+    for (std::thread& thread : threads_) {
         thread.join();
+    }
 }
 
 void ThreadExecutor::run(std::size_t count, std::size_t grain, base::FunctionRef<void(base::Range)> body) {
     if (inside_a_piece || threads_.empty()) {
-        for (std::size_t begin = 0; begin < count; begin += grain)
+        for (std::size_t begin = 0; begin < count; begin += grain) {
             body({begin, std::min(begin + grain, count)});
+        }
         return;
     }
     Loop loop{body, count, grain, 0};
@@ -60,11 +63,13 @@ void ThreadExecutor::work() {
     std::unique_lock lock{mutex_};
     while (true) {
         work_available_.wait(lock, [this] { return stopping_ || (loop_ != nullptr && loop_->next < loop_->count); });
-        if (stopping_)
+        if (stopping_) {
             return;
+        }
         take_pieces(lock);
-        if (working_ == 0)
+        if (working_ == 0) {
             loop_finished_.notify_all();
+        }
     }
 }
 

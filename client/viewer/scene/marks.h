@@ -46,7 +46,8 @@ class FamilyColours {
 
 void put_discs(const Positions& at, std::span<const float> radius_px, std::vector<Shape>& shapes);
 
-void put_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale, std::vector<Colour>& colours);
+void put_health_colours(const codec::DecodedOrganisms& organisms, const ColourScale& scale,
+                        std::vector<Colour>& colours);
 /// Who is not in the population is `unknown`.
 void put_gene_colours(const codec::DecodedOrganisms& organisms, const Population& population, std::size_t gene,
                       const ColourScale& scale, std::vector<Colour>& colours);

@@ -166,7 +166,8 @@ void Scene::draw_items(const codec::DecodedSnapshot& picture) {
     painter_.draw(poison_, poison_look);
     painter_.draw(food_, food_look);
     // Of tiles that are told in dots: where everything is, and nothing more.
-    const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px, const Look& look) {
+    const auto draw_dots = [&](codec::DecodedDots::Places codec::DecodedDots::*which, double radius_px,
+                               const Look& look) {
         shapes_.clear();
         const auto radius = static_cast<float>(radius_px);
         for (const codec::DecodedTile& tile : picture.tiles) {
@@ -211,7 +212,8 @@ void Scene::draw_organisms(const codec::DecodedSnapshot& picture, const Position
     painter_.draw(organisms_, camera.zoom() >= outline_zoom_min ? coloured_look : coloured_small_look);
 }
 
-void Scene::draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                         const Sight& sight) {
     auto grids = densities_of(picture);
     if (grids.empty()) { // a whole picture, or tiles that are still told in full
         grids.push_back(density_of(at, camera.visible(), viewer::density_cell_px(camera, density_cell_pixels)));
@@ -227,7 +229,8 @@ void Scene::draw_density(const codec::DecodedSnapshot& picture, const Positions&
     painter_.draw(density_, density_look);
 }
 
-void Scene::draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                       const Sight& sight) {
     const Population* population = sight.population();
     if (!sight.shown.radii || population == nullptr || camera.zoom() < marks_zoom_min) {
         return;
@@ -243,7 +246,8 @@ void Scene::draw_radii(const codec::DecodedSnapshot& picture, const Positions& a
     }
 }
 
-void Scene::draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                        const Sight& sight) {
     const Population* population = sight.population();
     if (!sight.shown.forces || population == nullptr || camera.zoom() < marks_zoom_min) {
         return;
@@ -257,7 +261,8 @@ void Scene::draw_forces(const codec::DecodedSnapshot& picture, const Positions& 
     painter_.draw(arrows_, arrow_look);
 }
 
-void Scene::draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight) {
+void Scene::draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                        const Sight& sight) {
     const auto& pictures = sight.trails().pictures();
     if (!sight.shown.trails || pictures.empty() || camera.zoom() < marks_zoom_min) {
         ways_.clear();

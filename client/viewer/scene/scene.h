@@ -58,11 +58,16 @@ class Scene {
   private:
     void upload_picture(const std::shared_ptr<const codec::DecodedSnapshot>& picture, const Camera& camera);
     void draw_items(const codec::DecodedSnapshot& picture);
-    void draw_organisms(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
-    void draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera, const Sight& sight);
+    void draw_organisms(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                        const Sight& sight);
+    void draw_density(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                      const Sight& sight);
+    void draw_radii(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                    const Sight& sight);
+    void draw_forces(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                     const Sight& sight);
+    void draw_trails(const codec::DecodedSnapshot& picture, const Positions& at, const Camera& camera,
+                     const Sight& sight);
     void set_circles(Layer& layer, const codec::DecodedItems& items, float radius);
     void set_boxes(Layer& layer, const codec::DecodedBoxes& boxes, const std::vector<float>& x,
                    const std::vector<float>& y);

@@ -101,7 +101,7 @@ class Sight {
     void stream(Watch& watch, const Camera& camera, Clock::time_point now);
 
     Place place_;
-    std::uint64_t generation_ = 0, tick_ = 0;   // of the picture
+    std::uint64_t generation_ = 0, tick_ = 0;            // of the picture
     std::shared_ptr<const codec::DecodedSnapshot> seen_; // the last picture that was taken in
 
     std::vector<std::string> gene_names_;

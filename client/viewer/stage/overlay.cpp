@@ -177,7 +177,8 @@ void Overlay::build_notices(const Gui& gui, Clock::time_point now) {
     }
 }
 
-void Overlay::build_organism(const codec::DecodedSnapshot& picture, std::size_t organism, Point screen, const Gui& gui) {
+void Overlay::build_organism(const codec::DecodedSnapshot& picture, std::size_t organism, Point screen,
+                             const Gui& gui) {
     const std::string text =
         print("organism %u\nhealth %.1f\nradius %.1f px", picture.organisms.id[organism],
               double{picture.organisms.health[organism]}, double{picture.organisms.radius_px[organism]});

@@ -18,7 +18,7 @@ namespace {
 // In pixels at scale 1.
 constexpr float line_height = 26, label_height = 13;
 constexpr float timeline_edge = 12, line_edge = 6; // from the window to the widgets, and on to the ends of the line
-constexpr float mark_room = 70;           // from mark to mark, at least
+constexpr float mark_room = 70;                    // from mark to mark, at least
 
 evod::v1::RunMoment beginning_of(std::uint64_t generation) {
     evod::v1::RunMoment moment;

@@ -297,7 +297,7 @@ bool Watch::is_over() {
     const bool over = control_.state() == evod::v1::RUN_STATE_TERMINATED || at_the_end();
     if (over) {
         notices_.push_back(replay_ ? "This is the end of the recording; [ goes back by a generation"
-                                      : "The run has ended; a reset of the world begins it again");
+                                   : "The run has ended; a reset of the world begins it again");
     }
     return over;
 }
@@ -562,11 +562,10 @@ std::string Watch::no_connection() const {
 
 std::string Watch::state_words() const {
     const bool waits = control_.state() == evod::v1::RUN_STATE_WAITING;
-    return !connected()   ? "no connection"
-           : at_the_end() ? "at the end of the recording"
-           : waits && replay_ && control_.tick() >= replay_->last_tick()
-               ? "waits for the present to go on"
-               : shown_state(control_.state(), storage_);
+    return !connected()                                                  ? "no connection"
+           : at_the_end()                                                ? "at the end of the recording"
+           : waits && replay_ && control_.tick() >= replay_->last_tick() ? "waits for the present to go on"
+                                                                         : shown_state(control_.state(), storage_);
 }
 
 bool Watch::at_the_end() const {

@@ -14,8 +14,9 @@ namespace evod::bench {
 class AllPairs {
   public:
     explicit AllPairs(const StartState& start) : model_{start.model}, width_{start.width}, height_{start.height} {
-        for (std::uint32_t item = 0; item < start.items.size(); ++item)
+        for (std::uint32_t item = 0; item < start.items.size(); ++item) {
             objects_.push_back({.place = start.items[item], .radius = start.model.item_radius, .number = item});
+        }
         item_count_ = objects_.size();
         for (std::uint32_t i = 0; i < start.organisms.size(); ++i) {
             const Born& born = start.organisms[i];
@@ -36,9 +37,11 @@ class AllPairs {
             body.velocity.x = (body.velocity.x + body.force.x * body.inverse_mass * model_.tick_s) * model_.damping;
             body.velocity.y = (body.velocity.y + body.force.y * body.inverse_mass * model_.tick_s) * model_.damping;
         }
-        for (std::size_t a = 0; a < objects_.size(); ++a)
-            for (std::size_t b = a + 1; b < objects_.size(); ++b)
+        for (std::size_t a = 0; a < objects_.size(); ++a) {
+            for (std::size_t b = a + 1; b < objects_.size(); ++b) {
                 collide(objects_[a], objects_[b]);
+            }
+        }
         for (std::size_t k = item_count_; k < objects_.size(); ++k) {
             Object& body = objects_[k];
             body.place.x += body.velocity.x * model_.tick_s;
@@ -50,8 +53,9 @@ class AllPairs {
 
     template <class Found>
     void items_about(const Vector&, double, Found&& found) const {
-        for (std::size_t k = 0; k < item_count_; ++k)
+        for (std::size_t k = 0; k < item_count_; ++k) {
             found(objects_[k].number);
+        }
     }
 
     void move_item(std::uint32_t item, const Vector& place) { objects_[item].place = place; }
@@ -73,16 +77,18 @@ class AllPairs {
     void collide(Object& a, Object& b) const {
         const Vector way{b.place.x - a.place.x, b.place.y - a.place.y};
         const double reach = a.radius + b.radius, distance = square(way);
-        if (distance > reach * reach || a.inverse_mass == 0 || b.inverse_mass == 0)
+        if (distance > reach * reach || a.inverse_mass == 0 || b.inverse_mass == 0) {
             return;
+        }
         const double length = std::sqrt(distance);
         const Vector normal = length > 0 ? Vector{way.x / length, way.y / length} : Vector{1, 0};
         const double total = a.inverse_mass + b.inverse_mass;
         shift(a.place, normal, -(reach - length) * a.inverse_mass / total);
         shift(b.place, normal, (reach - length) * b.inverse_mass / total);
         const double approach = (b.velocity.x - a.velocity.x) * normal.x + (b.velocity.y - a.velocity.y) * normal.y;
-        if (approach >= 0)
+        if (approach >= 0) {
             return;
+        }
         const double impulse = -(1 + model_.restitution) * approach / total;
         shift(a.velocity, normal, -impulse * a.inverse_mass);
         shift(b.velocity, normal, impulse * b.inverse_mass);
@@ -95,8 +101,9 @@ class AllPairs {
 
     void keep_inside(double& place, double& velocity, double radius, double size) const {
         const double inside = std::clamp(place, radius, size - radius);
-        if (inside != place && (inside - place) * velocity < 0)
+        if (inside != place && (inside - place) * velocity < 0) {
             velocity *= -model_.restitution;
+        }
         place = inside;
     }
 

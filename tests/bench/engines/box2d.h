@@ -60,8 +60,9 @@ class Box2d {
         struct Query final : b2QueryCallback {
             explicit Query(Found& call) : call_{call} {}
             bool ReportFixture(b2Fixture* fixture) override {
-                if (const std::uintptr_t number = fixture->GetUserData().pointer; number != 0)
+                if (const std::uintptr_t number = fixture->GetUserData().pointer; number != 0) {
                     call_(static_cast<std::uint32_t>(number - 1));
+                }
                 return true;
             }
             Found& call_;

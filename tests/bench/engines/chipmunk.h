@@ -30,8 +30,9 @@ class Chipmunk {
         cpSpaceSetCollisionSlop(space_.get(), 0);
         cpSpaceSetCollisionBias(space_.get(), 0);
         cpSpaceSetDamping(space_.get(), std::pow(start.model.damping, 1 / tick_s_));
-        if (index == ChipmunkIndex::Hash)
+        if (index == ChipmunkIndex::Hash) {
             cpSpaceUseSpatialHash(space_.get(), 200, static_cast<int>(8 * start.organisms.size()));
+        }
         cpBody* ground = cpSpaceGetStaticBody(space_.get());
         for (const Vector& place : start.items) {
             cpShape* shape = add(cpCircleShapeNew(ground, start.model.item_radius, cpv(place.x, place.y)), items);
@@ -52,10 +53,11 @@ class Chipmunk {
         const double left = -thickness, right = start.width + thickness, top = -thickness,
                      bottom = start.height + thickness;
         const cpVect corners[] = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
-        for (int side = 0; side < 4; ++side)
+        for (int side = 0; side < 4; ++side) {
             cpShapeSetElasticity(
                 add(cpSegmentShapeNew(ground, corners[side], corners[(side + 1) % 4], thickness), organisms),
                 elasticity);
+        }
     }
 
     Vector place(std::uint32_t i) const { return vector(cpBodyGetPosition(bodies_[i].get())); }

@@ -29,17 +29,21 @@ class EvodScene {
         Picture picture;
         const simulation::Island& island = world_.islands()[0];
         const evolution::GeneMatrix& genes = island.born().genes;
-        for (std::uint32_t id = 0; id < genes.cols(); ++id)
-            if (const auto i = island.body_of(id))
+        for (std::uint32_t id = 0; id < genes.cols(); ++id) {
+            if (const auto i = island.body_of(id)) {
                 picture.organisms.push_back(
                     {.place = {physics::to_px(island.bodies().x[*i]), physics::to_px(island.bodies().y[*i])},
                      .velocity = {static_cast<double>(island.bodies().velocity_x[*i]),
                                   static_cast<double>(island.bodies().velocity_y[*i])},
                      .food_radius = static_cast<double>(genes(evolution::FoodRadius, id))});
-        for (std::uint32_t item = 0; item < island.food().size(); ++item)
-            if (island.food().present(item))
+            }
+        }
+        for (std::uint32_t item = 0; item < island.food().size(); ++item) {
+            if (island.food().present(item)) {
                 picture.food.push_back(
                     {physics::to_px(island.food().all()[item].x), physics::to_px(island.food().all()[item].y)});
+            }
+        }
         return picture;
     }
 

@@ -37,12 +37,13 @@ inline void look_at(const Picture& picture, Measured& measured) {
     for (const Picture::Organism& organism : picture.organisms) {
         ++measured.looked_at;
         measured.speed_sum += std::sqrt(square(organism.velocity));
-        for (const Vector& food : picture.food)
+        for (const Vector& food : picture.food) {
             if (square({food.x - organism.place.x, food.y - organism.place.y}) <=
                 organism.food_radius * organism.food_radius) {
                 ++measured.seeing_food;
                 break;
             }
+        }
     }
 }
 
@@ -55,23 +56,26 @@ Measured measure(const Window& window, MakeScene&& make_scene, base::Executor& e
         for (std::uint32_t k = 0; k < window.scenes; ++k) {
             auto scene = make_scene(base::Seed{window.first_seed + k});
             measured.born += scene.alive_count();
-            for (std::uint32_t tick = 0; tick < window.warm_up_ticks && scene.alive_count() > 0; ++tick)
+            for (std::uint32_t tick = 0; tick < window.warm_up_ticks && scene.alive_count() > 0; ++tick) {
                 scene.advance_tick(executor);
+            }
             const Counts before = scene.counts();
             const std::uint32_t stretch = window.look_every_ticks > 0 ? window.look_every_ticks : window.ticks;
             for (std::uint32_t done = 0; done < window.ticks && scene.alive_count() > 0; done += stretch) {
                 const Stopwatch stopwatch;
                 for (std::uint32_t tick = done; tick < std::min(done + stretch, window.ticks); ++tick) {
-                    if (scene.alive_count() == 0)
+                    if (scene.alive_count() == 0) {
                         break;
+                    }
                     measured.organism_ticks += scene.alive_count();
                     scene.advance_tick(executor);
                 }
                 const Seconds took = stopwatch.elapsed();
                 measured.time.wall += took.wall;
                 measured.time.processor += took.processor;
-                if (window.look_every_ticks > 0)
+                if (window.look_every_ticks > 0) {
                     look_at(scene.picture(), measured);
+                }
             }
             const Counts after = scene.counts();
             measured.counts.food_eaten += after.food_eaten - before.food_eaten;

@@ -43,8 +43,9 @@ class EngineScene {
         , respawn_key_{seed, base::Purpose::FoodRespawn, 0, 1}
         , sights_(organisms_.size())
         , takers_(items_.size(), nobody) {
-        for (std::uint32_t i = 0; i < organisms_.size(); ++i)
+        for (std::uint32_t i = 0; i < organisms_.size(); ++i) {
             living_.push_back(i);
+        }
     }
 
     std::uint64_t alive_count() const { return living_.size(); }
@@ -65,12 +66,15 @@ class EngineScene {
 
     Picture picture() const {
         Picture picture;
-        for (const std::uint32_t i : living_)
+        for (const std::uint32_t i : living_) {
             picture.organisms.push_back({engine_.place(i), engine_.velocity(i), organisms_[i].food_radius});
+        }
         picture.food.assign(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(food_count_));
-        for (const std::uint32_t item : eaten_)
-            if (item < food_count_)
+        for (const std::uint32_t item : eaten_) {
+            if (item < food_count_) {
                 picture.food[item].x = -1e9; // is away until the next tick
+            }
+        }
         return picture;
     }
 
@@ -140,10 +144,12 @@ class EngineScene {
         const bool afraid = poison.seen && (!food.seen || poison.square < food.square);
         if (afraid &&
             static_cast<double>(base::unit_float(behaviour_key_.words(i, tick_, 0)[1])) * model_.certain_impulse <
-                organism.impulse)
+                organism.impulse) {
             return along({-poison.way.x, -poison.way.y}, effort, i);
-        if (!food.seen)
+        }
+        if (!food.seen) {
             return along({}, organism.normal_speed * model_.force_per_unit, i);
+        }
         const Vector velocity = engine_.velocity(i);
         return along({food.way.x - velocity.x * model_.lookahead_s, food.way.y - velocity.y * model_.lookahead_s},
                      effort, i);
@@ -166,17 +172,21 @@ class EngineScene {
             const double reach = organisms_[i].radius + model_.item_radius;
             // Items rest: what was further away than the reach and the way since cannot be touched.
             const Vector moved{place.x - sights_[i].place.x, place.y - sights_[i].place.y};
-            if (sights_[i].clear > reach + std::sqrt(square(moved)))
+            if (sights_[i].clear > reach + std::sqrt(square(moved))) {
                 continue;
+            }
             engine_.items_about(place, reach, [&](std::uint32_t item) {
                 const double distance = square({items_[item].x - place.x, items_[item].y - place.y});
                 Taker& taker = takers_[item];
-                if (distance > reach * reach)
+                if (distance > reach * reach) {
                     return;
-                if (taker.organism == nobody.organism)
+                }
+                if (taker.organism == nobody.organism) {
                     eaten_.push_back(item);
-                if (distance < taker.square)
+                }
+                if (distance < taker.square) {
                     taker = {distance, i};
+                }
             });
         }
         for (const std::uint32_t item : eaten_) {
@@ -189,8 +199,9 @@ class EngineScene {
 
     void bury_the_dead() {
         std::erase_if(living_, [&](std::uint32_t i) {
-            if (organisms_[i].health > 0)
+            if (organisms_[i].health > 0) {
                 return false;
+            }
             engine_.remove_organism(i);
             ++counts_.deaths;
             return true;

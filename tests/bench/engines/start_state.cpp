@@ -61,9 +61,11 @@ StartState start_state(const simulation::World& world) {
                                          .food_radius = gene(evolution::FoodRadius),
                                          .poison_radius = gene(evolution::PoisonRadius)};
     }
-    for (const simulation::Items* kind : {&island.food(), &island.poison()})
-        for (std::size_t item = 0; item < kind->size(); ++item)
+    for (const simulation::Items* kind : {&island.food(), &island.poison()}) {
+        for (std::size_t item = 0; item < kind->size(); ++item) {
             start.items.push_back(place(kind->all()[item].x, kind->all()[item].y));
+        }
+    }
     return start;
 }
 

@@ -48,8 +48,9 @@ int run(int argc, char** argv) {
     base::InlineExecutor executor;
     simulation::World world{rastrigin_parameters(population), base::Seed{seed}};
     const Stopwatch stopwatch;
-    for (std::uint32_t generation = 0; generation < generations; ++generation)
+    for (std::uint32_t generation = 0; generation < generations; ++generation) {
         world.advance_tick(executor);
+    }
     const Seconds took = stopwatch.elapsed();
     std::cout << boost::json::object{{"program", "evod"},
                                      {"population", population},

@@ -22,8 +22,9 @@ float fitness(GAGenome& genome) {
     ++evaluation_count;
     const auto& x = static_cast<GARealGenome&>(genome);
     evolution::Chromosome genes;
-    for (int gene = 0; gene < static_cast<int>(evolution::gene_count); ++gene)
+    for (int gene = 0; gene < static_cast<int>(evolution::gene_count); ++gene) {
         genes(gene) = 150 + 25 * x.gene(static_cast<unsigned>(gene));
+    }
     return static_cast<float>(simulation::rastrigin(genes));
 }
 
@@ -32,9 +33,11 @@ class Tournament final : public GASelectionScheme {
     GASelectionScheme* clone() const override { return new Tournament; } // owned by the population, as GAlib wants it
     GAGenome& select() const override {
         GAGenome* best = &contestant();
-        for (int other = 1; other < 3; ++other)
-            if (GAGenome& next = contestant(); next.score() > best->score())
+        for (int other = 1; other < 3; ++other) {
+            if (GAGenome& next = contestant(); next.score() > best->score()) {
                 best = &next;
+            }
+        }
         return *best;
     }
 
@@ -67,8 +70,9 @@ int run(int argc, char** argv) {
     algorithm.scaling(GANoScaling{});
     algorithm.selector(Tournament{});
     algorithm.initialize(seed);
-    for (int generation = 1; generation < generations; ++generation)
+    for (int generation = 1; generation < generations; ++generation) {
         algorithm.step();
+    }
     const Seconds took = stopwatch.elapsed();
     std::cout << boost::json::object{{"program", "galib"},
                                      {"population", population},

@@ -69,7 +69,9 @@ struct PlotsTest : testing::Test {
         run.mutable_run()->set_generations(generations);
         server.ask(run);
     }
-    evod::v1::Response answer(const evod::v1::Request& request) { return server.connection->request(request, hang).value(); }
+    evod::v1::Response answer(const evod::v1::Request& request) {
+        return server.connection->request(request, hang).value();
+    }
     evod::v1::WorldInfo world() { return server.state("lab"); }
     std::string path_of(const std::string& what, std::uint64_t generation) {
         return folder.file("evoview-lab-" + world().run_id().substr(0, 8) + "-" + what + "-generation-" +

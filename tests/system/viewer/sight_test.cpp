@@ -28,7 +28,8 @@ struct SightTest : testing::Test {
     }
 
     sf::Image draw() {
-        return stage.capture(*panes, {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now()});
+        return stage.capture(*panes,
+                             {.width_pixels = window_width, .height_pixels = window_height, .now = Clock::now()});
     }
     /// Draws until the condition holds, and once more.
     template <class Condition>
@@ -72,7 +73,8 @@ struct SightTest : testing::Test {
 
 TEST_F(SightTest, WithoutAnySwitchNothingIsAdded) {
     const sf::Image image = draw_when([&] { return watch().picture() != nullptr; });
-    const auto mismatch = ExpectedPicture{picture, camera_of(picture.about, window_width, window_height)}.compare(image);
+    const auto mismatch =
+        ExpectedPicture{picture, camera_of(picture.about, window_width, window_height)}.compare(image);
     EXPECT_EQ(mismatch.count, 0u) << mismatch.first;
 }
 

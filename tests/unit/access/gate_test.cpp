@@ -73,8 +73,9 @@ TEST_F(GateTest, WhoHasNoTokenIsAskedForOneAndNeedNotWait) {
 
 TEST_F(GateTest, AddressesAreForgottenTheOldestFirst) {
     auto gate = *Gate::open(folder, false);
-    for (std::size_t i = 0; i < Gate::addresses_max + 1; ++i, now += std::chrono::microseconds{10})
+    for (std::size_t i = 0; i < Gate::addresses_max + 1; ++i, now += std::chrono::microseconds{10}) {
         EXPECT_FALSE(gate.admit("wrong", std::to_string(i), now));
+    }
     EXPECT_EQ(gate.admit("wrong", "0", now).error().code, RefusalCode::Unauthenticated); // not remembered
     EXPECT_EQ(gate.admit("wrong", "2", now).error().code, RefusalCode::ResourceExhausted);
 }

@@ -44,8 +44,9 @@ TEST(TokenFile, EachNameOnceAndRevokedIsGone) {
     ASSERT_TRUE(revoke_token(folder.path, "anna"));
     EXPECT_TRUE(read_tokens(folder.path)->empty());
     EXPECT_EQ(revoke_token(folder.path, "anna").error().code, RefusalCode::NotFound);
-    for (const char* name : {"", "a b", "a\n", "\xc3\xa4", "a/b"})
+    for (const char* name : {"", "a b", "a\n", "\xc3\xa4", "a/b"}) {
         EXPECT_EQ(add_token(folder.path, name, Role::Viewer).error().code, RefusalCode::InvalidArgument) << name;
+    }
 }
 
 TEST(TokenFile, IsRefusedWhenItIsNotForItsOwnerAlone) {
@@ -77,8 +78,9 @@ TEST(TokenFile, WhatIsWrongIsToldByItsLine) {
     for (const std::string& line :
          {std::string{"\n"}, "anna viewer " + digest + "\n", "anna boss " + digest + " 2026-11-22\n",
           "anna viewer " + digest.substr(1) + " 2026-11-22\n", "anna viewer " + digest + " 2026-11-22 x\n",
-          "an/na viewer " + digest + " 2026-11-22\n", "anna viewer " + digest + " 2026-11-22"})
+          "an/na viewer " + digest + " 2026-11-22\n", "anna viewer " + digest + " 2026-11-22"}) {
         EXPECT_THAT(wrong(head + line), HasSubstr("line 2")) << line;
+    }
 }
 
 } // namespace

@@ -27,19 +27,23 @@ TEST(Elementary, QuarterTurnsAreExact) {
 }
 
 TEST(Elementary, ExponentialAndLogarithmAgreeWithTheLibrary) {
-    for (double x = -699.5; x < 700; x += 0.37)
+    for (double x = -699.5; x < 700; x += 0.37) {
         ASSERT_NEAR(exp(x) / std::exp(x), 1, 1e-15) << x;
+    }
     EXPECT_EQ(exp(0), 1);
     EXPECT_EQ(exp(-1000), 0);
-    for (double x = 1e-300; x < 1e300; x *= 1.37)
+    for (double x = 1e-300; x < 1e300; x *= 1.37) {
         ASSERT_NEAR(log(x), std::log(x), 1e-15 * (1 + std::abs(std::log(x)))) << x;
+    }
     EXPECT_EQ(log(1), 0);
 }
 
 TEST(Elementary, PowersAgreeWithTheLibraryAndHaveStatedEdges) {
-    for (double x = 0.01; x < 50; x *= 1.3)
-        for (double y = -8; y <= 8; y += 0.7)
+    for (double x = 0.01; x < 50; x *= 1.3) {
+        for (double y = -8; y <= 8; y += 0.7) {
             ASSERT_NEAR(pow(x, y) / std::pow(x, y), 1, 1e-15 * (1 + std::abs(y * std::log(x)))) << x << '^' << y;
+        }
+    }
     EXPECT_EQ(pow(0, 2), 0);
     EXPECT_EQ(pow(0, 0), 1);
 }

@@ -18,8 +18,9 @@ TEST_P(AnyExecutor, RunsEveryIndexOnceInPiecesOfTheGrain) {
         threads.parallel_for(count, 7, [&](Range range) {
             EXPECT_EQ(range.begin % 7, 0u);
             EXPECT_LE(range.end - range.begin, 7u);
-            for (std::size_t i = range.begin; i < range.end; ++i)
+            for (std::size_t i = range.begin; i < range.end; ++i) {
                 ++visits[i];
+            }
         });
         EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), static_cast<std::ptrdiff_t>(count));
     }
@@ -30,8 +31,9 @@ TEST_P(AnyExecutor, LoopsMayBeNested) {
     std::vector<int> visits(64 * 64);
     threads.parallel_for(64, 1, [&](Range outer) {
         threads.parallel_for(64, 8, [&](Range inner) {
-            for (std::size_t i = inner.begin; i < inner.end; ++i)
+            for (std::size_t i = inner.begin; i < inner.end; ++i) {
                 ++visits[outer.begin * 64 + i];
+            }
         });
     });
     EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), 64 * 64);

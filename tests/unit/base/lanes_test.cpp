@@ -15,8 +15,9 @@ namespace {
 
 Words some_words(RandomStream& random) {
     Words words{};
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
         words[lane] = random.word();
+    }
     return words;
 }
 
@@ -41,13 +42,14 @@ TEST(Lanes, DrawWhatSingleDrawsGive) {
 }
 
 TEST(Lanes, FindTheDirectionsOfQuartersAndTheirNeighbours) {
-    for (std::uint32_t eighth = 0; eighth < 8; ++eighth)
+    for (std::uint32_t eighth = 0; eighth < 8; ++eighth) {
         for (const std::int32_t step : {-1, 0, 1}) {
             const std::uint32_t word = (eighth << 29) + static_cast<std::uint32_t>(step);
             const Directions way = directions(all_lanes(word));
             EXPECT_EQ(way.x[0], direction(word).x) << word;
             EXPECT_EQ(way.y[3], direction(word).y) << word;
         }
+    }
 }
 
 TEST(Lanes, SumTheHashesOfThoseThatCount) {
@@ -60,9 +62,11 @@ TEST(Lanes, SumTheHashesOfThoseThatCount) {
         const Integers used = (some_words(random) & 1u) != 0u;
         constexpr std::uint32_t kind = 9;
         sums.add(id + kind * 0x85ebca6bu, a, b, c, d, e, used);
-        for (std::size_t lane = 0; lane < lanes; ++lane)
-            if (used[lane])
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            if (used[lane]) {
                 expected += hash_of({kind, id[lane], a[lane], b[lane], c[lane], d[lane], e[lane]});
+            }
+        }
         ASSERT_EQ(sum_of(sums.low), expected.low);
         ASSERT_EQ(sum_of(sums.high), expected.high);
     }
@@ -71,8 +75,9 @@ TEST(Lanes, SumTheHashesOfThoseThatCount) {
 TEST(Lanes, RoundHalvesToEvenAndTakeExactRoots) {
     const Floats values{0.5f, 1.5f, -2.5f, 1234567.5f};
     const Integers rounded = round_to_integers(values);
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
         EXPECT_EQ(rounded[lane], static_cast<std::int32_t>(std::lrint(values[lane])));
+    }
     RandomStream random{RandomKey{Seed{3}, Purpose::ScenarioTest, 0, 0}, 0};
     for (int trial = 0; trial < 1000; ++trial) {
         const auto value = static_cast<float>(random.uniform(0, 1e6));

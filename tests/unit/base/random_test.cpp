@@ -34,8 +34,9 @@ TEST(Philox, GivesThePublishedVectors) { // the known-answer tests of Random123,
          {{0xa4093822, 0x299f31d0}},
          {{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}}},
     };
-    for (const Vector& v : vectors)
+    for (const Vector& v : vectors) {
         EXPECT_EQ(r123::Philox4x32{}(v.counter, v.key), v.result);
+    }
 }
 
 TEST(RandomKey, EveryPartOfTheIdentityChangesTheDraws) {
@@ -57,8 +58,9 @@ TEST(RandomKey, EveryPartOfTheIdentityChangesTheDraws) {
 TEST(RandomStream, BelowIsUniform) {
     RandomStream random = stream(11);
     std::vector<std::uint64_t> counts(7);
-    for (int i = 0; i < 700'000; ++i)
+    for (int i = 0; i < 700'000; ++i) {
         ++counts[random.below(7)];
+    }
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
@@ -66,8 +68,9 @@ TEST(RandomStream, BelowHasNoBiasForBoundsNearTheWordSize) {
     // With bound 3·2^30 the plain product would give every third value twice as often.
     RandomStream random = stream(12);
     std::vector<std::uint64_t> counts(3);
-    for (int i = 0; i < 300'000; ++i)
+    for (int i = 0; i < 300'000; ++i) {
         ++counts[random.below(3u << 30) % 3];
+    }
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
@@ -107,8 +110,9 @@ TEST(RandomStream, ShuffleGivesEveryOrderEquallyOften) {
         ++orders[items];
     }
     std::vector<std::uint64_t> counts;
-    for (const auto& [order, count] : orders)
+    for (const auto& [order, count] : orders) {
         counts.push_back(count);
+    }
     ASSERT_EQ(counts.size(), 24u);
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
@@ -123,19 +127,21 @@ TEST(Pair, IsPhilox2x32WithTenRounds) {
     EXPECT_EQ(out(0xffffffff, 0xffffffff, 0xffffffff), (std::array<std::uint32_t, 2>{0x2c3f628b, 0xab4fd7ad}));
     EXPECT_EQ(out(0x243f6a88, 0x85a308d3, 0x13198a2e), (std::array<std::uint32_t, 2>{0xdd7ce038, 0xf62a4c12}));
     const RandomKey key{Seed{5}, Purpose::Behaviour, 1, 2};
-    for (std::uint32_t entity = 0; entity < 50; ++entity)
+    for (std::uint32_t entity = 0; entity < 50; ++entity) {
         EXPECT_EQ(key.pair(entity, 9), out(entity, key.pair_counter(9), key.pair_key()));
+    }
 }
 
 TEST(Pair, FillsCellsEquallyOverEntitiesAndTicks) {
     const RandomKey key{Seed{6}, Purpose::Behaviour, 1, 2};
     std::array<std::uint64_t, 256> first{}, second{};
-    for (std::uint32_t entity = 0; entity < 500; ++entity)
+    for (std::uint32_t entity = 0; entity < 500; ++entity) {
         for (std::uint32_t tick = 1; tick <= 200; ++tick) {
             const auto words = key.pair(entity, tick);
             ++first[words[0] >> 24];
             ++second[words[1] >> 24];
         }
+    }
     EXPECT_GT(support::p_value_of_equal_cells(first), 1e-6);
     EXPECT_GT(support::p_value_of_equal_cells(second), 1e-6);
 }

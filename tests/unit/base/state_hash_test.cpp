@@ -48,14 +48,15 @@ std::array<std::uint32_t*, 7> fields(HashedWords& words) {
 
 HashedWords some_words(RandomStream& random) {
     HashedWords words{};
-    for (std::uint32_t* field : fields(words))
+    for (std::uint32_t* field : fields(words)) {
         *field = random.word();
+    }
     return words;
 }
 
 TEST(HashOfWords, ChangesNearlyHalfOfItsBitsWithAnyBitOfAnyField) {
     RandomStream random{RandomKey{Seed{1}, Purpose::ScenarioTest, 0, 0}, 0};
-    for (std::size_t field = 0; field < 7; ++field)
+    for (std::size_t field = 0; field < 7; ++field) {
         for (unsigned bit = 0; bit < 32; ++bit) {
             double changed_low = 0, changed_high = 0;
             constexpr int trials = 200;
@@ -72,6 +73,7 @@ TEST(HashOfWords, ChangesNearlyHalfOfItsBitsWithAnyBitOfAnyField) {
             EXPECT_GT(changed_low / trials, 16) << field << ", " << bit;
             EXPECT_GT(changed_high / trials, 16) << field << ", " << bit;
         }
+    }
 }
 
 TEST(HashOfWords, DiffersForAMillionEntitiesThatAreNearlyAlike) {

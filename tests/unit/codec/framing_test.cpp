@@ -49,8 +49,9 @@ std::string within(char number, const std::string& body) {
 
 TEST(Body, IsReadDownToItsDepthAndNoDeeper) {
     using evod::v1::ClientMessage;
-    for (const auto& body : {groups(message_depth_max), within(2, groups(message_depth_max - 1))})
+    for (const auto& body : {groups(message_depth_max), within(2, groups(message_depth_max - 1))}) {
         EXPECT_TRUE(parse_body<ClientMessage>(bytes_of(body)));
+    }
     for (const auto& body : {groups(message_depth_max + 1), within(2, groups(message_depth_max)), groups(200'000),
                              within(2, within(10, groups(message_depth_max - 1)))}) {
         const auto deep = parse_body<ClientMessage>(bytes_of(body));

@@ -36,12 +36,14 @@ TEST(PopulationCsv, WhatIsWrongIsNamedWithItsLine) {
     EXPECT_THAT(wrong("0,0,1,2,3,4,5,6\n"), StartsWith("line 1: got \"0,0,1"));
     EXPECT_EQ(wrong(heading), "holds no organism");
     for (const char* line : {"0,1,1,2,3,4,5", "0,1,1,2,3,4,5,", "0,1,1,2,3,4,5,6,7", "0,1,1,2,3,4,5,6,",
-                             "0,1,1,2,x,4,5,6", "", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"})
+                             "0,1,1,2,x,4,5,6", "", "0,-1,1,2,3,4,5,6", "0,1,1,2,3,4,5,1e99"}) {
         EXPECT_EQ(wrong(good + line + "\n"),
                   std::string{"line 3: got \""} + line + "\", allowed an island, an organism and six genes");
-    for (const char* line : {"0,0,1,2,3,4,5,6", "0,2,1,2,3,4,5,6", "1,1,1,2,3,4,5,6", "2,0,1,2,3,4,5,6"})
+    }
+    for (const char* line : {"0,0,1,2,3,4,5,6", "0,2,1,2,3,4,5,6", "1,1,1,2,3,4,5,6", "2,0,1,2,3,4,5,6"}) {
         EXPECT_EQ(wrong(good + line + "\n"),
                   std::string{"line 3: got \""} + line + "\", allowed organism 1 of island 0, or the next island");
+    }
     EXPECT_EQ(wrong(heading + "1,0,1,2,3,4,5,6\n"),
               "line 2: got \"1,0,1,2,3,4,5,6\", allowed organism 0 of island 0, or the next island");
 }

@@ -172,7 +172,8 @@ TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
     while (island.organisms.size() < 4000) {
         island.add_organism(random);
     }
-    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()), tile_layout(island.side_px, island.side_px)};
+    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()),
+                        tile_layout(island.side_px, island.side_px)};
     std::size_t dots = 0, densities = 0;
     for (std::uint32_t tile = 0; tile < tiled.layout().count(); ++tile) {
         dots += tiled.dots(tile).size();
@@ -185,7 +186,8 @@ TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
 
 /// A frame of all tiles, each at the detail that its index gives.
 evod::v1::SnapshotFrame frame_of(const LivingIsland& island, std::uint64_t sequence) {
-    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()), tile_layout(island.side_px, island.side_px)};
+    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()),
+                        tile_layout(island.side_px, island.side_px)};
     evod::v1::SnapshotFrame frame = island.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
     frame.set_sequence(sequence);
@@ -201,9 +203,9 @@ evod::v1::SnapshotFrame frame_of(const LivingIsland& island, std::uint64_t seque
         tile.set_crate_count(counts[3]);
         tile.set_obstacle_count(counts[4]);
         tile.set_sequence(sequence);
-        tile.set_body(index % 3 == 0
-                          ? encode_keyframe(initial_baseline(std::make_shared<const QuantisedSnapshot>(copy_of(tiled.full(index)))))
-                          : (index % 3 == 1 ? tiled.dots(index) : tiled.density(index)));
+        tile.set_body(index % 3 == 0 ? encode_keyframe(initial_baseline(
+                                           std::make_shared<const QuantisedSnapshot>(copy_of(tiled.full(index)))))
+                                     : (index % 3 == 1 ? tiled.dots(index) : tiled.density(index)));
         tile.set_checksum(checksum_of(frame, tile, tile.body()));
     }
     return frame;

@@ -6,23 +6,27 @@ namespace evod::command_line {
 namespace {
 
 TEST(WholeNumber, TakesWhatIsInRange) {
-    for (const char* word : {"0", "7", "18446744073709551615"})
+    for (const char* word : {"0", "7", "18446744073709551615"}) {
         EXPECT_EQ(WholeNumber{}(word), "") << word;
+    }
     EXPECT_EQ((WholeNumber{1, 10}("1")), "");
     EXPECT_EQ((WholeNumber{1, 10}("10")), "");
 }
 
 TEST(WholeNumber, SaysWhatIsAllowedAndWhatWasGiven) {
     for (const std::string word :
-         {"0", "11", "-1", "1e99", "abc", "", "1.5", "010", "0x3", "+2", " 3", "99999999999999999999"})
+         {"0", "11", "-1", "1e99", "abc", "", "1.5", "010", "0x3", "+2", " 3", "99999999999999999999"}) {
         EXPECT_EQ((WholeNumber{1, 10}(word)), "must be a whole number, 1 to 10, not " + word);
+    }
 }
 
 TEST(RealNumber, TakesWhatIsInRangeAndNothingElse) {
-    for (const char* word : {"0.1", "3600", "1e3", "2.5"})
+    for (const char* word : {"0.1", "3600", "1e3", "2.5"}) {
         EXPECT_EQ((RealNumber{0.1, 3600}(word)), "") << word;
-    for (const std::string word : {"0", "-1", "1e99", "abc", "", "nan", "inf", "1,5"})
+    }
+    for (const std::string word : {"0", "-1", "1e99", "abc", "", "nan", "inf", "1,5"}) {
         EXPECT_EQ((RealNumber{0.1, 3600}(word)), "must be a number, 0.1 to 3600, not " + word);
+    }
 }
 
 } // namespace

@@ -26,8 +26,9 @@ simulation::Parameters small_world() {
 
 std::vector<Arm> small_arms() {
     std::vector<Arm> arms{{"world", small_world()}};
-    for (const ControlKind kind : all_controls)
+    for (const ControlKind kind : all_controls) {
         arms.push_back({"", control_of(small_world(), kind).parameters});
+    }
     return arms;
 }
 
@@ -41,8 +42,9 @@ TEST(Comparison, IsTheSameWithAnyNumberOfJobs) {
         ASSERT_TRUE(courses);
         EXPECT_EQ(*courses, *reference);
         const std::vector<Finding> findings = find_differences(*courses, base::Seed{291});
-        for (std::size_t i = 0; i < expected.size(); ++i)
+        for (std::size_t i = 0; i < expected.size(); ++i) {
             EXPECT_EQ(findings[i].p, expected[i].p);
+        }
     }
     EXPECT_NE(*run_arms(arms, {.seed = base::Seed{292}, .replicates = 4}), *reference);
 }
@@ -53,11 +55,12 @@ TEST(Comparison, RunsEachArmWithTheSeedsOfTheReplicates) {
     ASSERT_TRUE(courses);
     ASSERT_EQ(courses->size(), 5u);
     base::InlineExecutor executor;
-    for (std::size_t arm = 0; arm < 5; ++arm)
+    for (std::size_t arm = 0; arm < 5; ++arm) {
         for (std::uint32_t replicate = 0; replicate < 3; ++replicate) {
             simulation::World world{arms[arm].parameters, replicate_seed(base::Seed{293}, replicate)};
-            while (world.outcome() == evolution::Outcome::Running)
+            while (world.outcome() == evolution::Outcome::Running) {
                 world.advance_tick(executor);
+            }
             const Course& course = (*courses)[arm][replicate];
             ASSERT_EQ(course.size(), 6u);
             for (std::size_t i = 0; i < 6; ++i) {
@@ -72,6 +75,7 @@ TEST(Comparison, RunsEachArmWithTheSeedsOfTheReplicates) {
                 EXPECT_EQ(course[0], (*courses)[0][replicate][0]);
             }
         }
+    }
 }
 
 TEST(Comparison, IsGivenUpWhenItIsStopped) {

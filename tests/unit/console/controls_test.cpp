@@ -70,8 +70,9 @@ TEST(Controls, EveryParameterThatMakesOneIsKnown) {
     for (const ControlKind kind : all_controls) {
         const Control control = control_of(world, kind);
         for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
-            if (description.get(control.parameters) == description.get(world))
+            if (description.get(control.parameters) == description.get(world)) {
                 continue;
+            }
             simulation::Schedule schedule;
             schedule.add(2, {std::string{description.name}, description.get(world)});
             EXPECT_TRUE(matters(schedule, kind)) << control.name << " changes " << description.name;

@@ -27,11 +27,13 @@ bool is_well_formed(const std::string& svg) {
     std::smatch found;
     while (std::regex_search(rest, found, tag)) {
         const std::string before = found.prefix();
-        if (before.find_first_of("<>") != std::string::npos)
+        if (before.find_first_of("<>") != std::string::npos) {
             return false;
+        }
         if (found[1].length() > 0) {
-            if (open.empty() || open.back() != found[2])
+            if (open.empty() || open.back() != found[2]) {
                 return false;
+            }
             open.pop_back();
         } else if (found[4].length() == 0) {
             open.push_back(found[2]);
@@ -75,14 +77,16 @@ TEST(CurvesPicture, OfOneFlatCurveHasAnAxis) {
 
 TEST(CurvesPicture, TellsThirtyCurvesApart) {
     std::vector<Curve> curves;
-    for (int i = 0; i < 30; ++i)
+    for (int i = 0; i < 30; ++i) {
         curves.push_back({"c" + std::to_string(i), {{1, 1.0 * i, 1.0 * i, 1.0 * i}, {2, 3, 3, 3}}});
+    }
     const std::string svg = curves_picture({}, curves);
     std::vector<std::string> styles;
     const std::regex style{
         "<polyline [^>]* stroke=\"(#[0-9a-f]+)\" stroke-width=\"[0-9.]+\"( stroke-dasharray=\"[^\"]+\")?/>"};
-    for (std::sregex_iterator i{svg.begin(), svg.end(), style}, end; i != end; ++i)
+    for (std::sregex_iterator i{svg.begin(), svg.end(), style}, end; i != end; ++i) {
         styles.push_back((*i)[1].str() + (*i)[2].str());
+    }
     ASSERT_EQ(styles.size(), 30u);
     std::ranges::sort(styles);
     EXPECT_EQ(std::ranges::adjacent_find(styles), styles.end());
@@ -97,7 +101,7 @@ TEST(AxisTicks, AreRoundAndWithinTheAxis) {
                 ElementsAre(DoubleNear(0.1, 1e-12), DoubleNear(0.2, 1e-12), DoubleNear(0.3, 1e-12)));
     EXPECT_THAT(axis_ticks(-2e6, 3e6, 6), ElementsAre(-2e6, -1e6, 0, 1e6, 2e6, 3e6));
     EXPECT_THAT(axis_ticks(5, 5, 9), ElementsAre(5));
-    for (const double width : {1e-6, 0.37, 1.0, 7.7, 123456.0})
+    for (const double width : {1e-6, 0.37, 1.0, 7.7, 123456.0}) {
         for (const double begin : {-1e3, -0.1, 0.0, 55.5}) {
             const std::vector<double> ticks = axis_ticks(begin, begin + width, 9);
             EXPECT_GE(ticks.size(), 2u) << begin << ' ' << width;
@@ -105,6 +109,7 @@ TEST(AxisTicks, AreRoundAndWithinTheAxis) {
             EXPECT_GE(ticks.front(), begin - width * 1e-6);
             EXPECT_LE(ticks.back(), begin + width * (1 + 1e-6));
         }
+    }
 }
 
 } // namespace

@@ -74,8 +74,9 @@ TEST(PairedTest, OfManyTheSignFlipsAreDrawnAndComeNearTheTruth) {
     // Twenty-one differences with the exact p-value of the first twenty and one of 0, which changes nothing. The share
     // found among 2^20 has a standard error of sqrt(p (1 − p))/1024 < 0.0005; six of them is met but in 2e-9 of seeds.
     std::vector<double> twenty;
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 20; ++i) {
         twenty.push_back((i % 3 == 0 ? -1.0 : 1.0) * (1 + i * 0.37));
+    }
     std::vector<double> more = twenty;
     more.push_back(0);
     const double exact = sign_flip_p(twenty, {});
@@ -92,8 +93,9 @@ TEST(PairedTest, OfManyTheSignFlipsAreDrawnAndComeNearTheTruth) {
 TEST(PairedTest, TheSmallestPIsThatOfDifferencesOfOneSign) {
     for (const std::size_t count : {1, 2, 3, 8, 12, 20}) {
         std::vector<double> differences;
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             differences.push_back(1 + static_cast<double>(i));
+        }
         EXPECT_EQ(sign_flip_p(differences, {}), least_sign_flip_p(count)) << count;
     }
     EXPECT_EQ(least_sign_flip_p(20), std::ldexp(1, -19));
@@ -116,8 +118,9 @@ TEST(PairedTest, KeepsItsPromiseWhereNothingDiffers) {
     for (std::uint32_t test = 0; test < tests; ++test) {
         base::RandomStream random{{base::Seed{284}, base::Purpose::ScenarioTest, 0, 1}, test};
         std::vector<double> differences(8);
-        for (double& difference : differences)
+        for (double& difference : differences) {
             difference = random.gaussian();
+        }
         alarms += sign_flip_p(differences, {}) <= 1.0 / 16;
     }
     EXPECT_NEAR(alarms, tests / 16.0, 6 * std::sqrt(tests * 15.0 / 256));

@@ -35,10 +35,13 @@ std::string refusal_of(const std::string& text) {
 /// Of a parameter, in order of cells.
 std::vector<std::string> column(const Sweep& sweep, std::string_view name) {
     std::vector<std::string> values;
-    for (std::size_t i = 0; i < sweep.swept.size(); ++i)
-        if (sweep.swept[i]->name == name)
-            for (const auto& cell : sweep.cells)
+    for (std::size_t i = 0; i < sweep.swept.size(); ++i) {
+        if (sweep.swept[i]->name == name) {
+            for (const auto& cell : sweep.cells) {
                 values.push_back(simulation::to_text(cell[i]));
+            }
+        }
+    }
     return values;
 }
 
@@ -219,12 +222,14 @@ TEST(SweepFile, WhateverIsWrongIsNamedWithItsLine) {
          "latin_hypercube.parameters.survivors.steps (line 1): got an unknown name, allowed from, to, scale"},
         {R"({"list": [{"generation_limit": 3}], "generations": 2})", "generations: got 2, allowed nothing, where"},
     };
-    for (const auto& [text, words] : wrong)
+    for (const auto& [text, words] : wrong) {
         EXPECT_THAT(refusal_of(text), HasSubstr(words)) << text;
+    }
     // All at once, not one after another.
     const std::string all = refusal_of(R"({"grid": {"survivors": [2], "luck": [1]}, "replicates": 0, "seed": "x"})");
-    for (const char* field : {"grid.survivors[0]", "grid.luck", "replicates", "seed"})
+    for (const char* field : {"grid.survivors[0]", "grid.luck", "replicates", "seed"}) {
         EXPECT_THAT(all, HasSubstr(field));
+    }
 }
 
 TEST(SweepFile, WhatIsNoJsonIsToldWithItsLine) {
@@ -239,8 +244,9 @@ TEST(SweepFile, ValuesThatDoNotGoTogetherAreNamedWithTheirCell) {
         refusal_of(R"({"generations": 1, "grid": {"tournament_size": [2, 5], "tournament_winners": [1, 3]}})");
     EXPECT_THAT(
         said, HasSubstr("cell 1 (tournament_size 2, tournament_winners 3): tournament_size: got 2, allowed at least"));
-    for (const char* good : {"cell 0", "cell 2", "cell 3"})
+    for (const char* good : {"cell 0", "cell 2", "cell 3"}) {
         EXPECT_THAT(said, Not(HasSubstr(good)));
+    }
     const std::string many = refusal_of(R"({"generations": 1, "experiment": {"tournament_size": 300}, "grid":
         {"tournament_winners": {"from": 301, "to": 1000, "steps": 700}}})");
     EXPECT_THAT(many, HasSubstr("700, of which the first are"));
@@ -253,8 +259,9 @@ TEST(SweepFile, ARunThatWouldNeverEndIsRefused) {
     EXPECT_THAT(refusal_of(R"({"list": [{"stagnation_limit": 5}, {"food_count": 1}]})"),
                 HasSubstr("cell 1 (stagnation_limit 0, food_count 1): generation_limit: got nothing"));
     for (const char* criterion : {R"("generation_limit": 1)", R"("stagnation_limit": 1)",
-                                  R"("stop_at_extinction": true)", R"("stop_at_target_fitness": true)"})
+                                  R"("stop_at_extinction": true)", R"("stop_at_target_fitness": true)"}) {
         sweep_of(std::string{R"({"list": [{}], "experiment": {)"} + criterion + "}}");
+    }
 }
 
 TEST(SweepFile, ThereAreAtMostAHundredThousandRuns) {
@@ -269,8 +276,9 @@ TEST(SweepFile, ThereAreAtMostAHundredThousandRuns) {
                 HasSubstr("got 100000 cells of 2 replicates, allowed at most 100000 runs"));
     // A product that no number holds.
     std::string huge = R"({"generations": 1, "grid": {)";
-    for (const char* name : {"survivors", "mutation_chance", "crossover_chance", "rearrange_chance", "reset_chance"})
+    for (const char* name : {"survivors", "mutation_chance", "crossover_chance", "rearrange_chance", "reset_chance"}) {
         huge += std::string{huge.back() == '{' ? "\"" : ", \""} + name + R"(": {"from": 0, "to": 1, "steps": 99999})";
+    }
     EXPECT_THAT(refusal_of(huge + "}}"), HasSubstr("allowed at most 100000 runs"));
 }
 

@@ -139,9 +139,10 @@ TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
     ASSERT_TRUE(folder);
-    for (std::size_t run = 0; run < 4; ++run)
+    for (std::size_t run = 0; run < 4; ++run) {
         write(folder->part_of(run), std::string(run == 2 ? 0 : 1 << 17, 'x') + std::to_string(run) + "\n" +
                                         to_text(RunEnd{run == 2 ? Outcome::Extinction : Outcome::GenerationLimit, 1}));
+    }
     const std::string stray = NewFile::unfinished_name(folder->part_of(1));
     write(stray, "of somebody who was killed");
     const auto gathered = folder->gather();
@@ -155,8 +156,9 @@ TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
     EXPECT_THAT(table, HasSubstr("\n2\n"));
     EXPECT_THAT(table, EndsWith("x3\n"));
     EXPECT_LT(table.find("0\nxxx"), table.find("\n2\n"));
-    for (std::size_t begin = 0; begin < provenance.size(); begin = provenance.find('\n', begin) + 1)
+    for (std::size_t begin = 0; begin < provenance.size(); begin = provenance.find('\n', begin) + 1) {
         EXPECT_EQ(provenance.substr(begin, 2), "# ");
+    }
     ASSERT_TRUE(folder->gather()); // again
     EXPECT_EQ(text_of(folder->table()), table);
 }
@@ -166,8 +168,9 @@ TEST(SweepFolder, APartThatWasChangedIsNamed) {
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
     ASSERT_TRUE(folder);
-    for (std::size_t run = 0; run < 4; ++run)
+    for (std::size_t run = 0; run < 4; ++run) {
         write(folder->part_of(run), (run == 1 ? "a\nb\n" : "a\n") + to_text(RunEnd{Outcome::GenerationLimit, 1}));
+    }
     const auto gathered = folder->gather();
     ASSERT_FALSE(gathered);
     EXPECT_THAT(gathered.error().message, HasSubstr("cell-0-replicate-1.csv is not as it was written"));

@@ -28,8 +28,9 @@ TEST(Trials, EachIsDoneOnceAndByNoMoreThanSoManyAtATime) {
                 --at_a_time;
             },
             never);
-        for (const auto& count : done)
+        for (const auto& count : done) {
             EXPECT_EQ(count.load(), 1);
+        }
         EXPECT_LE(most.load(), static_cast<int>(jobs));
     }
 }
@@ -61,8 +62,9 @@ TEST(Trials, NoneIsBegunOnceTheyAreStopped) {
     for_each_trial(
         1000, 2,
         [&](std::size_t) {
-            if (++begun >= 10)
+            if (++begun >= 10) {
                 stopped = true;
+            }
         },
         [&] { return stopped.load(); });
     EXPECT_GE(begun.load(), 10);
@@ -75,10 +77,12 @@ TEST(Trials, NoneIsBegunOnceTheyAreStopped) {
 
 TEST(Trials, SeedsOfReplicatesDifferAndAreTheSameForEver) {
     std::set<std::uint64_t> seeds;
-    for (std::uint32_t replicate = 0; replicate < 1000; ++replicate)
+    for (std::uint32_t replicate = 0; replicate < 1000; ++replicate) {
         seeds.insert(replicate_seed({7}, replicate).value);
-    for (std::uint32_t replicate = 0; replicate < 1000; ++replicate)
+    }
+    for (std::uint32_t replicate = 0; replicate < 1000; ++replicate) {
         seeds.insert(replicate_seed({8}, replicate).value);
+    }
     EXPECT_EQ(seeds.size(), 2000u);
     EXPECT_EQ(replicate_seed({7}, 0).value, 1658915562867180275u);
     EXPECT_EQ(replicate_seed({7}, 3).value, 6228185542810192799u);

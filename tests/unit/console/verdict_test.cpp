@@ -44,8 +44,10 @@ TEST(Verdict, IsYesWithAReservationIfItOnlyKeptTheFitnessFromFalling) {
 }
 
 TEST(Verdict, TakesBoth) {
-    for (const auto& all : {weighed(125, 1e-5, 9, 1e-5, 9, 1e-5, 5, 0.05), weighed(5, 0.3, 9, 1e-5, 9, 1e-5, 99, 1e-5)})
+    for (const auto& all :
+         {weighed(125, 1e-5, 9, 1e-5, 9, 1e-5, 5, 0.05), weighed(5, 0.3, 9, 1e-5, 9, 1e-5, 99, 1e-5)}) {
         EXPECT_THAT(answer(120, {110, 130}, all), StartsWith("Did evolution do it? That is not shown: "));
+    }
     EXPECT_THAT(answer(-9, {-12, -6}, weighed(125, 1e-5, 9, 1, 9, 1, -5, 1e-3)),
                 StartsWith("Did evolution do it? No: selection keeps the fitness below what it would be: "));
 }
@@ -62,8 +64,9 @@ TEST(Verdict, IsNoIfNothingIsSelected) {
     std::vector<Weighed> all = weighed(0, 1, 9, 1, 9, 1, 0, 1);
     simulation::Parameters world;
     world.selection = evolution::SelectionMethod::Random;
-    for (const std::size_t i : {0, 3})
+    for (const std::size_t i : {0, 3}) {
         all[i] = {control_of(world, all_controls[i]), {}};
+    }
     EXPECT_EQ(answer(1, {-1, 3}, all),
               "Did evolution do it? No: whoever breeds is drawn by chance already, so nothing is "
               "selected for what it does.");
@@ -91,8 +94,9 @@ TEST(Verdict, TellsWhatMutationAndPoisonAreWorth) {
     simulation::Parameters still;
     still.mutation_chance = 0;
     still.poison_count = 0;
-    for (const std::size_t i : {1, 2})
+    for (const std::size_t i : {1, 2}) {
         all[i] = {control_of(still, all_controls[i]), {}};
+    }
     EXPECT_THAT(verdict(100, {90, 110}, all, 1)[1], StartsWith("Mutation: nothing mutates already; "));
     EXPECT_EQ(verdict(100, {90, 110}, all, 1)[2], "Poison: there is no poison.");
 }

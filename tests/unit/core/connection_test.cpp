@@ -429,7 +429,8 @@ class WalkingPictures {
         frame.set_codec(v1::CODEC_DELTA);
         frame.set_sequence(++sequence_);
         frame.set_tick(sequence_);
-        const codec::Baseline baseline = baseline_.scene ? codec::advanced_baseline(baseline_, scene, 1) : codec::initial_baseline(scene);
+        const codec::Baseline baseline =
+            baseline_.scene ? codec::advanced_baseline(baseline_, scene, 1) : codec::initial_baseline(scene);
         if (as_delta) {
             frame.set_base_sequence(sequence_ - 1);
             frame.set_body(codec::encode_delta(baseline_, *scene, 1));
@@ -447,7 +448,7 @@ class WalkingPictures {
 };
 
 std::shared_ptr<const codec::DecodedSnapshot> picture_of_tick(Connection& connection, SubscriptionHandle handle,
-                                                     std::uint64_t tick) {
+                                                              std::uint64_t tick) {
     std::shared_ptr<const codec::DecodedSnapshot> picture;
     EXPECT_TRUE(wait_until([&] {
         if (auto newest = connection.take_snapshot(handle)) {
@@ -576,8 +577,8 @@ TEST(Views, AreAskedForChangedAndAskedForAgain) {
 
 /// A picture of one tile, with two organisms in it.
 v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequence) {
-    const auto scene = std::make_shared<const codec::QuantisedSnapshot>(
-        codec::QuantisedSnapshot{.organisms = {.id = {5, 6}, .x = {16, 16}, .y = {16, 16}, .width = {16, 16}, .height = {16, 16}}});
+    const auto scene = std::make_shared<const codec::QuantisedSnapshot>(codec::QuantisedSnapshot{
+        .organisms = {.id = {5, 6}, .x = {16, 16}, .y = {16, 16}, .width = {16, 16}, .height = {16, 16}}});
     v1::SnapshotFrame frame;
     frame.set_width_px(100);
     frame.set_height_px(100);

@@ -24,14 +24,16 @@ TEST(Json, HasNumbersAsFarAsTheyAreExact) {
     const std::string text = to_json(response, false);
     for (const char* part :
          {R"("request_id":9007199254740991,)", R"("applied_tick":"9007199254740992")", R"("name":"12")",
-          R"("seed":"18446744073709551615")", R"("tick":60)", R"("quote \" and \\","7")"})
+          R"("seed":"18446744073709551615")", R"("tick":60)", R"("quote \" and \\","7")"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+    }
 }
 
 TEST(Json, HasNumbersInMessagesWithinRepeatedOnes) {
     v1::Statistics statistics;
-    for (const std::uint64_t generation : {4, 5})
+    for (const std::uint64_t generation : {4, 5}) {
         statistics.add_last()->set_generation(generation);
+    }
     const std::string text = to_json(statistics, false);
     EXPECT_NE(text.find(R"("generation":4,)"), std::string::npos) << text;
     EXPECT_NE(text.find(R"("generation":5,)"), std::string::npos) << text;

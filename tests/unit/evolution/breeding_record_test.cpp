@@ -33,8 +33,9 @@ struct Case {
         , wanted{wanted_}
         , key{.seed = base::Seed{seed}, .island = 3, .generation = 7} {
         base::RandomStream random = stream_of(seed);
-        for (std::uint32_t i = 0; i < present; ++i)
+        for (std::uint32_t i = 0; i < present; ++i) {
             fitness.push_back(random.below(100) / 4.0 - 5); // with ties, and some of it negative
+        }
     }
     NextGeneration next() const {
         base::InlineExecutor executor;
@@ -49,10 +50,12 @@ struct Case {
 /// The genes of a descendant, made of those of its parents by what the record tells and nothing else.
 std::array<float, gene_count> made_of(const BreedingRecord::Descendant& told) {
     std::array<float, gene_count> mixed{}, genes{};
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         mixed[gene] = (told.from_second >> gene & 1) != 0 ? told.second_genes[gene] : told.first_genes[gene];
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    }
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         genes[gene] = mixed[told.order ? (*told.order)[gene] : gene];
+    }
     for (const GeneChange& change : told.changes) {
         EXPECT_EQ(genes[change.gene], change.before);
         genes[change.gene] = change.after;
@@ -126,12 +129,13 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         expected += contender.expected_copies;
         ASSERT_FALSE(ranked[contender.rank]);
         ranked[contender.rank] = true;
-        for (std::uint32_t j = 0; j < i; ++j)
+        for (std::uint32_t j = 0; j < i; ++j) {
             ASSERT_EQ(record.contenders[j].rank < contender.rank, bred.fitness[j] >= bred.fitness[i]);
+        }
     }
     EXPECT_NEAR(expected, record.pick_count, 1e-6);
     // All that bred were picked, or were kept for being among the best.
-    for (const auto& told : record.descendants)
+    for (const auto& told : record.descendants) {
         if (told.id >= record.places.elite && p.population_model == PopulationModel::Hybrid) {
             const auto was_elite = [&](std::uint32_t organism) {
                 return record.contenders[organism].rank < record.places.elite;
@@ -141,6 +145,7 @@ TEST_P(EveryChoice, ThePicksAreThoseThatBredAndSayHowTheyCame) {
         } else if (told.id >= record.places.survivors) {
             EXPECT_TRUE(copies[told.parents.first] > 0 && copies[told.parents.second] > 0);
         }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(BreedingRecord, EveryChoice, testing::ValuesIn(stage_choices()), [](const auto& choice) {
@@ -160,12 +165,13 @@ TEST(BreedingRecord, OfGenesOutsideTheirBoundsTellsOfTheEliteToo) {
         std::accumulate(record.descendants.begin(), record.descendants.begin() + record.places.survivors,
                         std::size_t{0}, [](std::size_t sum, const auto& told) { return sum + told.changes.size(); });
     EXPECT_GT(clamps, 0u);
-    for (std::uint32_t id = 0; id < record.places.survivors; ++id)
+    for (std::uint32_t id = 0; id < record.places.survivors; ++id) {
         for (const GeneChange& change : record.descendants[id].changes) {
             EXPECT_EQ(change.kind, ChangeKind::Clamp);
             EXPECT_EQ(change.gene, static_cast<unsigned>(Impulse));
             EXPECT_EQ(change.after, 90.0f);
         }
+    }
 }
 
 RC_GTEST_PROP(BreedingRecord, APartIsThatPartOfTheWhole, ()) {
@@ -216,9 +222,10 @@ TEST(SelectionLaw, OfASingleWinnerIsTheClosedForm) {
         parameters.selection = SelectionMethod::Tournament;
         parameters.tournament_size = k;
         const SelectionLaw law{n, {.wanted = 100, .pool = n}, parameters};
-        for (std::uint32_t r = 0; r < n; ++r)
+        for (std::uint32_t r = 0; r < n; ++r) {
             EXPECT_NEAR(law.expected_copies(r, 0),
                         100 * (std::pow((n - r) / 20.0, k) - std::pow((n - r - 1) / 20.0, k)), 1e-9);
+        }
         parameters.tournament_replacement = false;
         const SelectionLaw without{n, {.wanted = 100, .pool = n}, parameters};
         double none_better = 1; // no contestant has rank 0 ... r - 1
@@ -235,8 +242,9 @@ TEST(SelectionLaw, IsTheMeanOfManySelections) {
     // selection exclude each other where nobody is drawn twice, which makes the statistic smaller, never larger.
     constexpr std::uint32_t population = 12, rounds = 4000;
     for (const StageChoice& choice : stage_choices()) {
-        if (choice.selection == SelectionMethod::Truncation)
+        if (choice.selection == SelectionMethod::Truncation) {
             continue;
+        }
         StageChoice held = choice;
         held.tournament_size = std::min(held.tournament_size, 9u);
         held.elite_count = 0;
@@ -245,8 +253,9 @@ TEST(SelectionLaw, IsTheMeanOfManySelections) {
         double picks = 0;
         for (std::uint32_t round = 0; round < rounds; ++round) {
             Case bred{held, population, population, 884};
-            for (double& fitness : bred.fitness)
+            for (double& fitness : bred.fitness) {
                 fitness += 6;
+            }
             bred.key.generation = round + 1;
             const BreedingRecord record = bred.record({.count_max = population});
             picks = record.pick_count;
@@ -260,8 +269,8 @@ TEST(SelectionLaw, IsTheMeanOfManySelections) {
 }
 
 TEST(SelectionLaw, OfTournamentsWithSeveralWinnersAddsUpAtAnySize) {
-    for (const bool replacement : {true, false})
-        for (const std::uint32_t size : {5u, 64u, 1000u, 1'000'000u})
+    for (const bool replacement : {true, false}) {
+        for (const std::uint32_t size : {5u, 64u, 1000u, 1'000'000u}) {
             for (const std::uint32_t winners : {1u, 3u, size / 2}) {
                 Parameters parameters;
                 parameters.selection = SelectionMethod::Tournament;
@@ -278,6 +287,8 @@ TEST(SelectionLaw, OfTournamentsWithSeveralWinnersAddsUpAtAnySize) {
                 }
                 EXPECT_NEAR(sum, 31, 1e-8);
             }
+        }
+    }
 }
 
 } // namespace

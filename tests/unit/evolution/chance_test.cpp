@@ -13,13 +13,15 @@ TEST(Chance, EveryPatternOfThreeBitsIsAsLikelyAsIndependenceSays) {
         const Chance chance{p};
         base::RandomStream random = stream_of(101);
         std::vector<std::uint64_t> counts(8);
-        for (int i = 0; i < 400'000; ++i)
+        for (int i = 0; i < 400'000; ++i) {
             ++counts.at(chance.draw_bits(3, random));
+        }
         std::vector<double> law(8);
         for (unsigned pattern = 0; pattern < 8; ++pattern) {
             law[pattern] = 1;
-            for (unsigned bit = 0; bit < 3; ++bit)
+            for (unsigned bit = 0; bit < 3; ++bit) {
                 law[pattern] *= (pattern >> bit & 1) != 0 ? p : 1 - p;
+            }
         }
         EXPECT_GT(p_value_of_law(counts, law), alpha) << p;
     }
@@ -32,8 +34,9 @@ TEST(Chance, SmallProbabilitiesAreKept) {
     std::vector<std::uint64_t> counts(2);
     for (int i = 0; i < 1'000'000; ++i) {
         const std::uint32_t bits = chance.draw_bits(6, random);
-        for (unsigned bit = 0; bit < 6; ++bit)
+        for (unsigned bit = 0; bit < 6; ++bit) {
             ++counts[bits >> bit & 1];
+        }
     }
     EXPECT_GT(p_value_of_law(counts, std::vector{1 - 1e-4, 1e-4}), alpha);
 }
@@ -57,8 +60,9 @@ TEST(Chance, AllWidthsFollowTheLaw) {
         for (int i = 0; i < 20'000; ++i) {
             const std::uint64_t bits = chance.draw_bits(width, random);
             ASSERT_EQ(bits >> width, 0u);
-            for (unsigned bit = 0; bit < width; ++bit)
+            for (unsigned bit = 0; bit < width; ++bit) {
                 ++counts[bits >> bit & 1];
+            }
         }
         EXPECT_GT(p_value_of_law(counts, std::vector{0.7, 0.3}), alpha) << width;
     }

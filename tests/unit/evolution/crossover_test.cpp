@@ -33,12 +33,16 @@ std::vector<std::uint64_t> masks(const Parameters& parameters, std::uint32_t dra
 std::vector<double> law_of_cuts(int cuts) {
     std::vector<double> law(64);
     double reached = 0;
-    for (GeneMask mask = 0; mask < 64; mask += 2)
-        if (std::popcount((mask ^ mask << 1) & 62) == cuts)
+    for (GeneMask mask = 0; mask < 64; mask += 2) {
+        if (std::popcount((mask ^ mask << 1) & 62) == cuts) {
             ++reached;
-    for (GeneMask mask = 0; mask < 64; mask += 2)
-        if (std::popcount((mask ^ mask << 1) & 62) == cuts)
+        }
+    }
+    for (GeneMask mask = 0; mask < 64; mask += 2) {
+        if (std::popcount((mask ^ mask << 1) & 62) == cuts) {
             law[mask] = 1 / reached;
+        }
+    }
     return law;
 }
 
@@ -50,8 +54,9 @@ TEST(Crossover, UniformMakesEachOfThe64MasksEquallyLikely) {
 TEST(Crossover, SinglePointCutsAtEachOfTheFiveInnerPlacesEquallyOften) {
     // Law: 1/5 for each of 000001 … 011111 read from the last gene. Chi-square, 4 degrees of freedom.
     std::vector<double> law(64);
-    for (const GeneMask mask : {0b111110, 0b111100, 0b111000, 0b110000, 0b100000})
+    for (const GeneMask mask : {0b111110, 0b111100, 0b111000, 0b110000, 0b100000}) {
         law[mask] = 0.2;
+    }
     EXPECT_GT(p_value_of_law(masks(with(CrossoverMethod::SinglePoint), 200'000, 182), law), alpha);
 }
 
@@ -72,8 +77,9 @@ TEST(Crossover, NoneNeverMixes) {
 TEST(Crossover, HappensWithItsChance) {
     // Law: mask 0 with probability 0.3, each of the 10 others with 0.07. Chi-square, 10 degrees of freedom.
     auto law = law_of_cuts(2);
-    for (double& probability : law)
+    for (double& probability : law) {
         probability *= 0.7;
+    }
     law[0] = 0.3;
     EXPECT_GT(p_value_of_law(masks(with(CrossoverMethod::MultiPoint, 2, 0.7), 200'000, 186), law), alpha);
     EXPECT_EQ(masks(with(CrossoverMethod::SinglePoint, 2, 0), 1000, 187)[0], 1000u);

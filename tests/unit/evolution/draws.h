@@ -24,8 +24,9 @@ inline base::RandomStream stream_of(std::uint64_t seed, std::uint32_t entity = 0
 /// be empty and do not count.
 inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<const double> law) {
     std::uint64_t total = 0;
-    for (const std::uint64_t count : counts)
+    for (const std::uint64_t count : counts) {
         total += count;
+    }
     std::vector<std::uint64_t> observed;
     std::vector<double> expected;
     for (std::size_t i = 0; i < law.size(); ++i) {
@@ -42,8 +43,9 @@ inline double p_value_of_law(std::span<const std::uint64_t> counts, std::span<co
 /// How often each of 0 … cells − 1 occurs.
 inline std::vector<std::uint64_t> count_each(std::span<const std::uint32_t> values, std::size_t cells) {
     std::vector<std::uint64_t> counts(cells);
-    for (const std::uint32_t value : values)
+    for (const std::uint32_t value : values) {
         ++counts.at(value);
+    }
     return counts;
 }
 

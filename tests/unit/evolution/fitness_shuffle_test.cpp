@@ -27,9 +27,9 @@ TEST(FitnessShuffle, MakesEveryOrderEquallyLikely) {
     for (const bool by_island : {false, true}) {
         std::vector<std::vector<double>> orders;
         std::vector<double> order{0, 1, 2, 3};
-        do
+        do {
             orders.push_back(order);
-        while (std::ranges::next_permutation(order).found);
+        } while (std::ranges::next_permutation(order).found);
         std::vector<std::uint64_t> counts(orders.size());
         for (std::uint32_t i = 0; i < 24'000; ++i) {
             const BreedingKey key{
@@ -62,8 +62,9 @@ TEST(FitnessShuffle, LosesNoValueAndIsTheSameOnAnyThreadCount) {
         const auto reference = dealt(count, key, one);
         auto sorted = reference;
         std::ranges::sort(sorted);
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             ASSERT_EQ(sorted[i], static_cast<double>(i));
+        }
         support::ThreadExecutor many{5};
         ASSERT_EQ(dealt(count, key, many), reference);
     }

@@ -26,8 +26,9 @@ class Islands {
     explicit Islands(std::initializer_list<std::uint32_t> populations) {
         for (const std::uint32_t population : populations) {
             fitness_.emplace_back();
-            for (std::uint32_t i = 0; i < population; ++i)
+            for (std::uint32_t i = 0; i < population; ++i) {
                 fitness_.back().push_back(i);
+            }
         }
         spans_.assign(fitness_.begin(), fitness_.end());
     }
@@ -44,9 +45,11 @@ TEST(Migration, IsDueOnceAnEpoch) {
     Parameters parameters = with(Topology::Ring);
     parameters.migration_epoch = 3;
     std::vector<std::uint64_t> due;
-    for (std::uint64_t generation = 1; generation <= 9; ++generation)
-        if (migration_due(generation, parameters))
+    for (std::uint64_t generation = 1; generation <= 9; ++generation) {
+        if (migration_due(generation, parameters)) {
             due.push_back(generation);
+        }
+    }
     EXPECT_EQ(due, (std::vector<std::uint64_t>{3, 6, 9}));
     EXPECT_FALSE(migration_due(3, with(Topology::None)));
 }
@@ -123,7 +126,7 @@ TEST(Migration, ReplacedAtRandomAreDifferentAndUniform) {
 
 TEST(Migration, NoOrganismIsReplacedTwice) {
     const Islands islands{2, 6, 6, 0};
-    for (const Replaced replaced : {Replaced::Worst, Replaced::Random})
+    for (const Replaced replaced : {Replaced::Worst, Replaced::Random}) {
         for (const std::uint32_t count : {1u, 2u, 5u, 100u}) {
             Parameters parameters = with(Topology::FullyConnected, count);
             parameters.immigrants_replace = replaced;
@@ -137,6 +140,7 @@ TEST(Migration, NoOrganismIsReplacedTwice) {
             EXPECT_EQ(arrived[1], std::min(6u, std::min(count, 2u) + std::min(count, 6u)));
             EXPECT_EQ(arrived.count(3), 0u);
         }
+    }
 }
 
 /// How many go from where to where: arrivals[to][from].

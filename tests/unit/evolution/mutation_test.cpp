@@ -60,8 +60,9 @@ TEST(Creep, StepsAreUniformWithinTheStepSize) {
             squares += step * step;
         }
     });
-    for (const auto& counts : cells)
+    for (const auto& counts : cells) {
         EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
+    }
     const double count = 600'000, variance = 75;
     EXPECT_NEAR(sum / count, 0, 5 * std::sqrt(variance / count));
     EXPECT_NEAR(squares / count, variance, 5 * std::sqrt((15.0 * 15 * 15 * 15 / 5 - variance * variance) / count));
@@ -102,9 +103,10 @@ TEST(Creep, GaussianStepsReachFarOut) {
     const double ends[] = {-4.5, -4, -3.6, -3.442619855899, -3.3, -3, 0, 3, 3.3, 3.442619855899, 3.6, 4, 4.5};
     std::vector<std::uint64_t> counts(std::size(ends) + 1);
     mutants(parameters, middle, 1'000'000, 217, [&](const Values& genes, unsigned) {
-        for (const float gene : genes)
+        for (const float gene : genes) {
             ++counts[static_cast<std::size_t>(std::upper_bound(std::begin(ends), std::end(ends), (gene - 512) / 100) -
                                               std::begin(ends))];
+        }
     });
     const boost::math::normal normal;
     std::vector<double> law;
@@ -142,14 +144,16 @@ TEST(Creep, EachGeneMutatesWithItsChanceIndependently) {
     std::vector<std::uint64_t> counts(64);
     mutants(parameters, middle, 3'000'000, 203, [&](const Values& genes, unsigned) {
         unsigned mutated = 0;
-        for (unsigned gene = 0; gene < gene_count; ++gene)
+        for (unsigned gene = 0; gene < gene_count; ++gene) {
             mutated |= unsigned{genes[gene] != 512} << gene;
+        }
         ++counts[mutated];
     });
     // A step of the uniform law rounds to the very same float with probability below 1e-5, too rare to be seen here.
     std::vector<double> law(64);
-    for (unsigned set = 0; set < 64; ++set)
+    for (unsigned set = 0; set < 64; ++set) {
         law[set] = std::pow(0.15, std::popcount(set)) * std::pow(0.85, 6 - std::popcount(set));
+    }
     EXPECT_GT(p_value_of_law(counts, law), alpha);
 }
 
@@ -173,8 +177,9 @@ TEST(Reset, IsUniformWithinTheBoundsOfEachGene) {
     });
     std::vector<double> law(41, 0.5 / 40);
     law[0] = 0.5;
-    for (const auto& counts : cells)
+    for (const auto& counts : cells) {
         EXPECT_GT(p_value_of_law(counts, law), alpha);
+    }
 }
 
 TEST(BitFlip, EveryBitFlipsWithItsChanceIndependently) {
@@ -186,20 +191,24 @@ TEST(BitFlip, EveryBitFlipsWithItsChanceIndependently) {
     parameters.bit_flip_bits = 3;
     const GeneBounds bounds = gene_bounds(parameters);
     Values start;
-    for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (unsigned gene = 0; gene < gene_count; ++gene) {
         start[gene] = BinaryView{bounds.min[gene], bounds.max[gene], 3}.to_value(5);
+    }
     std::array<std::vector<std::uint64_t>, gene_count> flips;
     flips.fill(std::vector<std::uint64_t>(8));
     mutants(parameters, start, 200'000, 205, [&](const Values& genes, unsigned clamped) {
         ASSERT_EQ(clamped, 0u);
-        for (unsigned gene = 0; gene < gene_count; ++gene)
+        for (unsigned gene = 0; gene < gene_count; ++gene) {
             ++flips[gene].at(BinaryView{bounds.min[gene], bounds.max[gene], 3}.to_code(genes[gene]) ^ 5u);
+        }
     });
     std::vector<double> law(8);
-    for (unsigned set = 0; set < 8; ++set)
+    for (unsigned set = 0; set < 8; ++set) {
         law[set] = std::pow(0.2, std::popcount(set)) * std::pow(0.8, 3 - std::popcount(set));
-    for (const auto& counts : flips)
+    }
+    for (const auto& counts : flips) {
         EXPECT_GT(p_value_of_law(counts, law), alpha);
+    }
 }
 
 TEST(BitFlip, LeavesAGeneNoneOfWhoseBitsFlipsExactlyAsItWas) {
@@ -210,8 +219,9 @@ TEST(BitFlip, LeavesAGeneNoneOfWhoseBitsFlipsExactlyAsItWas) {
     constexpr Values start = {101.3f, 99.7f, 88.1f, 111.9f, 104.2f, 93.4f};
     std::uint64_t untouched = 0;
     mutants(parameters, start, 1000, 206, [&](const Values& genes, unsigned) {
-        for (unsigned gene = 0; gene < gene_count; ++gene)
+        for (unsigned gene = 0; gene < gene_count; ++gene) {
             untouched += genes[gene] == start[gene];
+        }
     });
     EXPECT_GT(untouched, 4500u); // 0.95⁴ of 6,000 is 4,887
     EXPECT_LT(untouched, 5300u);

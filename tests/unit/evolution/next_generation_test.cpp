@@ -25,8 +25,9 @@ struct Population {
 Population population_of(std::uint32_t count, std::uint64_t seed) {
     base::RandomStream random = stream_of(seed);
     Population population{{}, initial_population(count, {}, base::Seed{seed}, 0)};
-    for (std::uint32_t i = 0; i < count; ++i)
+    for (std::uint32_t i = 0; i < count; ++i) {
         population.fitness.push_back(random.below(100) / 4.0);
+    }
     return population;
 }
 
@@ -110,8 +111,8 @@ TEST(Places, TheEliteIsAtMostEverybody) {
 }
 
 TEST(NextGeneration, HasTheWantedSizeAndAccountsForEveryone) {
-    for (const Parameters& choice : stage_choices())
-        for (const std::uint32_t present : {1u, 2u, 3u, 4u, 5u, 7u, 20u})
+    for (const Parameters& choice : stage_choices()) {
+        for (const std::uint32_t present : {1u, 2u, 3u, 4u, 5u, 7u, 20u}) {
             for (const std::uint32_t wanted : {1u, 2u, 3u, 5u, 7u, 8u, 20u, 33u}) {
                 Parameters parameters = choice;
                 for (const std::uint32_t elite_count : {0u, 1u, 4u}) {
@@ -135,6 +136,8 @@ TEST(NextGeneration, HasTheWantedSizeAndAccountsForEveryone) {
                     }
                 }
             }
+        }
+    }
 }
 
 TEST(NextGeneration, SurvivorsAreCopiedUnchanged) {
@@ -144,8 +147,9 @@ TEST(NextGeneration, SurvivorsAreCopiedUnchanged) {
         parameters.elite_count = 2;
         const Population population = population_of(31, 223);
         const NextGeneration next = breed(population, parameters, 31);
-        for (std::uint32_t i = 0; i < next.survivor_count; ++i)
+        for (std::uint32_t i = 0; i < next.survivor_count; ++i) {
             EXPECT_TRUE((next.genes.col(i) == population.genes.col(next.parents[i].first)).all());
+        }
     }
 }
 
@@ -171,15 +175,17 @@ TEST(NextGeneration, SurvivorsAreMutatedWithTheSameLawAsChildren) {
     const Population population = population_of(100'000, 225);
     const NextGeneration next = breed(population, parameters, 100'000);
     std::vector<std::uint64_t> counts(2);
-    for (std::uint32_t i = 0; i < next.survivor_count; ++i)
-        for (unsigned gene = 0; gene < gene_count; ++gene)
+    for (std::uint32_t i = 0; i < next.survivor_count; ++i) {
+        for (unsigned gene = 0; gene < gene_count; ++gene) {
             ++counts[next.genes(gene, i) != population.genes(gene, next.parents[i].first)];
+        }
+    }
     // A step rounds to the very same float with probability below 1e-6.
     EXPECT_GT(p_value_of_law(counts, std::vector{0.85, 0.15}), alpha);
 }
 
 TEST(NextGeneration, TheEliteComesFirstBestFirst) {
-    for (const PopulationModel model : all_models)
+    for (const PopulationModel model : all_models) {
         for (const SelectionMethod method :
              {SelectionMethod::Roulette, SelectionMethod::Random, SelectionMethod::Truncation}) {
             Parameters parameters;
@@ -190,9 +196,11 @@ TEST(NextGeneration, TheEliteComesFirstBestFirst) {
             Ranking ranking{population.fitness};
             const NextGeneration next = breed(population, parameters, 23);
             ASSERT_EQ(next.elite_count, 5u);
-            for (std::uint32_t i = 0; i < 5; ++i)
+            for (std::uint32_t i = 0; i < 5; ++i) {
                 EXPECT_EQ(next.parents[i].first, ranking.best_first()[i]);
+            }
         }
+    }
 }
 
 TEST(NextGeneration, AnElitePickedByTheSelectionUsesUpThatPick) {
@@ -202,8 +210,9 @@ TEST(NextGeneration, AnElitePickedByTheSelectionUsesUpThatPick) {
     const NextGeneration plain = breed(population, parameters, 20);
     parameters.elite_count = 3;
     const NextGeneration with_elite = breed(population, parameters, 20);
-    for (std::uint32_t i = 0; i < 10; ++i) // truncation keeps the ten best either way, nobody twice
+    for (std::uint32_t i = 0; i < 10; ++i) { // truncation keeps the ten best either way, nobody twice
         EXPECT_EQ(with_elite.parents[i], plain.parents[i]);
+    }
 }
 
 TEST(NextGeneration, HybridSurvivorsAreTheOnlyParents) {
@@ -213,8 +222,9 @@ TEST(NextGeneration, HybridSurvivorsAreTheOnlyParents) {
         const Population population = population_of(50, 228);
         const NextGeneration next = breed(population, parameters, 50);
         std::vector<bool> survives(50);
-        for (std::uint32_t i = 0; i < next.survivor_count; ++i)
+        for (std::uint32_t i = 0; i < next.survivor_count; ++i) {
             survives[next.parents[i].first] = true;
+        }
         for (std::uint32_t i = next.survivor_count; i < 50; ++i) {
             EXPECT_TRUE(survives[next.parents[i].first]);
             EXPECT_TRUE(survives[next.parents[i].second]);
@@ -229,8 +239,9 @@ TEST(NextGeneration, SteadyStateLosesTheWorstAndKeepsTheOthersInOrder) {
     const Population population{{5, 1, 4, 1, 3, 2, 1}, initial_population(7, {}, base::Seed{229}, 0)};
     const NextGeneration next = breed(population, parameters, 7);
     ASSERT_EQ(next.survivor_count, 4u);
-    for (std::uint32_t i = 0; const std::uint32_t kept : {0u, 2u, 4u, 5u})
+    for (std::uint32_t i = 0; const std::uint32_t kept : {0u, 2u, 4u, 5u}) {
         EXPECT_EQ(next.parents[i++].first, kept);
+    }
 }
 
 TEST(NextGeneration, SteadyStateParentsAreDrawnFromAllTheWorstIncluded) {
@@ -298,8 +309,8 @@ TEST(NextGeneration, ChildrenAreComplementaryMixturesOfTheirParents) {
 
 TEST(NextGeneration, TheFirstParentGaveMostGenes) {
     const Population population = population_of(401, 242);
-    for (const CrossoverMethod method : {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint,
-                                         CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
+    for (const CrossoverMethod method :
+         {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint, CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
         for (const double chance : {0.0, 0.5, 1.0}) {
             Parameters parameters = without_mutation();
             parameters.crossover = method;
@@ -348,8 +359,9 @@ TEST(NextGeneration, SurplusChildrenAreDroppedLastFirst) {
     EXPECT_EQ(even.survivor_count, 12u);
     EXPECT_EQ(odd.survivor_count, 13u);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> children;
-    for (std::uint32_t i = 13; i < 20; ++i)
+    for (std::uint32_t i = 13; i < 20; ++i) {
         ++children[pair_of(odd.parents[i])];
+    }
     EXPECT_EQ(pair_of(odd.parents[13]), pair_of(odd.parents[14]));
     EXPECT_EQ(pair_of(odd.parents[17]), pair_of(odd.parents[18]));
     EXPECT_EQ(children.size(), 4u);
@@ -388,8 +400,9 @@ TEST(NextGeneration, HasItsGoldenHash) {
         const NextGeneration next = breed(population, parameters, 1001);
         for (std::uint32_t i = 0; i < 1001; ++i) {
             base::EntityHash entity{0, id++};
-            for (unsigned gene = 0; gene < gene_count; gene += 2)
+            for (unsigned gene = 0; gene < gene_count; gene += 2) {
                 entity.add(next.genes(gene, i), next.genes(gene + 1, i));
+            }
             hash += entity.add(next.parents[i].first, next.parents[i].second).finish();
         }
     }
@@ -416,8 +429,9 @@ TEST_P(SameBitsOnAnyThreadCount, AlsoWhereShufflesAreCut) {
     const Population population = population_of(2 * shuffled_whole_max + 9, 241);
     for (const StageChoice& choice : stage_choices()) {
         if (choice.population_model == PopulationModel::Hybrid && choice.selection == SelectionMethod::Roulette &&
-            choice.fitness_scaling == FitnessScaling::None)
+            choice.fitness_scaling == FitnessScaling::None) {
             continue; // cut as above
+        }
         const auto wanted = static_cast<std::uint32_t>(population.fitness.size()) + 1;
         const NextGeneration reference = breed(population, choice, wanted, 7, 8);
         const NextGeneration next = next_generation(population.fitness, population.genes, choice, wanted,
@@ -431,7 +445,7 @@ INSTANTIATE_TEST_SUITE_P(Threads, SameBitsOnAnyThreadCount, testing::Values(1, 2
 
 TEST(NextGeneration, TheSumOfTheGenesRisesToItsBound) {
     // A check of the whole: fitness = Σ genes is at most 1100 with the default bounds, and starts near 600.
-    for (const PopulationModel model : all_models)
+    for (const PopulationModel model : all_models) {
         for (const SelectionMethod method : {SelectionMethod::Tournament, SelectionMethod::Truncation}) {
             Parameters parameters;
             parameters.population_model = model;
@@ -445,8 +459,9 @@ TEST(NextGeneration, TheSumOfTheGenesRisesToItsBound) {
                 best = 0;
                 for (std::uint32_t i = 0; i < 100; ++i) {
                     double sum = 0;
-                    for (const float gene : column(std::as_const(population.genes), i))
+                    for (const float gene : column(std::as_const(population.genes), i)) {
                         sum += gene;
+                    }
                     population.fitness[i] = sum;
                     best = std::max(best, sum);
                 }
@@ -455,6 +470,7 @@ TEST(NextGeneration, TheSumOfTheGenesRisesToItsBound) {
             }
             EXPECT_GT(best, 1095);
         }
+    }
 }
 
 } // namespace

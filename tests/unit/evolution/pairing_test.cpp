@@ -48,10 +48,13 @@ TEST(Pairing, EveryParentMatesBeforeAnyoneMatesTwice) {
 TEST(Pairing, EveryMatchingIsEquallyLikely) {
     // Law: 3 matchings of 4 parents. Chi-square, 2 degrees of freedom; the mate of parent 0 names the matching.
     std::vector<std::uint64_t> counts(3);
-    for (std::uint64_t seed = 0; seed < 100'000; ++seed)
-        for (const Parents& pair : pair_up(numbered(4), 2, key_of(1'000'000 + seed)))
-            if (std::min(pair.first, pair.second) == 0)
+    for (std::uint64_t seed = 0; seed < 100'000; ++seed) {
+        for (const Parents& pair : pair_up(numbered(4), 2, key_of(1'000'000 + seed))) {
+            if (std::min(pair.first, pair.second) == 0) {
                 ++counts[std::max(pair.first, pair.second) - 1];
+            }
+        }
+    }
     EXPECT_GT(support::p_value_of_equal_cells(counts), alpha);
 }
 
@@ -78,8 +81,9 @@ TEST(Pairing, RoundsAreShuffledAfresh) {
 
 TEST(Pairing, SurplusPairsAreNotMadeAndAFewerWantedAreTheFirstOfMore) {
     const auto many = pair_up(numbered(7), 11, key_of(174));
-    for (std::uint32_t count = 0; count <= 11; ++count)
+    for (std::uint32_t count = 0; count <= 11; ++count) {
         EXPECT_EQ(pair_up(numbered(7), count, key_of(174)), std::vector(many.begin(), many.begin() + count));
+    }
     EXPECT_TRUE(pair_up({}, 0, key_of(174)).empty());
 }
 

@@ -42,9 +42,10 @@ Bred breed(const Case& of, bool by_first_gene = false) {
         first.initial_gene_max += 30 * island;
         islands.push_back(initial_population(of.present, first, base::Seed{of.seed}, island));
         base::RandomStream random = stream_of(of.seed, island);
-        for (std::uint32_t i = 0; i < of.present; ++i)
+        for (std::uint32_t i = 0; i < of.present; ++i) {
             fitness[island].push_back(by_first_gene ? static_cast<double>(islands.back()(0, i))
                                                     : random.uniform(0, 300));
+        }
     }
     bred.before = islands[0];
     if (of.migration) {
@@ -82,21 +83,23 @@ SelectionAccount by_definition(const Bred& bred) {
     for (unsigned gene = 0; gene < gene_count; ++gene) {
         const auto z = [&](std::uint32_t i) { return static_cast<Real>(bred.bred_from(gene, i)); };
         std::vector<Real> shares(n), moved(n); // of each organism; moved: Σ share · (descendant − organism)
-        for (std::size_t child = 0; child < bred.next.parents.size(); ++child)
+        for (std::size_t child = 0; child < bred.next.parents.size(); ++child) {
             for (const std::uint32_t parent : {bred.next.parents[child].first, bred.next.parents[child].second}) {
                 shares[parent] += 0.5L;
                 moved[parent] +=
                     0.5L * (static_cast<Real>(bred.next.genes(gene, static_cast<long>(child))) - z(parent));
             }
+        }
         Real w_mean = 0, z_mean = 0, z_born = 0, z_next = 0;
         for (std::uint32_t i = 0; i < n; ++i) {
             w_mean += shares[i] / static_cast<Real>(n);
             z_mean += z(i) / static_cast<Real>(n);
             z_born += static_cast<Real>(bred.before(gene, i)) / static_cast<Real>(n);
         }
-        for (std::size_t child = 0; child < bred.next.parents.size(); ++child)
+        for (std::size_t child = 0; child < bred.next.parents.size(); ++child) {
             z_next += static_cast<Real>(bred.next.genes(gene, static_cast<long>(child))) /
                       static_cast<Real>(bred.next.parents.size());
+        }
         Real covariance = 0, transmission = 0;
         for (std::uint32_t i = 0; i < n; ++i) {
             covariance += (shares[i] - w_mean) * (z(i) - z_mean) / static_cast<Real>(n);
@@ -123,8 +126,9 @@ TEST(Price, AnExampleWorkedOutByHand) {
     base::InlineExecutor executor;
     const auto population = [](std::initializer_list<float> values) {
         GeneMatrix genes(gene_count, static_cast<Eigen::Index>(values.size()));
-        for (Eigen::Index i = 0; const float value : values)
+        for (Eigen::Index i = 0; const float value : values) {
             genes.col(i++) = value;
+        }
         return genes;
     };
     const GeneMatrix before = population({100, 120, 140, 160}), bred_from = population({200, 120, 140, 160});
@@ -142,14 +146,15 @@ TEST(Price, AnExampleWorkedOutByHand) {
 
 TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
     std::uint64_t seed = 0;
-    for (const auto model : {PopulationModel::Hybrid, PopulationModel::Generational, PopulationModel::SteadyState})
-        for (const auto selection : {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal,
-                                     SelectionMethod::Tournament, SelectionMethod::Random, SelectionMethod::Truncation})
+    for (const auto model : {PopulationModel::Hybrid, PopulationModel::Generational, PopulationModel::SteadyState}) {
+        for (const auto selection :
+             {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal, SelectionMethod::Tournament,
+              SelectionMethod::Random, SelectionMethod::Truncation}) {
             for (const auto crossover : {CrossoverMethod::Uniform, CrossoverMethod::SinglePoint,
-                                         CrossoverMethod::MultiPoint, CrossoverMethod::None})
-                for (const bool mutation : {false, true})
-                    for (const bool mutate_survivors : {false, true})
-                        for (const bool migration : {false, true})
+                                         CrossoverMethod::MultiPoint, CrossoverMethod::None}) {
+                for (const bool mutation : {false, true}) {
+                    for (const bool mutate_survivors : {false, true}) {
+                        for (const bool migration : {false, true}) {
                             for (const std::uint32_t wanted : {25u, 40u, 71u}) {
                                 Case of{.parameters = {}, .wanted = wanted, .migration = migration, .seed = ++seed};
                                 of.parameters.population_model = model;
@@ -159,10 +164,12 @@ TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
                                 of.parameters.mutate_survivors = mutate_survivors;
                                 of.parameters.elite_count = static_cast<std::uint32_t>(seed % 3);
                                 of.parameters.replaced_count = 11;
-                                if (seed % 5 == 0) // bounds that have been narrowed since
+                                if (seed % 5 == 0) { // bounds that have been narrowed since
                                     of.parameters.impulse_max = 95;
-                                if (seed % 7 == 0)
+                                }
+                                if (seed % 7 == 0) {
                                     of.parameters.rearranging = Rearranging::Scramble;
+                                }
                                 const Bred bred = breed(of);
                                 SCOPED_TRACE(seed);
                                 expect_closed(bred.account);
@@ -177,9 +184,16 @@ TEST(Price, IsClosedForEveryWayToBreedAndIsPricesEquationAsItIsWritten) {
                                     EXPECT_NEAR(one.change, mean(bred.next.genes, gene) - mean(bred.before, gene),
                                                 1e-10);
                                 }
-                                if (testing::Test::HasFailure())
+                                if (testing::Test::HasFailure()) {
                                     return;
+                                }
                             }
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 RC_GTEST_PROP(Price, IsClosedWhateverTheGenes, ()) {
@@ -187,17 +201,20 @@ RC_GTEST_PROP(Price, IsClosedWhateverTheGenes, ()) {
     const std::uint32_t present = count(60), wanted = count(90);
     const auto genes_of = [&](std::uint32_t organisms) {
         GeneMatrix genes(gene_count, static_cast<Eigen::Index>(organisms));
-        for (Eigen::Index i = 0; i < genes.size(); ++i) // everywhere in what bounds can be, the least of them too
+        for (Eigen::Index i = 0; i < genes.size(); ++i) { // everywhere in what bounds can be, the least of them too
             genes.data()[i] = std::ldexp(static_cast<float>(*rc::gen::inRange(0, 10'001)), -*rc::gen::inRange(0, 30));
+        }
         return genes;
     };
     const GeneMatrix before = genes_of(present), bred_from = genes_of(present), born = genes_of(wanted);
     std::vector<Parents> parents;
-    for (std::uint32_t i = 0; i < wanted; ++i)
+    for (std::uint32_t i = 0; i < wanted; ++i) {
         parents.push_back({*rc::gen::inRange(0u, present), *rc::gen::inRange(0u, present)});
+    }
     base::InlineExecutor executor;
-    for (const GeneAccount& gene : account_for(before, bred_from, born, parents, executor))
+    for (const GeneAccount& gene : account_for(before, bred_from, born, parents, executor)) {
         RC_ASSERT(std::abs(gene.selection + gene.transmission + gene.migration - gene.change) <= 1e-9 * largest(gene));
+    }
 }
 
 TEST(Price, WithoutMutationTheTwoChildrenOfAPairMoveNoMean) {
@@ -224,8 +241,9 @@ TEST(Price, TruncationSelectsTheMeanOfTheBest) {
     of.parameters.mutation_chance = 0;
     const Bred bred = breed(of, true);
     std::vector<float> sorted(40);
-    for (Eigen::Index i = 0; i < 40; ++i)
+    for (Eigen::Index i = 0; i < 40; ++i) {
         sorted[static_cast<std::size_t>(i)] = bred.before(0, i);
+    }
     std::ranges::sort(sorted, std::greater{});
     const double best = std::accumulate(sorted.begin(), sorted.begin() + 20, 0.0) / 20;
     EXPECT_NEAR(bred.account[0].selection, best - mean(bred.before, 0), 1e-11);
@@ -245,8 +263,9 @@ TEST(Price, WhereEveryoneIsKeptNobodyIsSelectedAndAllIsMutation) {
         EXPECT_NEAR(gene.change, gene.transmission, 1e-12);
     }
     of.parameters.mutation_chance = 0;
-    for (const GeneAccount& gene : breed(of).account)
+    for (const GeneAccount& gene : breed(of).account) {
         EXPECT_EQ(gene, GeneAccount{});
+    }
 }
 
 TEST(Price, OnlyMigrantsMoveAnIslandWhereNothingElseHappens) {

@@ -44,8 +44,9 @@ RC_GTEST_PROP(Ranking, IsAStableSort, (const std::vector<double>& fitness)) {
 TEST(Ranking, IsAStableSortOfManyWithTies) {
     base::RandomStream random = stream_of(121);
     std::vector<double> fitness(50'000);
-    for (double& value : fitness)
+    for (double& value : fitness) {
         value = (random.below(1000) - 500.0) * 0x1p-40;
+    }
     std::vector<std::uint32_t> expected(fitness.size());
     std::iota(expected.begin(), expected.end(), 0u);
     std::stable_sort(expected.begin(), expected.end(),
@@ -61,17 +62,19 @@ TEST(Ranking, IsAStableSortOfManyWithTies) {
 TEST(Ranking, OrdersManyWhateverTheSpreadOfTheirFitness) {
     base::RandomStream random = stream_of(122);
     constexpr double huge = std::numeric_limits<double>::max(), tiny = std::numeric_limits<double>::denorm_min();
-    for (const double outlier : {0.0, 1e300, -huge, huge})
+    for (const double outlier : {0.0, 1e300, -huge, huge}) {
         for (const double unit : {tiny, 1e-300, 1.0, huge / 4}) {
             std::vector<double> fitness(3000);
-            for (double& value : fitness)
+            for (double& value : fitness) {
                 value = (random.below(2000) - 1000.0) * 0x1p-10 * unit;
+            }
             fitness[1234] = outlier;
             std::vector<std::uint32_t> expected(fitness.size());
             std::iota(expected.begin(), expected.end(), 0u);
             std::ranges::stable_sort(expected, std::greater{}, [&](std::uint32_t i) { return fitness[i]; });
             ASSERT_EQ(best_first(fitness), expected) << outlier << " among " << unit;
         }
+    }
 }
 
 } // namespace

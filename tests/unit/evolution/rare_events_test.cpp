@@ -16,8 +16,9 @@ TEST(RareEvents, EachTrialSucceedsAsOftenAsItsChanceSays) {
         constexpr std::uint64_t draws = 200'000;
         base::RandomStream random = stream_of(251);
         std::vector<std::uint64_t> successes(144);
-        for (std::uint64_t i = 0; i < draws; ++i)
+        for (std::uint64_t i = 0; i < draws; ++i) {
             events.draw(random, [&](unsigned trial) { ++successes.at(trial); });
+        }
         double statistic = 0;
         for (const std::uint64_t count : successes) {
             const double difference = static_cast<double>(count) - draws * chance;
@@ -48,9 +49,11 @@ TEST(RareEvents, TrialsAreIndependent) {
 
 TEST(RareEvents, NothingSucceedsWithoutTrialsOrChance) {
     base::RandomStream random = stream_of(253);
-    for (const RareEvents& events : {RareEvents{0, 0.1}, RareEvents{144, 0}, RareEvents{144, 1e-18}})
-        for (int i = 0; i < 10'000; ++i)
+    for (const RareEvents& events : {RareEvents{0, 0.1}, RareEvents{144, 0}, RareEvents{144, 1e-18}}) {
+        for (int i = 0; i < 10'000; ++i) {
             events.draw(random, [](unsigned trial) { FAIL() << trial; });
+        }
+    }
 }
 
 } // namespace

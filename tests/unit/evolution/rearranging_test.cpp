@@ -55,9 +55,11 @@ Order swapped(Order order, unsigned a, unsigned b) {
 
 template <class Visit>
 void for_each_pair(const Visit& visit) { // 15 of them
-    for (unsigned a = 0; a < gene_count; ++a)
-        for (unsigned b = a + 1; b < gene_count; ++b)
+    for (unsigned a = 0; a < gene_count; ++a) {
+        for (unsigned b = a + 1; b < gene_count; ++b) {
             visit(a, b);
+        }
+    }
 }
 
 TEST(Swap, TradesOneOrTwoPairsWithEvenChance) {
@@ -78,11 +80,12 @@ TEST(Scramble, PutsASliceInAnyOrder) {
     for_each_pair([&](unsigned a, unsigned b) {
         Order order = in_order;
         double orders = 1;
-        for (unsigned i = 2; i <= b - a + 1; ++i)
+        for (unsigned i = 2; i <= b - a + 1; ++i) {
             orders *= i;
-        do
+        }
+        do {
             law[order] += 1 / orders / 15;
-        while (std::next_permutation(order.begin() + a, order.begin() + b + 1));
+        } while (std::next_permutation(order.begin() + a, order.begin() + b + 1));
     });
     ASSERT_EQ(law.size(), 720u);
     EXPECT_NEAR(law[in_order], 2383.0 / 10800, 1e-12);
@@ -120,8 +123,9 @@ TEST(Rearranging, HappensWithItsChance) {
 
 RC_GTEST_PROP(Rearranging, NeverMakesANewValue, ()) {
     Order genes;
-    for (float& gene : genes)
+    for (float& gene : genes) {
         gene = static_cast<float>(*rc::gen::inRange(0, 8)); // equal values included
+    }
     Order rearranged = genes;
     const auto method = *rc::gen::element(Rearranging::Swap, Rearranging::Scramble, Rearranging::Inversion);
     base::RandomStream random = stream_of(*rc::gen::arbitrary<std::uint64_t>());

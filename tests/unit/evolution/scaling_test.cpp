@@ -59,8 +59,9 @@ TEST(Scaling, ExponentialRankingDecaysByAFactorPerRank) {
     Parameters parameters;
     parameters.ranking_decay = 0.9;
     const auto weights = scaled(falling_fitness, FitnessScaling::ExponentialRanking, parameters);
-    for (int rank = 0; rank < 10; ++rank)
+    for (int rank = 0; rank < 10; ++rank) {
         EXPECT_NEAR(weights[rank], std::pow(0.9, rank), 1e-15);
+    }
 }
 
 TEST(Scaling, ExponentialRankingOfManyGoesDownToZero) {

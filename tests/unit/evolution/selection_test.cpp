@@ -43,8 +43,9 @@ std::vector<std::uint64_t> picks(const std::vector<double>& fitness, const Param
 TEST(Roulette, PicksInProportionToFitness) {
     // Law: fitness / 55. Chi-square over 10 organisms, 9 degrees of freedom.
     std::vector<double> law;
-    for (const double fitness : ten_to_one)
+    for (const double fitness : ten_to_one) {
         law.push_back(fitness / 55);
+    }
     EXPECT_GT(p_value_of_law(spins(ten_to_one, 1'000'000, 131), law), alpha);
 }
 
@@ -53,12 +54,15 @@ TEST(Roulette, SpinsDoNotDependOnEachOther) {
     base::InlineExecutor executor;
     const auto picked = spin_roulette(Wheel{ten_to_one}, 1'000'000, key_of(132), executor);
     std::vector<std::uint64_t> counts(100);
-    for (std::size_t i = 0; i + 1 < picked.size(); i += 2)
+    for (std::size_t i = 0; i + 1 < picked.size(); i += 2) {
         ++counts[picked[i] * 10 + picked[i + 1]];
+    }
     std::vector<double> law;
-    for (const double first : ten_to_one)
-        for (const double second : ten_to_one)
+    for (const double first : ten_to_one) {
+        for (const double second : ten_to_one) {
             law.push_back(first * second / 55 / 55);
+        }
+    }
     EXPECT_GT(p_value_of_law(counts, law), alpha);
 }
 
@@ -99,12 +103,14 @@ TEST(Roulette, PicksInProportionAmongManyOfVeryUnequalWeight) {
         law[i % 8] += weights[i];
         sum += weights[i];
     }
-    for (double& share : law)
+    for (double& share : law) {
         share /= sum;
+    }
     const auto each = spins(weights, 20'000'000, 142);
     std::vector<std::uint64_t> groups(8);
-    for (std::size_t i = 0; i < each.size(); ++i)
+    for (std::size_t i = 0; i < each.size(); ++i) {
         groups[i % 8] += each[i];
+    }
     EXPECT_GT(p_value_of_law(groups, law), alpha);
 }
 
@@ -122,8 +128,9 @@ TEST(Wheel, SlotsEndWhereTheWeightsAddUpTo) {
 TEST(Wheel, TheGuideFindsWhatABinarySearchFinds) {
     base::RandomStream random = stream_of(143);
     std::vector<double> weights(3001);
-    for (double& weight : weights)
+    for (double& weight : weights) {
         weight = random.chance(0.5) ? 0 : std::ldexp(random.uniform(), static_cast<int>(random.below(60)));
+    }
     const Wheel wheel{weights};
     const auto ends = wheel.slot_ends();
     for (int i = 0; i < 200'000; ++i) {
@@ -134,7 +141,7 @@ TEST(Wheel, TheGuideFindsWhatABinarySearchFinds) {
 }
 
 TEST(Wheel, TheGuideIsRightWhereRoundingPutsAPlaceOnEitherSideOfASlotsEnd) {
-    for (const double weight : {0.1, 1.0, 3.0})
+    for (const double weight : {0.1, 1.0, 3.0}) {
         for (std::size_t population = 1; population <= 200; ++population) {
             const Wheel wheel{std::vector<double>(population, weight)};
             const auto ends = wheel.slot_ends();
@@ -147,6 +154,7 @@ TEST(Wheel, TheGuideIsRightWhereRoundingPutsAPlaceOnEitherSideOfASlotsEnd) {
                 }
             }
         }
+    }
 }
 
 TEST(StochasticUniversal, CopiesAreFloorOrCeilingOfTheExpectedInEverySpin) {
@@ -172,8 +180,9 @@ TEST(StochasticUniversal, CopiesAverageToTheExpected) {
     std::vector<std::uint64_t> copies(10);
     for (std::uint32_t spin = 0; spin < spin_count; ++spin) {
         base::RandomStream random = stream_of(145, spin);
-        for (const std::uint32_t organism : spin_universal(wheel, 10, random))
+        for (const std::uint32_t organism : spin_universal(wheel, 10, random)) {
             ++copies[organism];
+        }
     }
     for (std::size_t i = 0; i < 10; ++i) {
         const double expected = 10 * ten_to_one[i] / 55, whole = std::floor(expected), fraction = expected - whole;
@@ -202,10 +211,13 @@ TEST(RandomSelection, IsUniqueAndEverySetAndOrderIsEquallyLikely) {
         ++counts[picked[0] * 25 + picked[1] * 5 + picked[2]];
     }
     std::vector<double> law(125);
-    for (std::uint32_t a = 0; a < 5; ++a)
-        for (std::uint32_t b = 0; b < 5; ++b)
-            for (std::uint32_t c = 0; c < 5; ++c)
+    for (std::uint32_t a = 0; a < 5; ++a) {
+        for (std::uint32_t b = 0; b < 5; ++b) {
+            for (std::uint32_t c = 0; c < 5; ++c) {
                 law[a * 25 + b * 5 + c] = a != b && b != c && a != c ? 1 / 60.0 : 0;
+            }
+        }
+    }
     EXPECT_GT(p_value_of_law(counts, law), alpha);
 }
 
@@ -235,8 +247,9 @@ TEST(Select, RouletteUnderLinearRankingFollowsTheRanks) {
     parameters.ranking_pressure = 1.8;
     const std::vector<double> fitness = {1e300, 5, 4, 3, 2, 1, 0, -1, -2, -1e300};
     std::vector<double> law(10);
-    for (std::uint32_t rank = 0; rank < 10; ++rank)
+    for (std::uint32_t rank = 0; rank < 10; ++rank) {
         law[rank] = (1.8 - 1.6 * rank / 9) / 10;
+    }
     EXPECT_GT(p_value_of_law(picks(fitness, parameters, 1'000'000, 149), law), alpha);
 }
 
@@ -246,8 +259,9 @@ TEST(Select, RouletteUnderExponentialRankingFollowsTheRanks) {
     parameters.fitness_scaling = FitnessScaling::ExponentialRanking;
     parameters.ranking_decay = 0.8;
     std::vector<double> law(10);
-    for (int rank = 0; rank < 10; ++rank)
+    for (int rank = 0; rank < 10; ++rank) {
         law[rank] = std::pow(0.8, rank) * 0.2 / (1 - std::pow(0.8, 10));
+    }
     EXPECT_GT(p_value_of_law(picks(ten_to_one, parameters, 1'000'000, 150), law), alpha);
 }
 
@@ -256,16 +270,18 @@ TEST(Select, RouletteUnderWindowingNeverPicksTheWorst) {
     Parameters parameters;
     parameters.fitness_scaling = FitnessScaling::Windowing;
     std::vector<double> law;
-    for (const double fitness : ten_to_one)
+    for (const double fitness : ten_to_one) {
         law.push_back((fitness - 1) / 45);
+    }
     EXPECT_GT(p_value_of_law(picks(ten_to_one, parameters, 1'000'000, 151), law), alpha);
 }
 
 TEST(Select, ScalingDoesNotChangeTournamentAndTruncation) {
     base::InlineExecutor executor;
     std::vector<double> fitness(300); // the lower half gets no weight at all from this decay
-    for (std::size_t i = 0; i < fitness.size(); ++i)
+    for (std::size_t i = 0; i < fitness.size(); ++i) {
         fitness[i] = static_cast<double>(i);
+    }
     for (const SelectionMethod method : {SelectionMethod::Tournament, SelectionMethod::Truncation}) {
         Parameters plain, scaled;
         plain.selection = scaled.selection = method;
@@ -290,8 +306,9 @@ TEST(Select, EveryMethodPicksAsManyAsWanted) {
                 Ranking ranking{fitness};
                 const auto picked = select(ranking, {.wanted = wanted, .pool = 1}, parameters, key_of(153), executor);
                 ASSERT_EQ(picked.size(), wanted);
-                for (const std::uint32_t organism : picked)
+                for (const std::uint32_t organism : picked) {
                     ASSERT_LT(organism, population);
+                }
             }
         }
     }

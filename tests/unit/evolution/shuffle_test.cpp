@@ -24,8 +24,9 @@ TEST(Distribute, IsAStableSortByBucketOnAnyThreadCount) {
     constexpr std::size_t count = 100'003, buckets = 37;
     base::RandomStream random = stream_of(261);
     std::vector<std::uint32_t> bucket_of(count);
-    for (std::uint32_t& bucket : bucket_of)
+    for (std::uint32_t& bucket : bucket_of) {
         bucket = random.below(buckets - 1); // the last stays empty
+    }
     std::vector<std::uint32_t> expected(count);
     std::iota(expected.begin(), expected.end(), 0u);
     std::ranges::stable_sort(expected, {}, [&](std::uint32_t i) { return bucket_of[i]; });
@@ -37,9 +38,11 @@ TEST(Distribute, IsAStableSortByBucketOnAnyThreadCount) {
             [&](std::size_t i, std::uint32_t place) { order[place] = static_cast<std::uint32_t>(i); });
         ASSERT_EQ(order, expected);
         ASSERT_EQ(begins.size(), buckets + 1);
-        for (std::size_t bucket = 0; bucket < buckets; ++bucket)
-            for (std::uint32_t place = begins[bucket]; place < begins[bucket + 1]; ++place)
+        for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+            for (std::uint32_t place = begins[bucket]; place < begins[bucket + 1]; ++place) {
                 ASSERT_EQ(bucket_of[order[place]], bucket);
+            }
+        }
         ASSERT_EQ(begins[buckets], count);
     }
     base::InlineExecutor executor;
@@ -57,8 +60,9 @@ TEST(Shuffle, OfManyIsTheSameOnAnyThreadCountAndLosesNobody) {
     }
     auto sorted = reference;
     std::ranges::sort(sorted);
-    for (std::uint32_t i = 0; i < sorted.size(); ++i)
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) {
         ASSERT_EQ(sorted[i], i);
+    }
 }
 
 TEST(Shuffle, OfManyTakesEveryoneAnywhere) {
@@ -68,8 +72,9 @@ TEST(Shuffle, OfManyTakesEveryoneAnywhere) {
     base::InlineExecutor executor;
     std::vector<std::uint64_t> table(parts * parts);
     const auto items = shuffled(count, 263, executor);
-    for (std::uint32_t place = 0; place < count; ++place)
+    for (std::uint32_t place = 0; place < count; ++place) {
         ++table[items[place] / (count / parts) * parts + place / (count / parts)];
+    }
     const std::vector<double> expected(table.size(), static_cast<double>(count) / (parts * parts));
     EXPECT_GT(support::p_value(support::chi_square(table, expected), (parts - 1) * (parts - 1)), alpha);
 }
@@ -82,8 +87,9 @@ TEST(Shuffle, OfManyMixesNeighbours) {
     base::InlineExecutor executor;
     const auto items = shuffled(count, 264, executor);
     std::vector<std::uint32_t> place_of(count);
-    for (std::uint32_t place = 0; place < count; ++place)
+    for (std::uint32_t place = 0; place < count; ++place) {
         place_of[items[place]] = place;
+    }
     std::vector<std::uint64_t> sides(2);
     int together = 0;
     for (std::uint32_t item = 0; item + 1 < count; item += 2) {

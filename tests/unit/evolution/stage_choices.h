@@ -45,23 +45,26 @@ inline std::vector<StageChoice> stage_choices() {
         choices.push_back(std::move(choice));
     };
     const auto add_each = [&]<class Choice>(const std::string& stage, Choice Parameters::*member) {
-        for (std::size_t i = 0; i < std::size(base::ChoiceNames<Choice>::names); ++i)
+        for (std::size_t i = 0; i < std::size(base::ChoiceNames<Choice>::names); ++i) {
             add(stage + "=" + std::string{base::ChoiceNames<Choice>::names[i]},
                 [&](Parameters& parameters) { parameters.*member = static_cast<Choice>(i); });
+        }
     };
     add_each("population_model", &Parameters::population_model);
-    for (std::size_t i = 1; i < std::size(base::ChoiceNames<FitnessScaling>::names); ++i)
-        for (const SelectionMethod method : {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal})
+    for (std::size_t i = 1; i < std::size(base::ChoiceNames<FitnessScaling>::names); ++i) {
+        for (const SelectionMethod method : {SelectionMethod::Roulette, SelectionMethod::StochasticUniversal}) {
             add("fitness_scaling=" + std::string{base::ChoiceNames<FitnessScaling>::names[i]} +
                     (method == SelectionMethod::Roulette ? "" : ",selection=stochastic_universal"),
                 [&](Parameters& parameters) {
                     parameters.fitness_scaling = static_cast<FitnessScaling>(i);
                     parameters.selection = method;
                 });
+        }
+    }
     add_each("selection", &Parameters::selection);
-    for (const bool replacement : {true, false})
-        for (const std::uint32_t size : {20u, 200u})
-            for (const std::uint32_t winners : {1u, 3u})
+    for (const bool replacement : {true, false}) {
+        for (const std::uint32_t size : {20u, 200u}) {
+            for (const std::uint32_t winners : {1u, 3u}) {
                 add("tournament size=" + std::to_string(size) + ",winners=" + std::to_string(winners) +
                         (replacement ? "" : ",without replacement"),
                     [&](Parameters& parameters) {
@@ -70,13 +73,17 @@ inline std::vector<StageChoice> stage_choices() {
                         parameters.tournament_winners = winners;
                         parameters.tournament_replacement = replacement;
                     });
+            }
+        }
+    }
     add_each("crossover", &Parameters::crossover);
     add("crossover_chance=0.5", [](Parameters& parameters) { parameters.crossover_chance = 0.5; });
-    for (std::size_t i = 1; i < std::size(base::ChoiceNames<Rearranging>::names); ++i)
+    for (std::size_t i = 1; i < std::size(base::ChoiceNames<Rearranging>::names); ++i) {
         add("rearranging=" + std::string{base::ChoiceNames<Rearranging>::names[i]}, [&](Parameters& parameters) {
             parameters.rearranging = static_cast<Rearranging>(i);
             parameters.rearrange_chance = 1;
         });
+    }
     add_each("creep", &Parameters::creep);
     add("reset_chance=0.15", [](Parameters& parameters) { parameters.reset_chance = 0.15; });
     add("bit_flip_chance=0.01", [](Parameters& parameters) { parameters.bit_flip_chance = 0.01; });

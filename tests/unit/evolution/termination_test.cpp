@@ -9,8 +9,9 @@ namespace {
 
 Progress after(std::initializer_list<double> best_fitness, bool died_out = false) {
     Progress progress;
-    for (const double best : best_fitness)
+    for (const double best : best_fitness) {
         progress = advance(progress, {.best_fitness = best, .died_out = false});
+    }
     progress.last_died_out = died_out;
     return progress;
 }

@@ -11,11 +11,13 @@ namespace evod::evolution {
 namespace {
 
 double choose(std::uint32_t n, std::uint32_t k) {
-    if (k > n)
+    if (k > n) {
         return 0;
+    }
     double value = 1;
-    for (std::uint32_t i = 1; i <= k; ++i)
+    for (std::uint32_t i = 1; i <= k; ++i) {
         value = value * (n - k + i) / i;
+    }
     return value;
 }
 
@@ -25,20 +27,23 @@ std::vector<double> closed_form(std::uint32_t n, const Tournament& tournament, s
     std::vector<double> law(n);
     if (!tournament.replacement) {
         // `place` of the k are among the r better, the rest among the n − r − 1 worse.
-        for (std::uint32_t r = 0; r < n; ++r)
+        for (std::uint32_t r = 0; r < n; ++r) {
             law[r] = choose(r, place) * choose(n - r - 1, k - place - 1) / choose(n, k);
+        }
         return law;
     }
     // Winner `place` is worse than the r best ranks if at most `place` of k independent draws fall on them.
     const auto beyond = [&](std::uint32_t r) {
         const double p = static_cast<double>(r) / n;
         double sum = 0;
-        for (std::uint32_t hits = 0; hits <= place; ++hits)
+        for (std::uint32_t hits = 0; hits <= place; ++hits) {
             sum += choose(k, hits) * std::pow(p, hits) * std::pow(1 - p, k - hits);
+        }
         return sum;
     };
-    for (std::uint32_t r = 0; r < n; ++r)
+    for (std::uint32_t r = 0; r < n; ++r) {
         law[r] = beyond(r) - beyond(r + 1);
+    }
     return law;
 }
 
@@ -51,19 +56,21 @@ std::vector<std::uint64_t> ranks_of_winners(std::uint32_t n, const Tournament& t
     Ranking ranking{fitness};
     const auto picked = hold_tournaments(ranking, tournament, tournaments * tournament.winners, key_of(seed), executor);
     std::vector<std::uint64_t> counts(n);
-    for (std::size_t i = place; i < picked.size(); i += tournament.winners)
+    for (std::size_t i = place; i < picked.size(); i += tournament.winners) {
         ++counts[picked[i]];
+    }
     return counts;
 }
 
 TEST(Tournament, TheBestOfTheContestantsHasTheRankOfTheClosedForm) {
     // Law: ((n−r)^k − (n−r−1)^k) / n^k with replacement, C(n−r−1, k−1) / C(n, k) without, n = 10. Chi-square, one
     // degree of freedom less than ranks of positive probability.
-    for (const bool replacement : {true, false})
+    for (const bool replacement : {true, false}) {
         for (const std::uint32_t size : {1u, 2u, 3u, 5u, 10u}) {
             const Tournament tournament{.size = size, .winners = 1, .replacement = replacement};
-            if (size == 10 && !replacement)
+            if (size == 10 && !replacement) {
                 continue; // the best of all always wins: no law left to test, see below
+            }
             const auto law = closed_form(10, tournament, 0);
             if (replacement) {
                 EXPECT_NEAR(law[0], (std::pow(10, size) - std::pow(9, size)) / std::pow(10, size), 1e-12);
@@ -71,11 +78,12 @@ TEST(Tournament, TheBestOfTheContestantsHasTheRankOfTheClosedForm) {
             EXPECT_GT(p_value_of_law(ranks_of_winners(10, tournament, 0, 300'000, 161), law), alpha)
                 << "size " << size << " replacement " << replacement;
         }
+    }
 }
 
 TEST(Tournament, EveryWinnerHasTheRankOfTheClosedForm) {
     // Law: that of the order statistics of the contestants (closed_form above). Chi-square for each winner's place.
-    for (const bool replacement : {true, false})
+    for (const bool replacement : {true, false}) {
         for (std::uint32_t place = 0; place < 3; ++place) {
             const Tournament tournament{.size = 5, .winners = 3, .replacement = replacement};
             EXPECT_GT(p_value_of_law(ranks_of_winners(10, tournament, place, 200'000, 162),
@@ -83,6 +91,7 @@ TEST(Tournament, EveryWinnerHasTheRankOfTheClosedForm) {
                       alpha)
                 << "place " << place << " replacement " << replacement;
         }
+    }
 }
 
 TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
@@ -96,7 +105,7 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
                  {1000, {.size = 70, .winners = 1, .replacement = false}},
                  {100, {.size = 65, .winners = 3, .replacement = false}},
                  {1000, {.size = 70, .winners = 3, .replacement = false}}};
-    for (const auto& [population, tournament] : cases)
+    for (const auto& [population, tournament] : cases) {
         for (std::uint32_t place = 0; place < tournament.winners; ++place) {
             const auto ranks = ranks_of_winners(population, tournament, place, 300'000, 163);
             const auto law = closed_form(population, tournament, place);
@@ -117,6 +126,7 @@ TEST(Tournament, OutcomesDrawnDirectlyFollowTheSameLaw) {
             }
             EXPECT_GT(p_value_of_law(counts, expected), alpha) << "size " << tournament.size << " place " << place;
         }
+    }
 }
 
 TEST(Tournament, WithoutReplacementNobodyWinsTwiceInOne) {

@@ -27,8 +27,9 @@ TEST(JsonLine, TellsTimeLevelMessageAndTheFieldsThatAreKnown) {
 
 TEST(JsonLine, EveryByteOfAMessageComesBack) {
     std::string every;
-    for (int c = 1; c < 128; ++c)
+    for (int c = 1; c < 128; ++c) {
         every += static_cast<char>(c);
+    }
     every += "é – 🦠\xc2\x9b[31m";
     const auto object = read(json_line(moment, Level::Error, {.client = every}, every));
     EXPECT_EQ(object.at("message").as_string(), every);
@@ -37,12 +38,14 @@ TEST(JsonLine, EveryByteOfAMessageComesBack) {
 
 TEST(JsonLine, NoByteThatSteersATerminalIsInIt) {
     std::string every;
-    for (int c = 0; c < 256; ++c)
+    for (int c = 0; c < 256; ++c) {
         every += static_cast<char>(c);
+    }
     every += "\xc2\x9b[31m";
     const std::string line = json_line(moment, Level::Info, {}, every);
-    for (const char c : line)
+    for (const char c : line) {
         EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
+    }
     EXPECT_EQ(line.find("\xc2\x9b"), std::string::npos);
 }
 

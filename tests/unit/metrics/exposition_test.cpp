@@ -26,30 +26,35 @@ class Reader {
     };
 
     explicit Reader(std::string text) : text_{std::move(text)} {
-        while (at_ < text_.size())
+        while (at_ < text_.size()) {
             line();
+        }
     }
 
     std::map<std::string, std::string> help, type;
     std::vector<Sample> samples;
 
     double value(const std::string& name, const std::map<std::string, std::string>& labels = {}) const {
-        for (const Sample& sample : samples)
-            if (sample.name == name && sample.labels == labels)
+        for (const Sample& sample : samples) {
+            if (sample.name == name && sample.labels == labels) {
                 return sample.value;
+            }
+        }
         throw std::runtime_error{"no sample " + name};
     }
 
   private:
     void expect(char c) {
-        if (at_ >= text_.size() || text_[at_] != c)
+        if (at_ >= text_.size() || text_[at_] != c) {
             throw std::runtime_error{std::string{"expected "} + c + " at " + text_.substr(at_, 40)};
+        }
         ++at_;
     }
     std::string until(char end) {
         const auto found = text_.find(end, at_);
-        if (found == std::string::npos)
+        if (found == std::string::npos) {
             throw std::runtime_error{"no end of " + text_.substr(at_, 40)};
+        }
         std::string word = text_.substr(at_, found - at_);
         at_ = found + 1;
         return word;
@@ -58,25 +63,29 @@ class Reader {
         std::string word;
         for (; at_ < text_.size() &&
                (std::isalnum(static_cast<unsigned char>(text_[at_])) || text_[at_] == '_' || text_[at_] == ':');
-             ++at_)
+             ++at_) {
             word += text_[at_];
-        if (word.empty() || std::isdigit(static_cast<unsigned char>(word[0])))
+        }
+        if (word.empty() || std::isdigit(static_cast<unsigned char>(word[0]))) {
             throw std::runtime_error{"no name at " + text_.substr(at_, 40)};
+        }
         return word;
     }
     std::string quoted() {
         expect('"');
         std::string value;
         for (; at_ < text_.size() && text_[at_] != '"'; ++at_) {
-            if (text_[at_] == '\n')
+            if (text_[at_] == '\n') {
                 throw std::runtime_error{"a label's value goes over the end of its line"};
+            }
             if (text_[at_] != '\\') {
                 value += text_[at_];
                 continue;
             }
             const char c = text_.at(++at_);
-            if (c != '\\' && c != '"' && c != 'n')
+            if (c != '\\' && c != '"' && c != 'n') {
                 throw std::runtime_error{"an escape that there is not"};
+            }
             value += c == 'n' ? '\n' : c;
         }
         expect('"');
@@ -88,8 +97,9 @@ class Reader {
             expect(' ');
             const std::string what = until(' '), of = until(' ');
             auto& lines = what == "HELP" ? help : what == "TYPE" ? type : throw std::runtime_error{"# " + what};
-            if (!lines.emplace(of, until('\n')).second)
+            if (!lines.emplace(of, until('\n')).second) {
                 throw std::runtime_error{what + " of " + of + " twice"};
+            }
             return;
         }
         Sample sample;
@@ -99,8 +109,9 @@ class Reader {
                 ++at_;
                 const std::string label = name();
                 expect('=');
-                if (!sample.labels.emplace(label, quoted()).second)
+                if (!sample.labels.emplace(label, quoted()).second) {
                     throw std::runtime_error{"label twice: " + label};
+                }
             } while (text_.at(at_) == ',');
             expect('}');
         }
@@ -108,8 +119,9 @@ class Reader {
         const std::string number = until('\n');
         std::size_t read = 0;
         sample.value = std::stod(number, &read);
-        if (read != number.size())
+        if (read != number.size()) {
             throw std::runtime_error{"no number: " + number};
+        }
         samples.push_back(sample);
     }
 
@@ -139,12 +151,16 @@ TEST(TimeHistogram, ABoundIsWithinItsBucket) {
 
 TEST(TimeHistogram, EveryTimeIsInTheFirstBucketWhoseBoundItDoesNotExceed) {
     std::vector<std::uint64_t> times{0, 1, 99, 3'000'000'000};
-    for (const auto bound : TimeHistogram::bounds)
-        for (const int off : {-1, 0, 1})
+    for (const auto bound : TimeHistogram::bounds) {
+        for (const int off : {-1, 0, 1}) {
             times.push_back(static_cast<std::uint64_t>(bound.count() + off));
-    for (int width = 0; width < 62; ++width)
-        for (const std::uint64_t off : {0, 1})
+        }
+    }
+    for (int width = 0; width < 62; ++width) {
+        for (const std::uint64_t off : {0, 1}) {
             times.push_back((std::uint64_t{1} << width) - off);
+        }
+    }
     for (const std::uint64_t ns : times) {
         const TimeHistogram::duration took{ns};
         TimeHistogram histogram;
@@ -198,13 +214,15 @@ TEST(Exposition, NumbersComeBackAsTheyWere) {
                                       1763786452.125,
                                       std::numeric_limits<double>::infinity(),
                                       -std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < numbers.size(); ++i)
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
         family.add(numbers[i], {{"n", std::to_string(i)}});
+    }
     family.add(std::numeric_limits<double>::quiet_NaN(), {{"n", "nan"}});
     const std::string text = to_prometheus(metrics);
     const Reader read{text};
-    for (std::size_t i = 0; i < numbers.size(); ++i)
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
         EXPECT_EQ(read.value("evod_number", {{"n", std::to_string(i)}}), numbers[i]);
+    }
     EXPECT_NE(text.find("{n=\"nan\"} NaN\n"), std::string::npos);
     EXPECT_NE(text.find(" +Inf\n"), std::string::npos);
     EXPECT_NE(text.find(" 1000000000000000\n"), std::string::npos);
@@ -212,8 +230,9 @@ TEST(Exposition, NumbersComeBackAsTheyWere) {
 
 TEST(Exposition, BucketsOfAHistogramHoldThoseBefore) {
     TimeHistogram histogram;
-    for (const TimeHistogram::duration took : {500ns, 1500ns, 1500ns, 30'000'000ns, 30'000'000ns, 30'000'000ns})
+    for (const TimeHistogram::duration took : {500ns, 1500ns, 1500ns, 30'000'000ns, 30'000'000ns, 30'000'000ns}) {
         histogram.add(took);
+    }
     histogram.add(2s);
     v1::Metrics metrics;
     add_histogram(metrics, "evod_tick_seconds", "Time of a tick").add(histogram, {{"world", "default"}});
@@ -232,12 +251,13 @@ TEST(Exposition, BucketsOfAHistogramHoldThoseBefore) {
     EXPECT_NEAR(read.value("evod_tick_seconds_sum", {{"world", "default"}}), 2.0900035, 1e-12);
     double before = 0;
     int buckets = 0;
-    for (const Reader::Sample& sample : read.samples)
+    for (const Reader::Sample& sample : read.samples) {
         if (sample.name == "evod_tick_seconds_bucket") {
             EXPECT_GE(sample.value, before);
             before = sample.value;
             ++buckets;
         }
+    }
     EXPECT_EQ(buckets, 23);
 }
 

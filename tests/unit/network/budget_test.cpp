@@ -37,8 +37,9 @@ class BudgetTest : public testing::Test {
     }
     static std::size_t changes(const std::vector<std::optional<v1::Detail>>& chosen) {
         std::size_t changes = 0;
-        for (std::size_t i = 1; i < chosen.size(); ++i)
+        for (std::size_t i = 1; i < chosen.size(); ++i) {
             changes += chosen[i] != chosen[i - 1];
+        }
         return changes;
     }
 
@@ -49,8 +50,9 @@ class BudgetTest : public testing::Test {
 
 TEST_F(BudgetTest, EverythingIsShownWhileThereIsEnough) {
     Budget budget{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
-    for (const auto& detail : choose_for(budget, 60s))
+    for (const auto& detail : choose_for(budget, 60s)) {
         EXPECT_EQ(detail, DETAIL_FULL);
+    }
 }
 
 TEST_F(BudgetTest, DetailIsLeftOutBeforePicturesAre) {
@@ -186,8 +188,9 @@ TEST_F(BudgetTest, WhoWantsMoreHasMoreAtOnce) {
 
 TEST_F(BudgetTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
     Budget budget{1e9, DETAIL_DOTS};
-    for (const auto& detail : choose_for(budget, 10s))
+    for (const auto& detail : choose_for(budget, 10s)) {
         EXPECT_EQ(detail, DETAIL_DOTS);
+    }
     budget.change(3'000, DETAIL_FULL);
     EXPECT_EQ(choose(budget), DETAIL_FULL);
     choose_for(budget, 10s);

@@ -43,8 +43,9 @@ TEST_F(BuffersOf, WhatIsHeldMayBePassedOn) {
     to = Buffers::Held{buffers, bytes(20)};
     EXPECT_EQ(buffers.bytes(), 20u) << "what stood there before is let go";
     std::vector<Buffers::Held> many;
-    for (std::size_t i = 0; i < 20; ++i)
+    for (std::size_t i = 0; i < 20; ++i) {
         many.emplace_back(buffers, bytes(1));
+    }
     EXPECT_EQ(buffers.bytes(), 40u);
     many.clear();
     EXPECT_EQ(buffers.bytes(), 20u);

@@ -26,7 +26,8 @@ class ChainTest : public testing::Test {
         frame_.set_sequence(frame_.sequence() + 1);
         now_ += between;
         return chain_.add(std::make_shared<const v1::SnapshotFrame>(frame_),
-                          std::make_shared<const codec::QuantisedSnapshot>(std::move(scene)), compressor_, now_, between);
+                          std::make_shared<const codec::QuantisedSnapshot>(std::move(scene)), compressor_, now_,
+                          between);
     }
     ChainPicturePtr add_next() {
         frame_.set_generation_tick(frame_.generation_tick() + 6);

@@ -17,9 +17,9 @@ namespace evod::network {
 namespace {
 
 using namespace std::chrono_literals;
-using runtime::Clock;
 using codec::below;
 using codec::Random;
+using runtime::Clock;
 
 /// The server's end: an island that lives, dies out, is born again, stands still; and its chain.
 class Server {
@@ -31,10 +31,12 @@ class Server {
 
     ChainPicturePtr next() {
         std::uint64_t ticks = below(random_, 8) == 0 ? 0 : 1 + below(random_, 4); // 0: it is paused
-        if (below(random_, 60) == 0)
+        if (below(random_, 60) == 0) {
             ticks += 300; // a command took long
-        if (ticks > 0)
+        }
+        if (ticks > 0) {
             island_.live(random_, ticks);
+        }
         tick_ += ticks;
         if (below(random_, 150) == 0) { // the next generation, or another run
             const double side_px = island_.side_px;
@@ -44,10 +46,12 @@ class Server {
             tick_ = below(random_, 3);
             ++generation_;
         }
-        if (below(random_, 40) == 0)
+        if (below(random_, 40) == 0) {
             island_.organisms.clear();
-        if (below(random_, 40) == 0)
+        }
+        if (below(random_, 40) == 0) {
             island_.food.clear();
+        }
         v1::SnapshotFrame about = island_.about();
         about.set_sequence(++sequence_);
         about.set_generation(generation_);
@@ -89,14 +93,16 @@ class DroppingViewer {
             hiccup_ = hiccup_ > 0 ? hiccup_ - 1 : below(random_, 6);
             return false;
         }
-        if (happens(habits_.asks))
+        if (happens(habits_.asks)) {
             sent_ = 0;
+        }
         v1::SnapshotFrame frame;
         EXPECT_TRUE(frame.ParseFromString(*picture.after(sent_, habits_.compression)));
         sent_ = picture.sequence();
         (frame.base_sequence() == 0 ? keyframes_ : deltas_) += 1;
-        if (happens(habits_.lost))
+        if (happens(habits_.lost)) {
             return false;
+        }
         if (happens(habits_.damaged) && !frame.body().empty()) {
             char& byte = (*frame.mutable_body())[below(random_, frame.body().size())];
             byte = static_cast<char>(byte ^ (1 << below(random_, 8)));
@@ -106,8 +112,9 @@ class DroppingViewer {
                 EXPECT_EQ(*decoder_.scene(), scene) << "picture " << picture.sequence();
             }
             decoded_ = picture.sequence();
-            if (!means_nothing)
+            if (!means_nothing) {
                 refused();
+            }
             return means_nothing;
         }
         const bool has_base = frame.base_sequence() == 0 || frame.base_sequence() == decoded_;
@@ -157,12 +164,14 @@ TEST(DroppedPictures, WhatIsDecodedIsWhatTheServerHad) {
     for (std::uint64_t seed = 1; compared < wanted; ++seed) {
         Server server{seed, seed % 2 == 0 ? 4000.0 : 200'000.0};
         std::vector<DroppingViewer> viewers;
-        for (const Habits& habits : all_habits)
+        for (const Habits& habits : all_habits) {
             viewers.emplace_back(habits, 1000 * seed + viewers.size());
+        }
         for (int n = 0; n < 250; ++n) {
             const ChainPicturePtr picture = server.next();
-            for (DroppingViewer& viewer : viewers)
+            for (DroppingViewer& viewer : viewers) {
                 compared += viewer.take(*picture, server.scene());
+            }
             ASSERT_FALSE(HasFailure()) << "seed " << seed << ", after picture " << n;
         }
         for (std::size_t v = 0; v < viewers.size(); ++v) {

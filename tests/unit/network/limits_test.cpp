@@ -38,11 +38,12 @@ TEST(Limits, AreCountedEachByItself) {
     counters.met(Limit::Sessions);
     counters.met(Limit::OutboxEvents, 5);
     counters.met(Limit::Sessions);
-    for (const LimitRow& row : limit_table())
+    for (const LimitRow& row : limit_table()) {
         EXPECT_EQ(counters.count(row.limit), row.limit == Limit::Sessions       ? 2u
                                              : row.limit == Limit::OutboxEvents ? 5u
                                                                                 : 0u)
             << row.name;
+    }
 }
 
 } // namespace

@@ -55,8 +55,9 @@ TEST_F(RetriesOf, AnIdServesOneRequest) {
 }
 
 TEST_F(RetriesOf, WhatIsOlderThanThoseKeptIsNeverRunAgain) {
-    for (std::uint64_t id = 1; id <= 5; ++id)
+    for (std::uint64_t id = 1; id <= 5; ++id) {
         run("k", id);
+    }
     EXPECT_EQ(begin("k", 1), Verdict::TooOld);
     EXPECT_EQ(begin("k", 2), Verdict::TooOld);
     EXPECT_EQ(begin("k", 3), Verdict::Known);
@@ -67,8 +68,9 @@ TEST_F(RetriesOf, WhatIsOlderThanThoseKeptIsNeverRunAgain) {
 
 TEST_F(RetriesOf, WhatIsBeingRunIsKeptHoweverOld) {
     EXPECT_EQ(begin("k", 1), Verdict::New);
-    for (std::uint64_t id = 2; id <= 9; ++id)
+    for (std::uint64_t id = 2; id <= 9; ++id) {
         run("k", id);
+    }
     EXPECT_EQ(begin("k", 1), Verdict::Known);
     retries.finish("k", 1, bytes("at last"));
     EXPECT_EQ(heard, (std::vector<std::string>{"at last", "at last"}));
@@ -95,15 +97,17 @@ TEST_F(RetriesOf, EvictsTheKeyLongestUnused) {
 TEST_F(RetriesOf, EvictsKeysThatSentOneCommandFirst) {
     run("steady", 1);
     run("steady", 2);
-    for (int i = 0; i < 20; ++i)
+    for (int i = 0; i < 20; ++i) {
         run("one-shot " + std::to_string(i), 1);
+    }
     EXPECT_EQ(begin("steady", 1), Verdict::Known);
     EXPECT_EQ(begin("steady", 2), Verdict::Known);
 }
 
 TEST_F(RetriesOf, RemembersTheHighestIdsOfBoundedlyManyEvictedKeys) {
-    for (const char* key : {"a", "b", "c", "d", "e", "f"})
+    for (const char* key : {"a", "b", "c", "d", "e", "f"}) {
         run(key, 7); // keeps e and f; of a to d, the last three are remembered
+    }
     EXPECT_EQ(begin("b", 7), Verdict::TooOld);
     EXPECT_EQ(begin("d", 3), Verdict::TooOld);
     EXPECT_EQ(begin("a", 7), Verdict::New);
@@ -127,8 +131,9 @@ TEST_F(RetriesOf, LongAnswersPushOutOtherKeysButNotTheirOwn) {
     EXPECT_EQ(retries.key_count(), 1);
     EXPECT_EQ(begin("b", 1), Verdict::Known);
     EXPECT_LE(retries.answer_bytes(), 600);
-    for (std::uint64_t id = 2; id <= 10; ++id)
+    for (std::uint64_t id = 2; id <= 10; ++id) {
         run("b", id, std::string(600, 'b'));
+    }
     EXPECT_EQ(retries.answer_bytes(), 3 * 600);
 }
 

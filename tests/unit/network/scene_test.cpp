@@ -24,8 +24,9 @@ runtime::OrganismsSnapshot lying(std::uint32_t born, std::initializer_list<Organ
     runtime::OrganismsSnapshot to;
     to.place_of.assign(born, simulation::Island::no_body);
     for (const Organism& organism : organisms) {
-        if (organism.x != physics::elsewhere)
+        if (organism.x != physics::elsewhere) {
             to.place_of[organism.id] = static_cast<std::uint32_t>(to.x.size());
+        }
         to.x.push_back(organism.x);
         to.y.push_back(organism.y);
         to.radius_px.push_back(organism.radius_px);

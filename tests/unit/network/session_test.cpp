@@ -25,8 +25,9 @@ class SessionTest : public testing::Test {
         host.ended = [this](Session&) { over = true; };
         session = std::make_shared<Session>(acceptor.accept(), host, 1);
         session->start();
-        for (const std::uint32_t id : {1U, 2U})
+        for (const std::uint32_t id : {1U, 2U}) {
             session->snapshots[id].codec = v1::CODEC_COLUMNS;
+        }
         context.poll(); // now the line can be written to, and the writer has nothing to do
     }
     ~SessionTest() override {
@@ -134,8 +135,9 @@ TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
     session->send_waiting();
     context.poll();
     session->mind_progress(0s);
-    for (int i = 0; i < 9; ++i)
+    for (int i = 0; i < 9; ++i) {
         session->mind_progress(1s);
+    }
     read(); // now it takes something
     context.poll();
     for (int i = 0; i < 10; ++i) {
@@ -151,13 +153,15 @@ TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
     for (int round = 0; round < 1000; ++round) {
         picture(1, static_cast<std::uint32_t>(round), ++sequence, 20'000);
         session->send_waiting();
-        if (round % 7 == 0)
+        if (round % 7 == 0) {
             context.poll();
+        }
     }
     EXPECT_LT(host.traffic.pictures_sent.value(), 1000U) << "otherwise none had to wait";
     read_until(1000);
-    for (std::size_t i = 0; i < frames.size(); ++i)
+    for (std::size_t i = 0; i < frames.size(); ++i) {
         EXPECT_EQ(frames[i].sequence(), i + 1);
+    }
 }
 
 TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {

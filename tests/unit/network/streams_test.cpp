@@ -91,8 +91,9 @@ TEST_F(StreamsTest, OtherWorldsAreServedBetweenTheTurnsOfALargeOne) {
     EXPECT_TRUE(streams.send_some(clock.now()));
     EXPECT_GT(waiting_count(of_many), 0u);
     deliver("few", 4);
-    for (int turn = 0; turn < 2; ++turn) // one of each
+    for (int turn = 0; turn < 2; ++turn) { // one of each
         EXPECT_TRUE(streams.send_some(clock.now()));
+    }
     EXPECT_EQ(waiting_count(of_few), 4u);
     EXPECT_LT(waiting_count(of_many), many);
     send_all();

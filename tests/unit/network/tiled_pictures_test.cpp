@@ -13,10 +13,10 @@ namespace evod::network {
 namespace {
 
 using namespace std::chrono_literals;
-using runtime::Clock;
 using codec::below;
 using codec::LivingIsland;
 using codec::Random;
+using runtime::Clock;
 
 /// A viewer at the other end of a line.
 class TileViewer {
@@ -29,14 +29,15 @@ class TileViewer {
         sent_.add_parts(picture, seen, detail, compression_, parts);
         sent_.sent(picture, seen, detail);
         std::string bytes;
-        for (const SharedBytes* part : parts)
+        for (const SharedBytes* part : parts) {
             bytes += **part;
+        }
         v1::SnapshotFrame frame;
         EXPECT_TRUE(frame.ParseFromString(bytes));
         return frame;
     }
     codec::Result<codec::DecodedSnapshot> watch(TiledPicture& picture, const codec::TileRange& seen,
-                                      v1::Detail detail = v1::DETAIL_FULL) {
+                                                v1::Detail detail = v1::DETAIL_FULL) {
         return decoder_.decode(send(picture, seen, detail));
     }
     void ask_for_keyframes() { sent_.forget(); }
@@ -57,8 +58,9 @@ class Pictures {
     }
 
     TiledPicturePtr next(std::uint64_t ticks = 2) {
-        if (ticks > 0)
+        if (ticks > 0) {
             island_.live(random_, ticks);
+        }
         tick_ += ticks;
         v1::SnapshotFrame about = island_.about();
         about.set_sequence(++sequence_);
@@ -81,8 +83,9 @@ class Pictures {
             for (std::uint32_t i = 0; i < from.x.size(); ++i) {
                 const std::uint32_t column = std::min(from.x[i] / side, layout.columns - 1);
                 const std::uint32_t row = std::min(from.y[i] / side, layout.rows - 1);
-                if (!range.contains(layout, row * layout.columns + column))
+                if (!range.contains(layout, row * layout.columns + column)) {
                     continue;
+                }
                 to.id.push_back(from.id.empty() ? i : from.id[i]);
                 to.x.push_back(from.x[i]);
                 to.y.push_back(from.y[i]);
@@ -94,7 +97,9 @@ class Pictures {
         }
         return found;
     }
-    codec::TileRange everything() const { return codec::tiles_of(codec::tile_layout(island_.side_px, island_.side_px)); }
+    codec::TileRange everything() const {
+        return codec::tiles_of(codec::tile_layout(island_.side_px, island_.side_px));
+    }
     LivingIsland& island() { return island_; }
 
     static constexpr auto between = 50ms;
@@ -119,16 +124,18 @@ RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIs
     Pictures pictures{seed, std::array{700.0, 2000.0, 6000.0}[below(random, 3)]};
     std::vector<TileViewer> viewers;
     viewers.emplace_back(); // sees everything always
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 4; ++i) {
         viewers.emplace_back(i % 2 == 0 ? v1::COMPRESSION_NONE : v1::COMPRESSION_ZSTD);
+    }
     std::vector<codec::TileRange> seen(viewers.size());
     for (int n = 0; n < 60; ++n) {
         const auto picture = pictures.next(below(random, 4));
         const std::uint32_t columns = picture->layout().columns, rows = picture->layout().rows;
         for (std::size_t v = 0; v < viewers.size(); ++v) {
             seen[v] = v == 0 ? pictures.everything() : seen[v];
-            if (v > 0 && below(random, 4) == 0) // it is slow, and the picture is dropped
+            if (v > 0 && below(random, 4) == 0) { // it is slow, and the picture is dropped
                 continue;
+            }
             for (std::uint64_t times = v > 0 && below(random, 5) == 0 ? 3 : 1; times > 0; --times) {
                 if (v > 0 && (n == 0 || below(random, 3) == 0)) { // it looks elsewhere
                     const auto from = [&](std::uint32_t end) { return static_cast<std::uint32_t>(below(random, end)); };
@@ -137,8 +144,9 @@ RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIs
                     seen[v].row_begin = from(rows);
                     seen[v].row_end = seen[v].row_begin + from(rows - seen[v].row_begin + 1);
                 }
-                if (v > 0 && below(random, 20) == 0)
+                if (v > 0 && below(random, 20) == 0) {
                     viewers[v].ask_for_keyframes();
+                }
                 if (v > 0 && below(random, 8) == 0) {
                     RC_ASSERT(viewers[v].watch(*picture, seen[v], v1::DETAIL_DOTS).has_value());
                     continue;
@@ -180,11 +188,13 @@ TEST(TiledPictures, ATileIsEncodedOnceForAll) {
     first->tile(5, v1::DETAIL_FULL, v1::COMPRESSION_NONE, 0);
     const auto picture = pictures.next();
     for (const auto compression : {v1::COMPRESSION_NONE, v1::COMPRESSION_ZSTD}) {
-        for (const std::uint64_t sent : {std::uint64_t{0}, first->sequence(), picture->sequence()})
+        for (const std::uint64_t sent : {std::uint64_t{0}, first->sequence(), picture->sequence()}) {
             EXPECT_EQ(picture->tile(5, v1::DETAIL_FULL, compression, sent).get(),
                       picture->tile(5, v1::DETAIL_FULL, compression, sent).get());
-        for (const auto detail : {v1::DETAIL_DOTS, v1::DETAIL_DENSITY})
+        }
+        for (const auto detail : {v1::DETAIL_DOTS, v1::DETAIL_DENSITY}) {
             EXPECT_EQ(picture->tile(5, detail, compression, 0).get(), picture->tile(5, detail, compression, 0).get());
+        }
     }
     EXPECT_EQ(picture->about().get(), picture->about().get());
 }

@@ -11,8 +11,9 @@ class TokenBucketOf : public testing::Test {
   protected:
     int take_all() {
         int taken = 0;
-        while (bucket.take(1, now))
+        while (bucket.take(1, now)) {
             ++taken;
+        }
         return taken;
     }
     runtime::Clock::time_point now{1000s};

@@ -24,8 +24,9 @@ Scene some_scene(base::RandomStream& random) {
         const double x = random.uniform(-30, width * spread + 30);
         scene.add_circle(x, random.uniform(-30, height * spread + 30), uniform_float(random, 0.5, 20), 1);
     }
-    for (std::uint32_t i = 0; i < count / 10; ++i)
+    for (std::uint32_t i = 0; i < count / 10; ++i) {
         scene.circles.remove(random.below(count));
+    }
     return scene;
 }
 
@@ -55,8 +56,9 @@ RC_GTEST_PROP(Strips, HoldEveryCircleThatIsThereInOrder, ()) {
         }
     }
     std::size_t there = 0;
-    for (std::size_t i = 0; i < scene.circles.size(); ++i)
+    for (std::size_t i = 0; i < scene.circles.size(); ++i) {
         there += !scene.circles.is_void(i);
+    }
     RC_ASSERT(seen.size() == there);
     RC_ASSERT(one.order().size() == there);
 }
@@ -68,15 +70,18 @@ RC_GTEST_PROP(NearPairs, ListEachPairWithinTheSkinOnceAndNoOther, ()) {
     base::InlineExecutor executor;
     near.renew(scene.circles, scene.boxes, scene.area, executor);
     std::set<std::pair<std::uint32_t, std::uint32_t>> listed;
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
-        for (const NearPairs::Pair& pair : near.circle_pairs(block))
+    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
+        for (const NearPairs::Pair& pair : near.circle_pairs(block)) {
             RC_ASSERT(listed.insert({std::min(pair.a, pair.b), std::max(pair.a, pair.b)}).second);
+        }
+    }
     std::size_t within = 0;
     const Circles& circles = scene.circles;
-    for (std::uint32_t a = 0; a < circles.size(); ++a)
+    for (std::uint32_t a = 0; a < circles.size(); ++a) {
         for (std::uint32_t b = a + 1; b < circles.size(); ++b) {
-            if (circles.is_void(a) || circles.is_void(b))
+            if (circles.is_void(a) || circles.is_void(b)) {
                 continue;
+            }
             const float dx = distance_px(circles.x[a], circles.x[b]), dy = distance_px(circles.y[a], circles.y[b]);
             const float distance = std::sqrt(dx * dx + dy * dy),
                         reach = circles.radius[a] + circles.radius[b] + near.skin_px();
@@ -85,6 +90,7 @@ RC_GTEST_PROP(NearPairs, ListEachPairWithinTheSkinOnceAndNoOther, ()) {
             }
             within += distance <= reach + 0.01f;
         }
+    }
     RC_ASSERT(listed.size() <= within);
 }
 
@@ -95,11 +101,12 @@ RC_GTEST_PROP(NearPairs, FindEveryCircleNearAPlaceThoughAllHaveMovedSince, ()) {
     base::InlineExecutor executor;
     near.renew(scene.circles, scene.boxes, scene.area, executor);
     const auto way = static_cast<double>(near.skin_px() / 2 / 1.5f);
-    for (std::size_t i = 0; i < scene.circles.size(); ++i)
+    for (std::size_t i = 0; i < scene.circles.size(); ++i) {
         if (!scene.circles.is_void(i)) {
             scene.circles.x[i] += to_units(random.uniform(-way, way));
             scene.circles.y[i] += to_units(random.uniform(-way, way));
         }
+    }
     near.circles_strayed(static_cast<float>(2 * way * way));
     for (int query = 0; query < 30; ++query) {
         const Coordinate x = to_units(random.uniform(-50, to_px(scene.area.width) + 50));
@@ -108,8 +115,9 @@ RC_GTEST_PROP(NearPairs, FindEveryCircleNearAPlaceThoughAllHaveMovedSince, ()) {
         std::set<std::uint32_t> found;
         near.for_each_stretch_near(x, y, radius, [&](Strips::Stretch stretch) {
             const base::Range places = near.strips().places(stretch);
-            for (std::size_t k = places.begin; k < places.end; ++k)
+            for (std::size_t k = places.begin; k < places.end; ++k) {
                 RC_ASSERT(found.insert(near.strips().order()[k]).second);
+            }
         });
         for (std::uint32_t i = 0; i < scene.circles.size(); ++i) {
             const float dx = distance_px(x, scene.circles.x[i]), dy = distance_px(y, scene.circles.y[i]);
@@ -152,14 +160,16 @@ TEST(NearPairs, OfACrowdOnALargeIslandAreNotFarMoreThanTouch) {
     Scene scene;
     scene.area = {to_units(100'000.0), to_units(100'000.0)};
     base::RandomStream random = scene_stream(5);
-    for (int i = 0; i < 5000; ++i)
+    for (int i = 0; i < 5000; ++i) {
         scene.add_circle(random.uniform(50, 1800), random.uniform(50, 1800), 10, 1);
+    }
     NearPairs near;
     base::InlineExecutor executor;
     near.renew(scene.circles, scene.boxes, scene.area, executor);
     std::size_t pairs = 0;
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
+    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
         pairs += near.circle_pairs(block).size();
+    }
     EXPECT_LT(pairs, 6 * scene.circles.size());
 }
 

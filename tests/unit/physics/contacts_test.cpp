@@ -101,13 +101,15 @@ TEST(Resolving, PartsCirclesAtEqualCentresByTheirIdsWhoeverWasListedFirst) {
 
 TEST(Contacts, AreNotCountedBetweenTheRemoved) {
     Scene scene;
-    for (int i = 0; i < 8; ++i)
+    for (int i = 0; i < 8; ++i) {
         scene.add_circle(1000 + 3 * i, 1000, 5, 1);
+    }
     NearPairs near;
     base::InlineExecutor executor;
     near.renew(scene.circles, scene.boxes, scene.area, executor);
-    for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t i = 0; i < 8; ++i) {
         scene.circles.remove(i);
+    }
     Contacts contacts;
     contacts.begin(scene.circles, scene.boxes);
     contacts.find_among_circles(scene.circles, near, 0);
@@ -119,10 +121,11 @@ TEST(Resolving, OneGroupIsNotInfluencedByAnother) {
     // memory.
     const auto pile = [](Scene& scene, double x, std::uint64_t seed) {
         base::RandomStream random = scene_stream(seed);
-        for (int i = 0; i < 30; ++i)
+        for (int i = 0; i < 30; ++i) {
             scene.add_circle(x + random.uniform(0, 60), 1000 + random.uniform(0, 60), uniform_float(random, 3, 9),
                              uniform_float(random, 0.3, 2), uniform_float(random, -200, 200),
                              uniform_float(random, -200, 200));
+        }
     };
     Scene alone, with_later, with_earlier;
     pile(alone, 2000, 7);
@@ -184,21 +187,25 @@ TEST(Wall, BouncesABodyThatReachesItInTheTickAtOnce) {
 std::size_t all_touching_pairs(const Circles& circles, const Boxes& boxes) {
     std::size_t count = 0;
     for (std::size_t a = 0; a < circles.size(); ++a) {
-        for (std::size_t b = a + 1; b < circles.size(); ++b)
+        for (std::size_t b = a + 1; b < circles.size(); ++b) {
             count += circle_circle(distance_px(circles.x[a], circles.x[b]), distance_px(circles.y[a], circles.y[b]),
                                    circles.radius[a], circles.radius[b])
                          .touching;
-        for (std::size_t b = 0; b < boxes.size(); ++b)
+        }
+        for (std::size_t b = 0; b < boxes.size(); ++b) {
             count += box_circle(distance_px(boxes.x[b], circles.x[a]), distance_px(boxes.y[b], circles.y[a]),
                                 {boxes.half_width[b], boxes.half_height[b]}, circles.radius[a])
                          .touching;
+        }
     }
-    for (std::size_t a = 0; a < boxes.size(); ++a)
-        for (std::size_t b = a + 1; b < boxes.size(); ++b)
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+        for (std::size_t b = a + 1; b < boxes.size(); ++b) {
             count += boxes.inverse_mass[a] + boxes.inverse_mass[b] > 0 &&
                      box_box(distance_px(boxes.x[a], boxes.x[b]), distance_px(boxes.y[a], boxes.y[b]),
                              {boxes.half_width[a], boxes.half_height[a]}, {boxes.half_width[b], boxes.half_height[b]})
                          .touching;
+        }
+    }
     return count;
 }
 

@@ -45,7 +45,7 @@ struct Motion {
 Motion motion_of(const Scene& scene) {
     Motion sum;
     const auto add = [&](const Bodies& bodies) {
-        for (std::size_t i = 0; i < bodies.x.size(); ++i)
+        for (std::size_t i = 0; i < bodies.x.size(); ++i) {
             if (bodies.inverse_mass[i] > 0) {
                 const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
                 const auto vx = static_cast<double>(bodies.velocity_x[i]),
@@ -55,6 +55,7 @@ Motion motion_of(const Scene& scene) {
                 sum.size += mass * std::hypot(vx, vy);
                 sum.energy += mass * (vx * vx + vy * vy) / 2;
             }
+        }
     };
     add(scene.circles);
     add(scene.boxes);
@@ -68,19 +69,23 @@ Motion impulse_of_walls(const Scene& scene, bool beyond_only) {
                            double mass) {
         const bool at_low = beyond_only ? position < extent : position <= extent;
         const bool at_high = beyond_only ? position > size - extent : position >= size - extent;
-        if ((at_low && velocity < 0) || (at_high && velocity > 0))
+        if ((at_low && velocity < 0) || (at_high && velocity > 0)) {
             sum -= mass * velocity * (1 + static_cast<double>(scene.parameters.restitution));
+        }
     };
     const auto add = [&](const Bodies& bodies, std::size_t i, Coordinate extent_x, Coordinate extent_y) {
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
         along(impulse.x, bodies.x[i], static_cast<double>(bodies.velocity_x[i]), extent_x, scene.area.width, mass);
         along(impulse.y, bodies.y[i], static_cast<double>(bodies.velocity_y[i]), extent_y, scene.area.height, mass);
     };
-    for (std::size_t i = 0; i < scene.circles.size(); ++i)
+    for (std::size_t i = 0; i < scene.circles.size(); ++i) {
         add(scene.circles, i, to_units(scene.circles.radius[i]), to_units(scene.circles.radius[i]));
-    for (std::size_t i = 0; i < scene.boxes.size(); ++i)
-        if (scene.boxes.inverse_mass[i] > 0)
+    }
+    for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+        if (scene.boxes.inverse_mass[i] > 0) {
             add(scene.boxes, i, to_units(scene.boxes.half_width[i]), to_units(scene.boxes.half_height[i]));
+        }
+    }
     return impulse;
 }
 
@@ -88,16 +93,18 @@ Motion impulse_of_walls(const Scene& scene, bool beyond_only) {
 double deepest_overlap(const Scene& scene) {
     const Circles& circles = scene.circles;
     double deepest = 0;
-    for (std::size_t a = 0; a < circles.size(); ++a)
+    for (std::size_t a = 0; a < circles.size(); ++a) {
         for (std::size_t b = a + 1; b < circles.size(); ++b) {
-            if (std::abs(circles.x[a] - circles.x[b]) > to_units(24.0f))
+            if (std::abs(circles.x[a] - circles.x[b]) > to_units(24.0f)) {
                 continue;
+            }
             const Overlap overlap =
                 circle_circle(distance_px(circles.x[a], circles.x[b]), distance_px(circles.y[a], circles.y[b]),
                               circles.radius[a], circles.radius[b]);
             deepest =
                 std::max(deepest, static_cast<double>(overlap.depth / std::min(circles.radius[a], circles.radius[b])));
         }
+    }
     return deepest;
 }
 
@@ -109,13 +116,15 @@ void step_in_parts(Scene& scene, base::Executor& executor, const std::function<v
         stepper.near().renew(scene.circles, scene.boxes, scene.area, executor);
     }
     stepper.begin(scene.circles, scene.boxes, scene.area, scene.parameters);
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
+    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
         stepper.accelerate(scene.circles, block, {none.data(), none.data()});
+    }
     before_collisions();
     stepper.collide(scene.circles, scene.boxes, executor);
     after_collisions();
-    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block)
+    for (std::size_t block = 0; block < block_count(scene.circles.size()); ++block) {
         stepper.move(scene.circles, block);
+    }
     stepper.finish(scene.boxes);
 }
 
@@ -123,10 +132,12 @@ TEST(ACrowd, ChangesItsMomentumOnlyByWallsObstaclesAndDamping) {
     // Without obstacles, which take momentum as walls do. A float has 24 bits: rounding takes 6e-8 of a velocity.
     Scene scene = crowd(0.5, 21);
     Boxes crates;
-    for (std::size_t i = 0; i < scene.boxes.size(); ++i)
-        if (scene.boxes.inverse_mass[i] > 0)
+    for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
+        if (scene.boxes.inverse_mass[i] > 0) {
             crates.add(scene.boxes.x[i], scene.boxes.y[i], scene.boxes.half_width[i], scene.boxes.half_height[i],
                        0.25f);
+        }
+    }
     scene.boxes = crates;
     base::InlineExecutor executor;
     const auto kept = static_cast<double>(scene.parameters.integration.velocity_kept);
@@ -149,11 +160,12 @@ TEST(ACrowd, ChangesItsMomentumOnlyByWallsObstaclesAndDamping) {
                 unbounded.boxes = scene.boxes;
                 const float tick_s = scene.parameters.integration.tick_s;
                 const auto move = [&](Bodies& bodies) {
-                    for (std::size_t i = 0; i < bodies.x.size(); ++i)
+                    for (std::size_t i = 0; i < bodies.x.size(); ++i) {
                         if (bodies.inverse_mass[i] > 0) {
                             bodies.x[i] += to_units(bodies.velocity_x[i] * tick_s);
                             bodies.y[i] += to_units(bodies.velocity_y[i] * tick_s);
                         }
+                    }
                 };
                 move(unbounded.circles);
                 move(unbounded.boxes);
@@ -173,10 +185,11 @@ TEST(ACrowd, NeverGainsKineticEnergyThroughContacts) {
     Scene scene = crowd(0.5, 22);
     base::InlineExecutor executor;
     double before = 0;
-    for (int tick = 0; tick < 300; ++tick)
+    for (int tick = 0; tick < 300; ++tick) {
         step_in_parts(
             scene, executor, [&] { before = motion_of(scene).energy; },
             [&] { ASSERT_LE(motion_of(scene).energy, before * (1 + 1e-6)) << "tick " << tick; });
+    }
 }
 
 TEST(ACrowd, OverlapsLessThanHalfARadiusAndStaysInsideTheWalls) {
@@ -228,8 +241,9 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
     scene.area = {to_units(side), to_units(side)};
     base::RandomStream random = scene_stream(26);
     std::vector<std::uint32_t> ids(2500);
-    for (std::uint32_t i = 0; i < ids.size(); ++i)
+    for (std::uint32_t i = 0; i < ids.size(); ++i) {
         ids[i] = i;
+    }
     random.shuffle(std::span{ids});
     for (const std::uint32_t id : ids) {
         const Coordinate x = to_units(random.uniform(10, side - 10)), y = to_units(random.uniform(10, side - 10));
@@ -238,8 +252,9 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
     }
     Circles expected = scene.circles;
     std::vector<std::size_t> by_id(ids.size());
-    for (std::size_t i = 0; i < ids.size(); ++i)
+    for (std::size_t i = 0; i < ids.size(); ++i) {
         by_id[ids[i]] = i;
+    }
     struct Touching {
         std::size_t a, b;
     };
@@ -248,14 +263,18 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
         return circle_circle(distance_px(expected.x[a], expected.x[b]), distance_px(expected.y[a], expected.y[b]), 10,
                              10);
     };
-    for (const std::size_t a : by_id)
-        for (std::uint32_t id = expected.id[a] + 1; id < ids.size(); ++id)
-            if (overlap_of(a, by_id[id]).touching)
+    for (const std::size_t a : by_id) {
+        for (std::uint32_t id = expected.id[a] + 1; id < ids.size(); ++id) {
+            if (overlap_of(a, by_id[id]).touching) {
                 touching.push_back({a, by_id[id]});
+            }
+        }
+    }
     for (const auto& [a, b] : touching) {
         const Overlap overlap = overlap_of(a, b);
-        if (!overlap.touching)
+        if (!overlap.touching) {
             continue;
+        }
         const float nx = overlap.normal_x, ny = overlap.normal_y;
         expected.x[a] -= to_units(nx * overlap.depth * 0.5f);
         expected.y[a] -= to_units(ny * overlap.depth * 0.5f);
@@ -263,8 +282,9 @@ TEST(ACrowd, ResolvesContactsAsIfOneByOneInOrderOfIds) {
         expected.y[b] += to_units(ny * overlap.depth * 0.5f);
         const float approach = (expected.velocity_x[b] - expected.velocity_x[a]) * nx +
                                (expected.velocity_y[b] - expected.velocity_y[a]) * ny;
-        if (approach >= 0)
+        if (approach >= 0) {
             continue;
+        }
         const float impulse = -(1 + 0.8f) * approach / 2;
         expected.velocity_x[a] -= impulse * nx;
         expected.velocity_y[a] -= impulse * ny;

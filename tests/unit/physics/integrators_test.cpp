@@ -145,8 +145,9 @@ INSTANTIATE_TEST_SUITE_P(TickLengths, DampingOfTheDefaultWorld,
 TEST(Damping, OfOneKeepsEveryVelocity) {
     EXPECT_EQ(damping_rate(1), 0);
     for (const Integrator integrator :
-         {Integrator::SymplecticEuler, Integrator::ExplicitEuler, Integrator::BackwardEuler})
+         {Integrator::SymplecticEuler, Integrator::ExplicitEuler, Integrator::BackwardEuler}) {
         EXPECT_EQ(integration(integrator, 1.0 / 60, damping_rate(1)).velocity_kept, 1);
+    }
 }
 
 } // namespace

@@ -136,24 +136,28 @@ MotionReport from_all_pairs(const Scene& scene) {
     const auto shape = [&](std::size_t i) { return BoxShape{b.half_width[i], b.half_height[i]}; };
     const auto half_side = [&](std::size_t i) { return std::min(b.half_width[i], b.half_height[i]); };
     for (std::size_t i = 0; i < c.size(); ++i) {
-        if (c.is_void(i))
+        if (c.is_void(i)) {
             continue;
-        for (std::size_t j = i + 1; j < c.size(); ++j)
+        }
+        for (std::size_t j = i + 1; j < c.size(); ++j) {
             if (!c.is_void(j)) {
                 const auto [dx, dy] = apart(c, i, c, j);
                 touch(circle_circle(dx, dy, c.radius[i], c.radius[j]), std::min(c.radius[i], c.radius[j]));
             }
+        }
         for (std::size_t j = 0; j < b.size(); ++j) {
             const auto [dx, dy] = apart(b, j, c, i);
             touch(box_circle(dx, dy, shape(j), c.radius[i]), std::min(c.radius[i], half_side(j)));
         }
     }
-    for (std::size_t i = 0; i < b.size(); ++i)
-        for (std::size_t j = i + 1; j < b.size(); ++j)
+    for (std::size_t i = 0; i < b.size(); ++i) {
+        for (std::size_t j = i + 1; j < b.size(); ++j) {
             if (b.inverse_mass[i] + b.inverse_mass[j] > 0) {
                 const auto [dx, dy] = apart(b, i, b, j);
                 touch(box_box(dx, dy, shape(i), shape(j)), std::min(half_side(i), half_side(j)));
             }
+        }
+    }
     return report;
 }
 
@@ -161,11 +165,12 @@ TEST(MotionReport, OfACrowdIsThatOfAllItsPairsWhetherNearOnesAreKnownOrNot) {
     Scene scene = dense(600, 7);
     bool was_worn = false, was_known = false;
     for (int tick = 0; tick < 100; ++tick) {
-        if (tick == 50)
+        if (tick == 50) {
             for (std::size_t i = 0; i < 200; ++i) { // a third of them die
                 scene.stepper.near().remove(i);
                 scene.circles.remove(i);
             }
+        }
         const MotionReport report = report_of(scene), reference = from_all_pairs(scene);
         EXPECT_EQ(report.body_count, tick < 50 ? 615u : 415u);
         EXPECT_EQ(report.touching_count, reference.touching_count) << "tick " << tick;

@@ -108,8 +108,9 @@ void require_unit_normal(const Overlap& overlap) {
 RC_GTEST_PROP(CircleCircle, ApartByTheDepthAlongTheNormalJustTouch, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60), a = some(1, 50), b = some(1, 50);
     const Overlap overlap = circle_circle(dx, dy, a, b);
-    if (!overlap.touching)
+    if (!overlap.touching) {
         return;
+    }
     require_unit_normal(overlap);
     const float apart_x = dx + overlap.normal_x * overlap.depth, apart_y = dy + overlap.normal_y * overlap.depth;
     RC_ASSERT(std::abs(std::sqrt(apart_x * apart_x + apart_y * apart_y) - (a + b)) < rounding_px);
@@ -119,8 +120,9 @@ RC_GTEST_PROP(BoxBox, ApartByTheDepthAlongTheNormalJustTouch, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60);
     const BoxShape a{some(1, 50), some(1, 50)}, b{some(1, 50), some(1, 50)};
     const Overlap overlap = box_box(dx, dy, a, b);
-    if (!overlap.touching)
+    if (!overlap.touching) {
         return;
+    }
     require_unit_normal(overlap);
     const float apart_x = std::abs(dx + overlap.normal_x * overlap.depth);
     const float apart_y = std::abs(dy + overlap.normal_y * overlap.depth);
@@ -132,8 +134,9 @@ RC_GTEST_PROP(BoxCircle, ApartByTheDepthAlongTheNormalJustTouch, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60), radius = some(1, 50);
     const BoxShape box{some(1, 50), some(1, 50)};
     const Overlap overlap = box_circle(dx, dy, box, radius);
-    if (!overlap.touching)
+    if (!overlap.touching) {
         return;
+    }
     require_unit_normal(overlap);
     const float apart_x = std::abs(dx + overlap.normal_x * overlap.depth);
     const float apart_y = std::abs(dy + overlap.normal_y * overlap.depth);
@@ -154,8 +157,9 @@ RC_GTEST_PROP(CircleCircle, SeenFromTheOtherTheNormalIsTurnedRound, ()) {
 
 RC_GTEST_PROP(BoxBox, SeenFromTheOtherTheNormalIsTurnedRound, ()) {
     const float dx = some(-60, 60), dy = some(-60, 60);
-    if (dx == 0 || dy == 0)
+    if (dx == 0 || dy == 0) {
         return;
+    }
     const BoxShape a{some(1, 50), some(1, 50)}, b{some(1, 50), some(1, 50)};
     const Overlap there = box_box(dx, dy, a, b), back = box_box(-dx, -dy, b, a);
     RC_ASSERT(there.touching == back.touching);

@@ -13,8 +13,9 @@ struct Totals {
 
 void add_totals(const Bodies& bodies, Totals& totals) {
     for (std::size_t i = 0; i < bodies.x.size(); ++i) {
-        if (bodies.inverse_mass[i] == 0)
+        if (bodies.inverse_mass[i] == 0) {
             continue;
+        }
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
         const double vx = static_cast<double>(bodies.velocity_x[i]), vy = static_cast<double>(bodies.velocity_y[i]);
         totals.momentum_x += mass * vx;
@@ -181,8 +182,9 @@ TEST(Step, LetsForcesActForOneTick) {
 TEST(Step, NeverMovesAnObstacle) {
     Scene scene = crowd(300, 0.4, 0, 5, 500, 16);
     const auto x = scene.boxes.x, y = scene.boxes.y;
-    for (int tick = 0; tick < 300; ++tick)
+    for (int tick = 0; tick < 300; ++tick) {
         scene.step();
+    }
     EXPECT_EQ(scene.boxes.x, x);
     EXPECT_EQ(scene.boxes.y, y);
 }
@@ -195,14 +197,18 @@ TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
     Scene near = crowd(400, 0.3, 6, 6, 300, 17);
     near.area = {to_units(300'000.0), to_units(300'000.0)};
     near.parameters.integration = integration(GetParam(), 1.0 / 60, damping_rate(0.999));
-    for (Coordinate& x : near.circles.x)
+    for (Coordinate& x : near.circles.x) {
         x += to_units(2'000.0);
-    for (Coordinate& y : near.circles.y)
+    }
+    for (Coordinate& y : near.circles.y) {
         y += to_units(2'000.0);
-    for (Coordinate& x : near.boxes.x)
+    }
+    for (Coordinate& x : near.boxes.x) {
         x += to_units(2'000.0);
-    for (Coordinate& y : near.boxes.y)
+    }
+    for (Coordinate& y : near.boxes.y) {
         y += to_units(2'000.0);
+    }
     Scene far = near;
     for (std::size_t i = 0; i < far.circles.size(); ++i) {
         far.circles.x[i] += shift_x;
@@ -227,8 +233,9 @@ TEST_P(AnywhereOnALargeIsland, TheSameSceneMovesBitForBitAlike) {
             ASSERT_EQ(far.circles.velocity_x[i], near.circles.velocity_x[i]) << "tick " << tick << ", body " << i;
             ASSERT_EQ(far.circles.velocity_y[i], near.circles.velocity_y[i]) << "tick " << tick << ", body " << i;
         }
-        for (std::size_t i = 0; i < near.boxes.size(); ++i)
+        for (std::size_t i = 0; i < near.boxes.size(); ++i) {
             ASSERT_EQ(far.boxes.x[i] - near.boxes.x[i], shift_x);
+        }
     }
 }
 

@@ -32,12 +32,13 @@ void find_unset(const Message& message, const std::string& path, std::set<std::s
     for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
         const FieldDescriptor& field = *message.GetDescriptor()->field(i);
         const std::string name = path + field.name();
-        if (field.is_repeated() ? reflection.FieldSize(message, &field) == 0 : !reflection.HasField(message, &field))
+        if (field.is_repeated() ? reflection.FieldSize(message, &field) == 0 : !reflection.HasField(message, &field)) {
             unset.insert(name);
-        else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
+        } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
             find_unset(field.is_repeated() ? reflection.GetRepeatedMessage(message, &field, 0)
                                            : reflection.GetMessage(message, &field),
                        name + ".", unset);
+        }
     }
 }
 
@@ -54,11 +55,13 @@ void collect_numbers(const Message& message, std::vector<double>& numbers) {
     reflection.ListFields(message, &fields);
     for (const FieldDescriptor* field : fields) {
         if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-            if (field->is_repeated())
-                for (int i = 0; i < reflection.FieldSize(message, field); ++i)
+            if (field->is_repeated()) {
+                for (int i = 0; i < reflection.FieldSize(message, field); ++i) {
                     collect_numbers(reflection.GetRepeatedMessage(message, field, i), numbers);
-            else
+                }
+            } else {
                 collect_numbers(reflection.GetMessage(message, field), numbers);
+            }
         } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
             numbers.push_back(reflection.GetDouble(message, field));
         } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_UINT64) {
@@ -79,8 +82,9 @@ class Lived : public testing::Test {
         EXPECT_TRUE(laboratory.apply(create));
         EXPECT_TRUE(laboratory.apply(simulation::Run{"w", 100}));
         EXPECT_TRUE(laboratory.apply(simulation::RunUntilTick{"w", 1000}));
-        for (int tick = 0; tick < 45; ++tick)
+        for (int tick = 0; tick < 45; ++tick) {
             laboratory.advance(entry(), executor);
+        }
     }
     simulation::Entry& entry() { return **laboratory.find("w"); }
 
@@ -121,8 +125,9 @@ TEST(Conversions, GenerationStatisticsAreToldCompletelyAndEachInItsPlace) {
     // The fields of the struct stand in the order of the message's, so the numbers must rise.
     std::vector<double> numbers, expected;
     collect_numbers(told, numbers);
-    for (double n = 1; n < next; ++n)
+    for (double n = 1; n < next; ++n) {
         expected.push_back(n);
+    }
     EXPECT_EQ(numbers, expected);
     s.account.reset();
     EXPECT_THAT(unset_in(to_proto(s)), testing::ElementsAre("genes.account"));
@@ -149,7 +154,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     record.pick_count = 9;
     record.contenders.push_back({1, 2, 3, 4, 5, 6, 7, evolution::Migrant{8, 99, 9, 99}, 10});
     record.picks.push_back({1, 2.5, 3, {4, 5, 6}});
-    for (const std::uint32_t id : {0, 2, 3})
+    for (const std::uint32_t id : {0, 2, 3}) {
         record.descendants.push_back({.id = id,
                                       .parents = {1, 2},
                                       .first_genes = genes,
@@ -162,6 +167,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
                                                   {1, evolution::ChangeKind::BitFlip, 2, 3},
                                                   {1, evolution::ChangeKind::Clamp, 2, 3}},
                                       .genes = genes});
+    }
     simulation::Parameters parameters;
     parameters.rearranging = evolution::Rearranging::Scramble;
     const v1::Breeding told = to_proto(record, parameters);
@@ -179,13 +185,15 @@ TEST(Conversions, ABreedingIsToldCompletely) {
     EXPECT_EQ(told.descendants(2).kind(), v1::DESCENDANT_KIND_CHILD);
     EXPECT_EQ(told.descendants(0).order_mutation().method(), "scramble");
     std::set<int> kinds;
-    for (const auto& mutation : told.descendants(0).mutations())
+    for (const auto& mutation : told.descendants(0).mutations()) {
         kinds.insert(mutation.kind());
+    }
     EXPECT_EQ(kinds.size(), 4u);
     EXPECT_FALSE(kinds.contains(v1::MUTATION_KIND_UNSPECIFIED));
     std::set<std::string> parameter_names;
-    for (const auto& assignment : told.parameters())
+    for (const auto& assignment : told.parameters()) {
         parameter_names.insert(assignment.name());
+    }
     EXPECT_TRUE(parameter_names.contains("population_size") && parameter_names.contains("immigrants_replace"));
     EXPECT_FALSE(parameter_names.contains("generation_s")); // of the model
 }
@@ -245,12 +253,15 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
         ASSERT_TRUE(event);
         cases.insert(event->kind_case());
         auto unset = unset_in(*event);
-        for (const char* part : {"change_planned.change.", "change_cancelled.change."})
+        for (const char* part : {"change_planned.change.", "change_cancelled.change."}) {
             for (const char* other :
-                 {"tick", "parameters.value.choice", "parameters.value.count", "parameters.value.flag"})
+                 {"tick", "parameters.value.choice", "parameters.value.count", "parameters.value.flag"}) {
                 unset.erase(std::string{part} + other);
-        for (const std::string& field : unset)
+            }
+        }
+        for (const std::string& field : unset) {
             EXPECT_EQ(field.find('.'), std::string::npos) << field;
+        }
     }
     const simulation::Applied applied{.world = "w", .tick = 3, .parameters = simulation::ParameterSet{}};
     const simulation::Command commands[] = {simulation::CreateWorld{}, simulation::DeleteWorld{},
@@ -309,8 +320,9 @@ TEST(Conversions, ASetTellsWhatHoldsAndWhatWaits) {
     const auto told = to_proto(set);
     EXPECT_EQ(told.revision(), 9);
     EXPECT_EQ(static_cast<std::size_t>(told.parameters_size()), simulation::parameter_registry().size());
-    for (const auto& state : told.parameters())
+    for (const auto& state : told.parameters()) {
         EXPECT_EQ(state.has_pending(), state.name() == "population_size") << state.name();
+    }
 }
 
 TEST(Conversions, AScheduleComesBackAsItWent) {
@@ -337,14 +349,16 @@ TEST(Conversions, WhatIsWrongWithAScheduleIsNamed) {
             auto& to = *message.Add();
             to.set_name(name);
             to.set_generation(generation);
-            if (value >= 0)
+            if (value >= 0) {
                 to.mutable_value()->set_real(value);
+            }
         }
         std::vector<base::Violation> violations;
         (void)to_schedule(message, {}, "create_world.", violations);
         std::vector<std::string> named;
-        for (const auto& violation : violations)
+        for (const auto& violation : violations) {
             named.push_back(violation.field + ": got " + violation.got);
+        }
         return named;
     };
     using testing::ElementsAre;
@@ -360,8 +374,9 @@ TEST(Conversions, WhatIsWrongWithAScheduleIsNamed) {
     EXPECT_THAT(fields({{"no_such", 2, 1}}), ElementsAre(HasSubstr("create_world.no_such at")));
     EXPECT_THAT(fields({{"impulse_min", 5, 300}}), ElementsAre("create_world.impulse_max at generation 5: got 250"));
     std::vector<std::tuple<std::string, std::uint64_t, double>> many;
-    for (std::uint64_t i = 0; i < 4097; ++i)
+    for (std::uint64_t i = 0; i < 4097; ++i) {
         many.emplace_back("mutation_chance", i + 2, 0.5);
+    }
     EXPECT_THAT(fields(many), ElementsAre("create_world.schedule: got 4097"));
     many.pop_back();
     EXPECT_THAT(fields(many), testing::IsEmpty());
@@ -395,8 +410,9 @@ void poison_doubles(v1::Request& request, Message& part, double poison, int& poi
         if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
             Message& inner =
                 field.is_repeated() ? *reflection.AddMessage(&part, &field) : *reflection.MutableMessage(&part, &field);
-            if (inner.GetDescriptor()->name() == "ParameterAssignment")
+            if (inner.GetDescriptor()->name() == "ParameterAssignment") {
                 static_cast<v1::ParameterAssignment&>(inner).set_name("mutation_chance");
+            }
             if (auto* scheduled = dynamic_cast<v1::ScheduledValue*>(&inner)) {
                 scheduled->set_name("mutation_chance");
                 scheduled->set_generation(2);
@@ -434,8 +450,9 @@ TEST(Requests, NoNumberInThemMayBeNoneOrInfinite) {
             v1::Request request;
             request.set_client_key("k");
             auto& part = *request.GetReflection()->MutableMessage(&request, requests.field(i));
-            if (request.has_create_world())
+            if (request.has_create_world()) {
                 request.mutable_create_world()->set_name("new");
+            }
             poison_doubles(request, part, poison, poisoned);
         }
     }
@@ -453,8 +470,9 @@ TEST(Requests, EveryFaultIsNamedAtOnce) {
     const auto command = to_command(request, draws);
     ASSERT_FALSE(command);
     std::vector<std::string> fields;
-    for (const auto& violation : command.error().violations)
+    for (const auto& violation : command.error().violations) {
         fields.push_back(violation.field);
+    }
     EXPECT_THAT(fields, testing::UnorderedElementsAre("client_key", "create_world.name", "create_world.food_count",
                                                       "create_world.mutation_chance"));
 }
@@ -471,13 +489,16 @@ TEST(Requests, APopulationMustBeOneThatTheWorldCanHave) {
     const auto fields = [&] {
         std::vector<std::string> found;
         const auto command = to_command(request, draws);
-        if (!command)
-            for (const auto& violation : command.error().violations)
+        if (!command) {
+            for (const auto& violation : command.error().violations) {
                 found.push_back(to_text(violation));
+            }
+        }
         return found;
     };
-    for (int i = 0; i < 11; ++i)
+    for (int i = 0; i < 11; ++i) {
         genes.Add(100 + static_cast<float>(i) / 8);
+    }
     EXPECT_THAT(fields(),
                 testing::ElementsAre("create_world.population[0].genes: got 11, allowed a multiple of 6 numbers"));
     genes.Add(100);

@@ -25,8 +25,9 @@ class ExportThreadTest : public testing::Test {
         options.keep_every = keep_every;
         storage::StorageThread thread{options};
         storage::RecordedRun run{data, thread};
-        while (run.world().moment().generation <= static_cast<std::uint64_t>(generations))
+        while (run.world().moment().generation <= static_cast<std::uint64_t>(generations)) {
             run.advance(1);
+        }
         run.advance(1);
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         past.emplace(*storage::Past::of_file(data.file_of("w")));

@@ -15,16 +15,18 @@ Mail note(std::vector<int>& read, int number) {
 
 void read_all(std::vector<Mail> mail) {
     const simulation::Laboratory laboratory;
-    for (Mail& one : mail)
+    for (Mail& one : mail) {
         std::get<QueryMail>(one).ask(laboratory);
+    }
 }
 
 TEST(Mailbox, GivesWhatCameInItsOrder) {
     Mailbox mailbox;
     std::vector<int> read;
     EXPECT_FALSE(mailbox.pending());
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(mailbox.try_push(note(read, i)));
+    }
     EXPECT_TRUE(mailbox.pending());
     read_all(mailbox.drain());
     EXPECT_EQ(read, (std::vector{0, 1, 2}));

@@ -21,8 +21,9 @@ TEST(Outbox, KeepsAnswersAndEventsInOneOrder) {
     outbox.event([&] { order.push_back(2); });
     outbox.answer([&] { order.push_back(3); });
     EXPECT_EQ(woken, 1) << "once until it is taken";
-    for (const Delivery& delivery : outbox.take().deliveries)
+    for (const Delivery& delivery : outbox.take().deliveries) {
         delivery();
+    }
     EXPECT_EQ(order, (std::vector{1, 2, 3}));
     EXPECT_TRUE(outbox.take().deliveries.empty());
     outbox.answer([] {});

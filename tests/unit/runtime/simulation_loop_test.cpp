@@ -116,8 +116,9 @@ TEST_F(Loop, AWorldThatFellBehindIsGivenBackNoMoreThanTheBound) {
     send(simulation::Run{"w", {}});
     loop.pass();
     clock.advance(10s);
-    for (int i = 0; i < 100; ++i)
+    for (int i = 0; i < 100; ++i) {
         loop.pass();
+    }
     // The tick that was late, the bound's worth of ticks, and the one that is due now.
     const auto given_back = 1 + 1 + SimulationLoop::catch_up_max / 10ms + 1;
     EXPECT_EQ(tick(), given_back);
@@ -159,8 +160,9 @@ TEST_F(Loop, APauseIsNotMadeUpFor) {
     loop.pass();
     clock.advance(10s);
     send(simulation::Resume{"w"});
-    for (int i = 0; i < 10; ++i)
+    for (int i = 0; i < 10; ++i) {
         loop.pass();
+    }
     EXPECT_EQ(tick(), 2);
 }
 
@@ -184,8 +186,9 @@ TEST_F(Loop, ASliceEndsWhenMailComes) {
                          clock,
                          {.events =
                               [&](const Laboratory&, std::vector<simulation::Event>) {
-                                  if (!sent)
+                                  if (!sent) {
                                       send(simulation::Pause{"quick"});
+                                  }
                                   sent = true;
                               },
                           .picture = {}}};
@@ -205,8 +208,9 @@ TEST_F(Loop, APacedWorldKeepsItsPaceBesideOneAtFullSpeed) {
     send(simulation::Run{"busy", {}});
     clock.per_look = 50us;
     const auto began = clock.now();
-    while (clock.now() - began < 1s)
+    while (clock.now() - began < 1s) {
         loop.pass();
+    }
     EXPECT_NEAR(static_cast<double>(tick("paced")), 101, 2);
     EXPECT_GT(tick("busy"), 3000);
 }
@@ -241,8 +245,9 @@ TEST_F(Loop, QueriesHaveTheTimeThatNoWorldWants) {
     const auto began = clock.now();
     auto next = loop.pass();
     while (clock.now() - began < 2s) {
-        if (next && *next > clock.now() && !mailbox.pending())
+        if (next && *next > clock.now() && !mailbox.pending()) {
             clock.advance(*next - clock.now());
+        }
         next = loop.pass();
     }
     EXPECT_NEAR(static_cast<double>(tick()), 201, 2);
@@ -258,8 +263,9 @@ TEST_F(Loop, QueriesCostAWorldAtFullSpeedAShareOfTheTime) {
     loop.pass();
     const Asker asker{mailbox, clock, 4ms};
     const auto began = clock.now();
-    while (clock.now() - began < 2s)
+    while (clock.now() - began < 2s) {
         loop.pass();
+    }
     EXPECT_NEAR(asker.answered * 4.0, 2000.0 / QueryBudget::share, 12);
 }
 
@@ -267,14 +273,16 @@ TEST_F(Loop, CommandsDoNotWaitForTheQueriesOfOthers) {
     send(create("w"));
     loop.pass();
     std::vector<std::string> order;
-    for (const char* name : {"first", "second"})
+    for (const char* name : {"first", "second"}) {
         mailbox.push(QueryMail{[&, name](const Laboratory& laboratory) {
             order.emplace_back(name);
-            if (order.size() == 1)
+            if (order.size() == 1) {
                 send(simulation::Run{"w", {}});
-            else
+            } else {
                 EXPECT_TRUE((*laboratory.find("w"))->wants_tick());
+            }
         }});
+    }
     loop.pass();
     EXPECT_EQ(order, (std::vector<std::string>{"first", "second"}));
 }
@@ -304,11 +312,12 @@ TEST_F(Loop, WhatWasAskedIsAnsweredAtTheEnd) {
     send(simulation::SetSpeed{"w", {}});
     send(simulation::Run{"w", {}});
     int answered = 0;
-    for (int i = 0; i < 50; ++i)
+    for (int i = 0; i < 50; ++i) {
         mailbox.push(QueryMail{[&](const Laboratory&) {
             ++answered;
             clock.advance(100ms);
         }});
+    }
     clock.per_look = 100us;
     loop.pass();
     EXPECT_LT(answered, 50);
@@ -417,8 +426,9 @@ TEST_F(Loop, PicturesComeAtTheRateThatIsWanted) {
     pictures.clear();
     live_through(2000ms);
     EXPECT_NEAR(static_cast<double>(pictures.size()), 50, 1);
-    for (std::size_t i = 1; i < pictures.size(); ++i)
+    for (std::size_t i = 1; i < pictures.size(); ++i) {
         EXPECT_LT(pictures[i - 1]->moment.tick, pictures[i]->moment.tick);
+    }
 }
 
 TEST_F(Loop, ANewcomerAndAChangeArePicturedAtOnceAndAWorldThatStandsOnlyOnce) {
@@ -485,8 +495,9 @@ TEST_F(Loop, APictureHasEverybodyWhoLivesAndEveryItem) {
             const std::uint32_t place = picture.organisms.place_of[id];
             const auto body = island.body_of(id);
             ASSERT_EQ(place != simulation::Island::no_body, body.has_value());
-            if (!body)
+            if (!body) {
                 continue;
+            }
             ASSERT_LT(place, picture.organisms.x.size());
             EXPECT_EQ(picture.organisms.x[place], island.bodies().x[*body]);
             EXPECT_EQ(picture.organisms.y[place], island.bodies().y[*body]);
@@ -519,8 +530,9 @@ TEST_F(Loop, APictureStaysAsItWasAndItsMemoryComesBack) {
     std::set<const void*> used;
     for (int i = 0; i < 100; ++i) {
         live_through(10ms);
-        for (const SnapshotPtr& picture : pictures)
+        for (const SnapshotPtr& picture : pictures) {
             used.insert(picture.get());
+        }
         pictures.clear();
     }
     EXPECT_EQ(kept->islands[0].organisms.x, place);
@@ -561,10 +573,12 @@ base::StateHash hash_of_a_world_advanced_directly() {
     const auto command = create_for_comparison();
     simulation::World world{command.parameters, command.seed};
     for (const std::uint64_t at : {changes[0], changes[1], changes[2], changes[3], last_tick}) {
-        while (world.moment().tick < at)
+        while (world.moment().tick < at) {
             world.advance_tick(executor);
-        if (at != last_tick)
+        }
+        if (at != last_tick) {
             world.request_parameters(*simulation::assign(world.parameters().requested, std::vector{change_at(at)}));
+        }
     }
     return world.hash();
 }
@@ -644,8 +658,9 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
         tell(simulation::SetSpeed{"w", std::nullopt});
         tell(simulation::RunUntilTick{"w", 1000});
         const simulation::World& run = (*kept.laboratory().find("w"))->world;
-        while (run.moment().tick < 1000)
+        while (run.moment().tick < 1000) {
             kept.pass();
+        }
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
         const auto file = storage::RunFile::open_read_only(data->file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
@@ -772,8 +787,9 @@ class LoopWithADisk : public Loop {
 
     void take_away() { std::filesystem::rename(folder.path(), away); }
     void give_back() {
-        if (std::filesystem::exists(away))
+        if (std::filesystem::exists(away)) {
             std::filesystem::rename(away, folder.path());
+        }
     }
     void pass_until(const std::function<bool()>& condition) {
         pass_once();
@@ -877,8 +893,9 @@ TEST_F(LoopWithADisk, WhoLeavesWhilePastsAreOpenedLeavesNoneBehind) {
     pass_until([&] { return answered == 2; });
     EXPECT_EQ(opened, 0u);
     EXPECT_EQ(kept.laboratory().entries().size(), 1u);
-    for (std::size_t i = 0; i <= TimeTravel::replays_max; ++i)
+    for (std::size_t i = 0; i <= TimeTravel::replays_max; ++i) {
         open(2);
+    }
     pass_until([&] { return answered == 2 + TimeTravel::replays_max + 1; });
     EXPECT_EQ(opened, TimeTravel::replays_max) << "those on their way are counted";
     mailbox.push(PastMail{OwnerGone{2}, {}});
@@ -939,7 +956,8 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
     ask(std::move(pause));
     pass_until([&] { return thread.idle(); });
     for (const Shown& then : seen) {
-        const Shown again = shown_at({.generation = then.moment.generation, .tick = then.moment.generation_tick}, false);
+        const Shown again =
+            shown_at({.generation = then.moment.generation, .tick = then.moment.generation_tick}, false);
         EXPECT_EQ(again.hash, then.hash) << "generation " << then.moment.generation << ", tick " << then.moment.tick;
     }
 }
@@ -948,8 +966,9 @@ TEST_F(LoopWithADisk, SeeksEndWithTheirOwnerOrTheirPast) {
     const std::string look = look_at_the_past_of_a_run();
     std::vector<base::Result<std::string>> answers;
     const auto seek = [&](std::uint64_t tick) {
-        mailbox.push(PastMail{Seek{.world = look, .to = {.generation = {}, .tick = tick}, .owner = 2},
-                              [&](const Laboratory&, const base::Result<std::string>& name) { answers.push_back(name); }});
+        mailbox.push(
+            PastMail{Seek{.world = look, .to = {.generation = {}, .tick = tick}, .owner = 2},
+                     [&](const Laboratory&, const base::Result<std::string>& name) { answers.push_back(name); }});
     };
     seek(299);
     mailbox.push(PastMail{OwnerGone{2}, {}});
@@ -988,8 +1007,9 @@ TEST_F(LoopWithADisk, APacedWorldKeepsItsPaceAndItsStateWhileOthersTravel) {
     EXPECT_FALSE(entry("paced").slowed);
     const simulation::World& lived = entry("paced").world;
     simulation::World alone{lived.parameters().active, lived.seed()};
-    while (alone.moment().tick < lived.moment().tick)
+    while (alone.moment().tick < lived.moment().tick) {
         alone.advance_tick(executor);
+    }
     EXPECT_EQ(alone.hash(), lived.hash());
 }
 

@@ -26,8 +26,9 @@ TEST_P(PoolOf, CutsAtTheMultiplesOfTheGrain) {
             const std::lock_guard lock{mutex};
             EXPECT_TRUE(pieces.emplace(range.begin, range.end).second);
         });
-        for (std::size_t begin = 0; begin < count; begin += grain)
+        for (std::size_t begin = 0; begin < count; begin += grain) {
             expected.emplace(begin, std::min(begin + grain, count));
+        }
         EXPECT_EQ(pieces, expected) << count << " by " << grain;
     }
 }

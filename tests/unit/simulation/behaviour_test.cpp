@@ -192,16 +192,18 @@ TEST_F(OneOrganism, GoesInARandomDirectionWhereTheRightOneHasNoLength) {
         ++quarters[(force.x > 0 ? 1u : 0u) + (force.y > 0 ? 2u : 0u)];
     };
     put_beside(poison, 0, 0); // on the poison
-    for (std::uint32_t tick = 1; tick <= 2000; ++tick)
+    for (std::uint32_t tick = 1; tick <= 2000; ++tick) {
         count(choose(none, poison, tick));
+    }
     EXPECT_GT(support::p_value_of_equal_cells(quarters), alpha);
     quarters = {};
     put_beside(food, 3, -6); // the velocity will just bring it there
     rules.lookahead_s = 0.5f;
     bodies.velocity_x[0] = 6;
     bodies.velocity_y[0] = -12;
-    for (std::uint32_t tick = 1; tick <= 2000; ++tick)
+    for (std::uint32_t tick = 1; tick <= 2000; ++tick) {
         count(choose(food, none, tick));
+    }
     EXPECT_GT(support::p_value_of_equal_cells(quarters), alpha);
 }
 
@@ -217,16 +219,19 @@ TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
     const ChosenForces before = forces;
     std::vector<std::uint32_t> order;
     base::Column<std::uint32_t> spare;
-    for (std::uint32_t i = 40; i-- > 0;)
-        if (i != 0 && i != 7 && i != 20)
+    for (std::uint32_t i = 40; i-- > 0;) {
+        if (i != 0 && i != 7 && i != 20) {
             order.push_back(i);
+        }
+    }
     const physics::Reordering reordering{order, spare, executor};
     bodies.reorder(reordering);
     living.reorder(reordering);
     ASSERT_EQ(bodies.size(), 37u);
     choose(none, none, 9);
-    for (std::size_t i = 1; i < bodies.size(); ++i)
+    for (std::size_t i = 1; i < bodies.size(); ++i) {
         EXPECT_EQ(forces.x[i], before.x[bodies.id[i]]);
+    }
 }
 
 TEST_F(OneOrganism, TellsWhatItIsAboutToDoAndDoesIt) {
@@ -266,8 +271,9 @@ TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
     for (int i = 0; i < 700; ++i) {
         const Place at = place();
         evolution::Chromosome genes;
-        for (auto& gene : genes)
+        for (auto& gene : genes) {
             gene = static_cast<float>(random.uniform(60, 120));
+        }
         meadow.add_organism(at.x, at.y, genes);
     }
     std::vector<Place> foods(200), poisons(200);
@@ -279,9 +285,11 @@ TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
     meadow.sight.remove(5);
 
     std::vector<std::uint32_t> who; // more than a block of them, from the last to the first
-    for (std::uint32_t i = 700; i-- > 0;)
-        if (i != 5)
+    for (std::uint32_t i = 700; i-- > 0;) {
+        if (i != 5) {
             who.push_back(i);
+        }
+    }
     std::array<int, 4> counts{};
     for (int tick = 0; tick < 40; ++tick) {
         meadow.perceive();
@@ -309,8 +317,9 @@ TEST(Foreseeing, IsWhatACrowdThenDoesToTheLastBit) {
         meadow.eat();
     }
     EXPECT_EQ(counts[0], 0);
-    for (const int choice : {1, 2, 3})
+    for (const int choice : {1, 2, 3}) {
         EXPECT_GT(counts[static_cast<std::size_t>(choice)], 100) << "choice " << choice;
+    }
 }
 
 } // namespace

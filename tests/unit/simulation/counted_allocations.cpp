@@ -13,8 +13,9 @@ namespace {
 
 void count() {
     ++evod::tests::allocations;
-    if (evod::tests::allocations_until_failure > 0 && --evod::tests::allocations_until_failure == 0)
+    if (evod::tests::allocations_until_failure > 0 && --evod::tests::allocations_until_failure == 0) {
         throw std::bad_alloc{};
+    }
 }
 
 } // namespace
@@ -24,15 +25,17 @@ void count() {
 
 void* operator new(std::size_t size) {
     count();
-    if (void* memory = std::malloc(size > 0 ? size : 1))
+    if (void* memory = std::malloc(size > 0 ? size : 1)) {
         return memory;
+    }
     throw std::bad_alloc{};
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
     count();
     const auto align = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align))
+    if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) {
         return memory;
+    }
     throw std::bad_alloc{};
 }
 void operator delete(void* memory) noexcept {

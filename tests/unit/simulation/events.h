@@ -13,9 +13,11 @@ namespace evod::simulation {
 template <class Kind>
 std::vector<Kind> events(World& world) {
     std::vector<Kind> found;
-    for (EventKind& event : world.take_events())
-        if (auto* kind = std::get_if<Kind>(&event))
+    for (EventKind& event : world.take_events()) {
+        if (auto* kind = std::get_if<Kind>(&event)) {
             found.push_back(std::move(*kind));
+        }
+    }
     return found;
 }
 

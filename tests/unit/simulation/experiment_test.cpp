@@ -38,8 +38,9 @@ TEST(Experiment, KeepsAllBitsOfASeed) {
     EXPECT_EQ(parse_experiment(R"({"seed": 18446744073709551615})")->seed, base::Seed{~std::uint64_t{0}});
     EXPECT_EQ(parse_experiment(R"({"seed": 9223372036854775808})")->seed, base::Seed{std::uint64_t{1} << 63});
     EXPECT_EQ(parse_experiment(R"({"seed": 0})")->seed, base::Seed{0});
-    for (const char* bad : {"-1", "1.5", "18446744073709551616", "\"7\"", "null"})
+    for (const char* bad : {"-1", "1.5", "18446744073709551616", "\"7\"", "null"}) {
         EXPECT_THAT(refusal_of(std::string{"{\"seed\": "} + bad + "}"), HasSubstr("seed (line 1)")) << bad;
+    }
 }
 
 TEST(Experiment, LetsTheReferencePopulationFollowItsOwnPopulation) {
@@ -70,8 +71,9 @@ TEST(Experiment, NamesEveryFieldThatIsWrongWithItsLine) {
                                           "  \"description\": 4,\n  \"selection\": [\"roulette\"]\n}");
     ASSERT_FALSE(refused.has_value());
     std::vector<std::string> fields;
-    for (const base::Violation& violation : refused.error().violations)
+    for (const base::Violation& violation : refused.error().violations) {
         fields.push_back(violation.field);
+    }
     EXPECT_THAT(fields, testing::UnorderedElementsAre("food_cuont (line 2)", "tick_s (line 3)", "respawn (line 5)",
                                                       "description (line 6)", "selection (line 7)"));
     EXPECT_THAT(to_text(refused.error()), HasSubstr("did you mean food_count"));
@@ -90,8 +92,9 @@ TEST(Experiment, RefusesAFieldThatIsGivenTwice) {
 
 TEST(Experiment, RefusesNumbersThatAreNone) {
     for (const char* text : {R"({"tick_s": NaN})", R"({"tick_s": Infinity})", R"({"tick_s": 1e999})",
-                             R"({"food_count": -3})", R"({"food_count": 2.5})", R"({"food_count": 5000000000})"})
+                             R"({"food_count": -3})", R"({"food_count": 2.5})", R"({"food_count": 5000000000})"}) {
         EXPECT_NE(refusal_of(text), "") << text;
+    }
 }
 
 TEST(Experiment, OfItsOwnTextIsTheSame) {
@@ -163,8 +166,9 @@ TEST(Experiment, OfItsOwnTextHasTheSameSchedule) {
         EXPECT_EQ(*alone, experiment->schedule);
     }
     for (const char* text : {"[]", R"({"food_count": 3})", R"({"food_count": {"2": 3}})", R"({"x": {"1": 3}})",
-                             R"({"island_count": {"1": 1, "2": 3}})", R"({"tick_s": {"1": -1, "2": 0.1}})"})
+                             R"({"island_count": {"1": 1, "2": 3}})", R"({"tick_s": {"1": -1, "2": 0.1}})"}) {
         EXPECT_FALSE(parse_schedule(text)) << text;
+    }
 }
 
 TEST(Experiment, NamesWhatIsWrongWithAScheduleByGenerationAndLine) {
@@ -211,8 +215,9 @@ TEST(Experiment, EveryCombinationOfAScheduleIsValidated) {
 TEST(Experiment, ASchedulesSizeIsBounded) {
     const auto steps = [](std::size_t count) {
         std::string text = "{\"food_health\": {\"1\": 0";
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             text += ", \"" + std::to_string(i + 2) + "\": " + std::to_string(i % 7);
+        }
         return text + "}}";
     };
     EXPECT_EQ(refusal_of(steps(Schedule::values_max)), "");
@@ -222,8 +227,9 @@ TEST(Experiment, ASchedulesSizeIsBounded) {
 TEST(ExperimentsOfTheRepository, AreAllAccepted) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator{EVOD_SOURCE_FOLDER "/experiments"}) {
-        if (entry.path().extension() != ".json")
+        if (entry.path().extension() != ".json") {
             continue;
+        }
         std::ifstream file{entry.path()};
         std::stringstream text;
         text << file.rdbuf();

@@ -60,14 +60,16 @@ TEST(TheFarCorner, HasTheSameMotionsBitForBit) {
             ASSERT_EQ(there.bodies.velocity_x[i], here.bodies.velocity_x[i]) << "tick " << tick << ", body " << i;
             ASSERT_EQ(there.bodies.velocity_y[i], here.bodies.velocity_y[i]) << "tick " << tick << ", body " << i;
         }
-        for (std::size_t i = 0; i < here.boxes.size(); ++i)
+        for (std::size_t i = 0; i < here.boxes.size(); ++i) {
             ASSERT_EQ(there.boxes.x[i] - here.boxes.x[i], shift_x) << "tick " << tick << ", box " << i;
+        }
         ASSERT_EQ(there.meals(there.food_feeding).size(), here.meals(here.food_feeding).size()) << "tick " << tick;
         eaten += here.meals(here.food_feeding).size();
         here.eat();
         there.eat();
-        for (std::uint32_t item = 0; item < here.food.size(); ++item)
+        for (std::uint32_t item = 0; item < here.food.size(); ++item) {
             ASSERT_EQ(there.food.present(item), here.food.present(item)) << "tick " << tick << ", item " << item;
+        }
     }
     EXPECT_GT(eaten, 200u);
 }

@@ -36,9 +36,11 @@ using Meal = Meadow::Meal;
 std::vector<Meal> awarded(Feeding& feeding) {
     const std::size_t count = feeding.award();
     std::vector<Meal> meals;
-    for (const Touch& touch : feeding.touches(0))
-        if (touch.gets_it)
+    for (const Touch& touch : feeding.touches(0)) {
+        if (touch.gets_it) {
             meals.push_back({touch.item, touch.body});
+        }
+    }
     EXPECT_EQ(meals.size(), count);
     return meals;
 }
@@ -55,8 +57,9 @@ std::vector<Meal> meals_of(const physics::Circles& bodies, const Items& items) {
 std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Items& items) {
     std::vector<Meal> meals;
     for (std::uint32_t item = 0; item < items.size(); ++item) {
-        if (!items.present(item))
+        if (!items.present(item)) {
             continue;
+        }
         float best = 0;
         std::size_t eater = bodies.size();
         for (std::size_t i = 0; i < bodies.size();
@@ -69,8 +72,9 @@ std::vector<Meal> meals_by_trying_all(const physics::Circles& bodies, const Item
                 eater = i;
             }
         }
-        if (eater != bodies.size())
+        if (eater != bodies.size()) {
             meals.push_back({item, static_cast<std::uint32_t>(eater)});
+        }
     }
     return meals;
 }
@@ -89,12 +93,13 @@ TEST(Feeding, GivesAnItemToItsNearestToucherAndOfEquallyNearOnesToTheLowestId) {
     const auto meal = [&](std::vector<std::pair<double, double>> offsets) {
         physics::Circles bodies;
         std::uint32_t id = 5;
-        for (const auto& [dx, dy] : offsets)
+        for (const auto& [dx, dy] : offsets) {
             bodies.add({.id = id++,
                         .x = items.all()[0].x + to_units(dx),
                         .y = items.all()[0].y + to_units(dy),
                         .radius = 10,
                         .mass = 1});
+        }
         return meals_of(bodies, items);
     };
     EXPECT_TRUE(meal({{14.01, 0}}).empty());
@@ -110,8 +115,9 @@ TEST(Feeding, LetsOneOrganismEatSeveral) {
     const std::vector<Meal> meals = meals_of(bodies, items);
     ASSERT_EQ(meals.size(), 30u);
     std::set<std::uint32_t> eaten;
-    for (const Meal& meal : meals)
+    for (const Meal& meal : meals) {
         eaten.insert(meal.item);
+    }
     EXPECT_EQ(eaten.size(), 30u);
 }
 
@@ -127,11 +133,12 @@ void expect_nearest_are_known(const ViewColumns& view, const physics::Circles& b
         const float known = square_to(view.x[i], view.y[i]);
         float least = std::numeric_limits<float>::infinity();
         std::uint32_t nearest = Items::none;
-        for (std::uint32_t item = 0; item < items.size(); ++item)
+        for (std::uint32_t item = 0; item < items.size(); ++item) {
             if (items.present(item) && square_to(items.all()[item].x, items.all()[item].y) < least) {
                 least = square_to(items.all()[item].x, items.all()[item].y);
                 nearest = item;
             }
+        }
         if (least > view.radius[i] * view.radius[i]) {
             ASSERT_GT(known, view.radius[i] * view.radius[i])
                 << "sees what is not there: body " << i << ", tick " << tick;
@@ -139,11 +146,12 @@ void expect_nearest_are_known(const ViewColumns& view, const physics::Circles& b
         }
         ASSERT_EQ(view.x[i], items.all()[nearest].x) << "body " << i << ", tick " << tick;
         ASSERT_EQ(view.y[i], items.all()[nearest].y) << "body " << i << ", tick " << tick;
-        for (std::uint32_t item = 0; item < items.size(); ++item)
+        for (std::uint32_t item = 0; item < items.size(); ++item) {
             if (items.present(item) && item != nearest && view.others[i] > 0) {
                 ASSERT_GE(square_to(items.all()[item].x, items.all()[item].y), view.others[i] * view.others[i])
                     << "body " << i << ", tick " << tick;
             }
+        }
     }
 }
 
@@ -193,8 +201,9 @@ TEST_P(AMeadow, SeesAndFeedsAsLookingAtEverythingInEveryTickWould) {
         const OrganismColumns columns = meadow.columns();
         expect_nearest_are_known(columns.food, meadow.bodies, meadow.food, tick);
         expect_nearest_are_known(columns.poison, meadow.bodies, meadow.poison, tick);
-        if (HasFatalFailure())
+        if (HasFatalFailure()) {
             return;
+        }
         meadow.act();
         looked += static_cast<std::size_t>(std::count_if(
             columns.food.others, columns.food.others + meadow.bodies.size(), [](float others) { return others < 0; }));
@@ -202,8 +211,9 @@ TEST_P(AMeadow, SeesAndFeedsAsLookingAtEverythingInEveryTickWould) {
                      static_cast<int>(tick));
         expect_equal(meadow.meals(meadow.poison_feeding), meals_by_trying_all(meadow.bodies, meadow.poison), "poison",
                      static_cast<int>(tick));
-        if (HasFatalFailure())
+        if (HasFatalFailure()) {
             return;
+        }
         eaten += meadow.meals(meadow.food_feeding).size() + meadow.meals(meadow.poison_feeding).size();
         meadow.eat();
     }

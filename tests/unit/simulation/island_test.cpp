@@ -30,8 +30,9 @@ class SmallIsland : public testing::Test {
     void begin(const std::vector<evolution::Chromosome>& chromosomes) {
         evolution::NextGeneration born;
         born.genes = evolution::GeneMatrix(evolution::gene_count, static_cast<Eigen::Index>(chromosomes.size()));
-        for (std::size_t i = 0; i < chromosomes.size(); ++i)
+        for (std::size_t i = 0; i < chromosomes.size(); ++i) {
             born.genes.col(static_cast<Eigen::Index>(i)) = chromosomes[i];
+        }
         island.begin_generation(parameters, 1, std::move(born), executor);
     }
     void tick() { island.advance_tick(parameters, ++now, executor); }
@@ -48,8 +49,9 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     begin({genes_of(0, 0, 50, 20, 0, 0), genes_of(0, 0, 50, 30, 0, 0)});
     tick();
     EXPECT_FLOAT_EQ(health(0), 19.9f);
-    while (island.alive_count() == 2)
+    while (island.alive_count() == 2) {
         tick();
+    }
     EXPECT_NEAR(now, 200, 1) << "6 health/s: 20 last 200 ticks, to the rounding of floats";
     const std::uint32_t died = now;
     EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
@@ -57,8 +59,9 @@ TEST_F(SmallIsland, LosesHealthAtItsRateUntilItStarves) {
     EXPECT_EQ(island.counts().starved_count, 1u);
     EXPECT_FALSE(island.body_of(0).has_value());
     EXPECT_EQ(island.bodies().id[island.body_of(1).value()], 1u);
-    while (now < 250)
+    while (now < 250) {
         tick();
+    }
     EXPECT_NEAR(fitness()[0], died / 60.0, 1e-9) << "the health of the dead is 0, their seconds count";
     EXPECT_NEAR(fitness()[1], 250 / 60.0 + 5, 1e-2);
 }
@@ -82,8 +85,9 @@ TEST_F(SmallIsland, StarvesWhenHungerTakesTheLastHealthLongAfterPoison) {
     parameters.respawn = false;
     parameters.poison_harm = 0.01;
     begin({genes_of(0, 0, 100, 5, 0, 0)});
-    while (island.alive_count() > 0)
+    while (island.alive_count() > 0) {
         tick();
+    }
     EXPECT_GT(island.fate().poison_eaten[0], 0u);
     EXPECT_EQ(island.fate().cause[0], CauseOfDeath::Starved);
 }
@@ -150,9 +154,10 @@ TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
         begin({genes_of(0, 0, 150, 100, 0, 0)});
         tick();
         ASSERT_GT(island.counts().food_eaten, 0u);
-        for (std::uint32_t item = 0; item < island.food().size(); ++item)
+        for (std::uint32_t item = 0; item < island.food().size(); ++item) {
             ASSERT_TRUE(island.food().present(item) || island.food().all()[item].due_tick == 1 + std::max(ticks, 1u))
                 << "respawn_s " << parameters.respawn_s;
+        }
     }
     parameters.respawn = false;
     now = 0;
@@ -160,8 +165,9 @@ TEST_F(SmallIsland, LetsItemsReappearAfterTheirTimeInTicks) {
     tick();
     const std::uint32_t left = island.food().present_count();
     EXPECT_LT(left, 1000u);
-    while (now < 50)
+    while (now < 50) {
         tick();
+    }
     EXPECT_LE(island.food().present_count(), left);
 }
 
@@ -172,8 +178,9 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
     parameters.obstacle_count = 2;
     parameters.respawn_s = 0.3;
     std::vector<evolution::Chromosome> chromosomes;
-    for (int i = 0; i < 30; ++i)
+    for (int i = 0; i < 30; ++i) {
         chromosomes.push_back(genes_of(50, 100 + static_cast<float>(i), 80, 20, 100, 100));
+    }
     begin(chromosomes);
     const auto recomputed = [&] {
         base::StateHash sum;
@@ -181,8 +188,8 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
             const auto g = evolution::column(island.born().genes, id);
             sum += base::EntityHash{5, id}.add(g[0], g[1]).add(g[2], g[3]).add(g[4], g[5]).finish();
         }
-        for (std::size_t i = island.bodies().size(); i-- > 0;) // in any order
-            if (!island.bodies().is_void(i))
+        for (std::size_t i = island.bodies().size(); i-- > 0;) { // in any order
+            if (!island.bodies().is_void(i)) {
                 sum += base::hash_of({.kind = 1,
                                       .id = island.bodies().id[i],
                                       .a = static_cast<std::uint32_t>(island.bodies().x[i]),
@@ -190,18 +197,22 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
                                       .c = std::bit_cast<std::uint32_t>(island.bodies().velocity_x[i]),
                                       .d = std::bit_cast<std::uint32_t>(island.bodies().velocity_y[i]),
                                       .e = std::bit_cast<std::uint32_t>(island.living().health[i])});
-        for (std::uint32_t i = 0; i < island.crate_count(); ++i)
+            }
+        }
+        for (std::uint32_t i = 0; i < island.crate_count(); ++i) {
             sum += base::EntityHash{4, i}
                        .add(island.boxes().x[i], island.boxes().y[i])
                        .add(island.boxes().velocity_x[i], island.boxes().velocity_y[i])
                        .finish();
+        }
         const auto add_items = [&](const Items& items, std::uint32_t kind) {
             for (std::uint32_t item = 0; item < items.size(); ++item) {
                 base::EntityHash hash{kind, item};
-                if (items.present(item))
+                if (items.present(item)) {
                     hash.add(items.all()[item].x, items.all()[item].y);
-                else
+                } else {
                     hash.add(std::uint64_t{items.all()[item].due_tick});
+                }
                 sum += hash.finish();
             }
         };
@@ -218,8 +229,9 @@ TEST_F(SmallIsland, GivesItsHashFromEverythingOnIt) {
 
 TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
     std::vector<evolution::Chromosome> chromosomes;
-    for (int i = 0; i < 8; ++i)
+    for (int i = 0; i < 8; ++i) {
         chromosomes.push_back(genes_of(0, 0, 40, i % 3 == 0 ? 0.05f : 50, 0, 0));
+    }
     begin(chromosomes);
     tick();
     EXPECT_EQ(island.alive_count(), 5u);
@@ -231,8 +243,9 @@ TEST_F(SmallIsland, TellsWhichBodyIsWhose) {
     tick(); // when the dead have left their places
     tick();
     EXPECT_EQ(island.bodies().id[island.body_of(4).value()], 4u);
-    for (const std::uint32_t dead : {0u, 3u, 6u, 8u, 1000u})
+    for (const std::uint32_t dead : {0u, 3u, 6u, 8u, 1000u}) {
         EXPECT_FALSE(island.body_of(dead).has_value());
+    }
 }
 
 TEST_F(SmallIsland, StartsAtRestWithTheSizesOfItsGenes) {

@@ -51,18 +51,22 @@ float square_to(const Items& items, std::uint32_t item, Coordinate x, Coordinate
 
 std::uint32_t nearest_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius) {
     std::uint32_t best = Items::none;
-    for (std::uint32_t item = 0; item < items.size(); ++item)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
         if (items.present(item) && square_to(items, item, x, y) <= radius * radius &&
-            (best == Items::none || square_to(items, item, x, y) < square_to(items, best, x, y)))
+            (best == Items::none || square_to(items, item, x, y) < square_to(items, best, x, y))) {
             best = item;
+        }
+    }
     return best;
 }
 
 float others_square_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius, std::uint32_t nearest) {
     float least = radius * radius;
-    for (std::uint32_t item = 0; item < items.size(); ++item)
-        if (items.present(item) && item != nearest)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
+        if (items.present(item) && item != nearest) {
             least = std::min(least, square_to(items, item, x, y));
+        }
+    }
     return least;
 }
 
@@ -70,9 +74,11 @@ using Found = std::vector<std::pair<std::uint32_t, float>>;
 
 Found within_by_trying_all(const Items& items, Coordinate x, Coordinate y, float radius) {
     Found found;
-    for (std::uint32_t item = 0; item < items.size(); ++item)
-        if (items.present(item) && square_to(items, item, x, y) <= radius * radius)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
+        if (items.present(item) && square_to(items, item, x, y) <= radius * radius) {
             found.emplace_back(item, square_to(items, item, x, y));
+        }
+    }
     return found;
 }
 
@@ -107,10 +113,11 @@ base::StateHash recomputed_hash(const Items& items, const std::vector<std::uint3
     base::StateHash hash;
     for (std::uint32_t item = 0; item < items.size(); ++item) {
         base::EntityHash entity{2, item};
-        if (due[item] == 0)
+        if (due[item] == 0) {
             entity.add(items.all()[item].x, items.all()[item].y);
-        else
+        } else {
             entity.add(std::uint64_t{due[item]});
+        }
         hash += entity.finish();
     }
     return hash;
@@ -118,11 +125,12 @@ base::StateHash recomputed_hash(const Items& items, const std::vector<std::uint3
 
 TEST(Items, AreFoundAsByTryingAll) {
     base::RandomStream random = stream(1);
-    for (const std::uint32_t count : {0u, 1u, 7u, 100u, 3000u})
+    for (const std::uint32_t count : {0u, 1u, 7u, 100u, 3000u}) {
         for (const auto& [width, height] : {std::pair{1280.0, 720.0}, {150.0, 5000.0}, {100.0, 100.0}, {5e5, 5e5}}) {
             const Area area{to_units(width), to_units(height)};
             expect_queries_agree(some_items(count, area), area, random, count > 1000 ? 60 : 200);
         }
+    }
 }
 
 TEST(Items, AreFoundWhenThousandsShareACell) {
@@ -141,9 +149,11 @@ TEST(Items, AreFoundWhenThousandsShareACell) {
     expect_queries_agree(items, corner, random, 50);
     for (std::uint32_t tick = 1; tick <= 40; ++tick) { // and while they come and go
         items.reappear(tick, BoxGrid{area, obstacles}, executor);
-        for (int eaten = 0; eaten < 150; ++eaten)
-            if (const std::uint32_t item = random.below(items.size()); items.present(item))
+        for (int eaten = 0; eaten < 150; ++eaten) {
+            if (const std::uint32_t item = random.below(items.size()); items.present(item)) {
                 items.consume(item, tick);
+            }
+        }
         expect_queries_agree(items, corner, random, 5);
     }
 }
@@ -194,13 +204,15 @@ TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
         base::RandomStream random = stream(respawn_ticks);
         for (std::uint32_t tick = 1; tick <= 400; ++tick) {
             items.reappear(tick, {}, executor);
-            for (std::uint32_t& when : due)
+            for (std::uint32_t& when : due) {
                 when = when <= tick ? 0 : when;
-            for (int eaten = 0; eaten < 3; ++eaten)
+            }
+            for (int eaten = 0; eaten < 3; ++eaten) {
                 if (const std::uint32_t item = random.below(300); due[item] == 0) {
                     items.consume(item, tick);
                     due[item] = tick + respawn_ticks;
                 }
+            }
             std::uint32_t there = 0;
             for (std::uint32_t item = 0; item < 300; ++item) {
                 ASSERT_EQ(items.present(item), due[item] == 0) << "item " << item << ", tick " << tick;
@@ -208,8 +220,9 @@ TEST(Items, ComeAndGoAsTheirRulesSayAndKeepTheirHash) {
             }
             ASSERT_EQ(items.present_count(), there);
             ASSERT_EQ(items.hash(), recomputed_hash(items, due)) << "tick " << tick;
-            if (tick % 20 == 0)
+            if (tick % 20 == 0) {
                 expect_queries_agree(items, area, random, 10);
+            }
         }
     }
 }
@@ -218,8 +231,9 @@ TEST(Items, ThatDoNotReappearStayAway) {
     Items items;
     items.begin_generation(rules(20, 1, false), base::Seed{5}, 0, 1, {to_units(500.0), to_units(500.0)}, {}, executor);
     items.consume(3, 1);
-    for (std::uint32_t tick = 2; tick < 1000; ++tick)
+    for (std::uint32_t tick = 2; tick < 1000; ++tick) {
         items.reappear(tick, {}, executor);
+    }
     EXPECT_FALSE(items.present(3));
     EXPECT_EQ(items.present_count(), 19u);
 }
@@ -228,8 +242,9 @@ TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
     const Area area{to_units(400.0), to_units(300.0)};
     Boxes obstacles;
     base::RandomStream random = stream(6);
-    for (int i = 0; i < 10; ++i)
+    for (int i = 0; i < 10; ++i) {
         obstacles.add(to_units(random.uniform(30, 370)), to_units(random.uniform(30, 270)), 25, 15, 0);
+    }
     Items items = some_items(500, area, obstacles);
     const auto expect_clear = [&] {
         for (std::uint32_t item = 0; item < items.size(); ++item) {
@@ -237,16 +252,18 @@ TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
             ASSERT_LE(items.all()[item].x, area.width - to_units(4.0));
             ASSERT_GE(items.all()[item].y, to_units(4.0));
             ASSERT_LE(items.all()[item].y, area.height - to_units(4.0));
-            for (std::size_t box = 0; box < obstacles.size(); ++box)
+            for (std::size_t box = 0; box < obstacles.size(); ++box) {
                 ASSERT_FALSE(physics::box_circle(physics::distance_px(obstacles.x[box], items.all()[item].x),
                                                  physics::distance_px(obstacles.y[box], items.all()[item].y), {25, 15},
                                                  4)
                                  .touching);
+            }
         }
     };
     expect_clear();
-    for (std::uint32_t item = 0; item < items.size(); ++item)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
         items.consume(item, 1);
+    }
     EXPECT_EQ(nearest_of(items, to_units(200.0), to_units(150.0), 1000), Items::none);
     items.reappear(2, BoxGrid{area, obstacles}, executor);
     EXPECT_EQ(items.present_count(), 500u);
@@ -256,11 +273,13 @@ TEST(Items, LieClearOfWallsAndObstaclesAtFirstAndWhenTheyReappear) {
 TEST(Items, ReappearElsewhere) {
     Items items = some_items(100, {to_units(1000.0), to_units(1000.0)});
     const auto before = items.all();
-    for (std::uint32_t item = 0; item < items.size(); ++item)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
         items.consume(item, 5);
+    }
     items.reappear(6, {}, executor);
-    for (std::uint32_t item = 0; item < items.size(); ++item)
+    for (std::uint32_t item = 0; item < items.size(); ++item) {
         EXPECT_NE(items.all()[item].x, before[item].x);
+    }
 }
 
 } // namespace

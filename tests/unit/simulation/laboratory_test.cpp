@@ -29,8 +29,9 @@ class OneWorld : public testing::Test {
     /// Ticks for as long as the world wants them; at most `limit`.
     std::uint64_t run_on(std::uint64_t limit = 1000) {
         std::uint64_t ticks = 0;
-        for (; ticks < limit && entry().wants_tick(); ++ticks)
+        for (; ticks < limit && entry().wants_tick(); ++ticks) {
             laboratory.advance(entry(), executor);
+        }
         return ticks;
     }
     RefusalCode code_of(const Command& command) {
@@ -44,8 +45,9 @@ class OneWorld : public testing::Test {
     template <class Kind>
     std::size_t count_events() {
         std::size_t count = 0;
-        for (const Event& event : laboratory.take_events())
+        for (const Event& event : laboratory.take_events()) {
             count += std::holds_alternative<Kind>(event.kind);
+        }
         return count;
     }
 
@@ -242,8 +244,9 @@ TEST_F(OneWorld, AGivenFirstPopulationIsBegunWithAgainAsLongAsItCanBe) {
     };
     EXPECT_TRUE(begins_with_it());
     EXPECT_NE(world.hash(), entry().world.hash());
-    for (int tick = 0; tick < 20; ++tick)
+    for (int tick = 0; tick < 20; ++tick) {
         world.advance_tick(executor);
+    }
     EXPECT_FALSE(begins_with_it());
     ASSERT_TRUE(laboratory.apply(ResetWorld{"given", base::Seed{2}, {}}).has_value());
     EXPECT_TRUE(begins_with_it());
@@ -320,8 +323,9 @@ TEST(Laboratory, CreatesUpToItsLimitAndDeletes) {
     const auto create = [&](const std::string& name) {
         return laboratory.apply(CreateWorld{name, small, base::Seed{1}, {}});
     };
-    for (std::size_t i = 0; i < worlds_max; ++i)
+    for (std::size_t i = 0; i < worlds_max; ++i) {
         ASSERT_TRUE(create("w" + std::to_string(i)).has_value());
+    }
     EXPECT_EQ(create("w0").error().code, RefusalCode::AlreadyExists);
     EXPECT_EQ(create("one_more").error().code, RefusalCode::ResourceExhausted);
     EXPECT_EQ(laboratory.entries().size(), worlds_max);
@@ -380,8 +384,9 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
             for (std::uint32_t i = 0; i < random.below(4); ++i) {
                 const auto& description =
                     parameter_registry()[random.below(static_cast<std::uint32_t>(parameter_registry().size()))];
-                if (description.name == "island_count" || description.name == "generation_s")
+                if (description.name == "island_count" || description.name == "generation_s") {
                     continue; // costly only
+                }
                 ParameterValue value;
                 if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
                     const double now = real->get(entry.world.parameters().requested);
@@ -404,16 +409,19 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
                 ASSERT_TRUE(laboratory.apply(ResetWorld{"w", {}, {}}).has_value());
                 ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
             }
-            if (entry.wants_tick())
+            if (entry.wants_tick()) {
                 laboratory.advance(entry, executor);
-            for (const Island& island : entry.world.islands())
+            }
+            for (const Island& island : entry.world.islands()) {
                 for (std::size_t i = 0; i < island.bodies().size(); ++i) {
-                    if (island.bodies().is_void(i))
+                    if (island.bodies().is_void(i)) {
                         continue;
+                    }
                     ASSERT_TRUE(std::isfinite(island.bodies().velocity_x[i])) << "seed " << seed << ", tick " << tick;
                     ASSERT_GE(island.bodies().x[i], 0);
                     ASSERT_LE(island.bodies().x[i], island.area().width);
                 }
+            }
             laboratory.take_events();
         }
     }
@@ -422,11 +430,13 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
 }
 
 TEST(WorldNames, AreOfAFewPlainCharactersAndNotLong) {
-    for (const char* good : {"a", "A-z_09", "default"})
+    for (const char* good : {"a", "A-z_09", "default"}) {
         EXPECT_TRUE(is_world_name(good)) << good;
+    }
     for (const std::string& bad :
-         {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}})
+         {std::string{}, std::string(65, 'a'), std::string{"a b"}, std::string{"ä"}, std::string{"a\0b", 3}}) {
         EXPECT_FALSE(is_world_name(bad)) << bad;
+    }
 }
 
 } // namespace

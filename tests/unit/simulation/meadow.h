@@ -69,8 +69,9 @@ struct Meadow {
     /// Items reappear, and all know what is nearest.
     void perceive() {
         ++tick;
-        if (stepper.near().worn(bodies, boxes))
+        if (stepper.near().worn(bodies, boxes)) {
             stepper.near().renew(bodies, boxes, area, executor);
+        }
         food.reappear(tick, {}, executor);
         poison.reappear(tick, {}, executor);
         sight.notice_food(bodies, stepper.near(), living, food, executor);
@@ -110,18 +111,23 @@ struct Meadow {
     };
     std::vector<Meal> meals(const Feeding& feeding) const {
         std::vector<Meal> meals;
-        for (std::size_t block = 0; block < physics::block_count(bodies.size()); ++block)
-            for (const Touch& touch : feeding.touches(block))
-                if (touch.gets_it)
+        for (std::size_t block = 0; block < physics::block_count(bodies.size()); ++block) {
+            for (const Touch& touch : feeding.touches(block)) {
+                if (touch.gets_it) {
                     meals.push_back({touch.item, touch.body});
+                }
+            }
+        }
         return meals;
     }
 
     void eat() {
-        for (const Meal& meal : meals(food_feeding))
+        for (const Meal& meal : meals(food_feeding)) {
             food.consume(meal.item, tick);
-        for (const Meal& meal : meals(poison_feeding))
+        }
+        for (const Meal& meal : meals(poison_feeding)) {
             poison.consume(meal.item, tick);
+        }
     }
 };
 

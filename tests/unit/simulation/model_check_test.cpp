@@ -49,12 +49,14 @@ History history_of(SelectionMethod selection, std::size_t generations, base::See
     while (history.size() < generations) {
         world.advance_tick(executor);
         world.take_events();
-        if (!world.generation_over())
+        if (!world.generation_over()) {
             continue;
+        }
         const GenerationStatistics& s = world.history().back().front();
         double lived_s = 0;
-        for (const std::uint32_t ticks : world.islands().front().fate().lived_ticks)
+        for (const std::uint32_t ticks : world.islands().front().fate().lived_ticks) {
             lived_s += (ticks == 0 ? static_cast<double>(world.moment().generation_tick) : ticks) * parameters.tick_s;
+        }
         history.push_back({.fitness_mean = s.fitness_mean,
                            .fitness_best = s.fitness_best,
                            .survival = static_cast<double>(s.alive_count) / s.organism_count,
@@ -70,27 +72,32 @@ struct Estimate {
 
 Estimate estimate(const std::array<double, seed_count>& values) {
     double sum = 0, squares = 0;
-    for (const double value : values)
+    for (const double value : values) {
         sum += value;
+    }
     const double mean = sum / seed_count;
-    for (const double value : values)
+    for (const double value : values) {
         squares += (value - mean) * (value - mean);
+    }
     return {mean, std::sqrt(squares / (seed_count - 1) / seed_count)};
 }
 
 /// generation  1 for the first.
 Estimate across_seeds(const Series& series, std::size_t generation, double Generation::*figure) {
     std::array<double, seed_count> values;
-    for (std::size_t seed = 0; seed < seed_count; ++seed)
+    for (std::size_t seed = 0; seed < seed_count; ++seed) {
         values[seed] = series.worlds[seed].at(generation - 1).*figure;
+    }
     return estimate(values);
 }
 
 std::array<double, seed_count> mean_fitness_of_generations_21_to_30(const Series& series) {
     std::array<double, seed_count> means{};
-    for (std::size_t seed = 0; seed < seed_count; ++seed)
-        for (std::size_t generation = 21; generation <= 30; ++generation)
+    for (std::size_t seed = 0; seed < seed_count; ++seed) {
+        for (std::size_t generation = 21; generation <= 30; ++generation) {
             means[seed] += series.worlds[seed][generation - 1].fitness_mean / 10;
+        }
+    }
     return means;
 }
 
@@ -100,34 +107,41 @@ void run_on_all_cores(std::vector<Series>& all) {
         std::size_t seed;
     };
     std::vector<Task> tasks;
-    for (Series& series : all) // longest first
-        for (std::size_t seed = 0; seed < seed_count; ++seed)
+    for (Series& series : all) { // longest first
+        for (std::size_t seed = 0; seed < seed_count; ++seed) {
             tasks.push_back({&series, seed});
+        }
+    }
     std::atomic<std::size_t> next = 0;
     std::vector<std::thread> threads;
-    for (unsigned i = 0; i < std::max(std::thread::hardware_concurrency(), 1u); ++i)
+    for (unsigned i = 0; i < std::max(std::thread::hardware_concurrency(), 1u); ++i) {
         threads.emplace_back([&] {
-            for (std::size_t t = next++; t < tasks.size(); t = next++)
+            for (std::size_t t = next++; t < tasks.size(); t = next++) {
                 tasks[t].series->worlds[tasks[t].seed] = history_of(
                     tasks[t].series->selection, tasks[t].series->generations, base::Seed{1000 + tasks[t].seed});
+            }
         });
-    for (std::thread& thread : threads)
+    }
+    for (std::thread& thread : threads) {
         thread.join();
+    }
 }
 
 void print(const Series& series) {
     std::printf("%-20s fitness", series.name);
-    for (const std::size_t generation : {1, 10, 20, 30, 60})
+    for (const std::size_t generation : {1, 10, 20, 30, 60}) {
         if (generation <= series.generations) {
             const Estimate fitness = across_seeds(series, generation, &Generation::fitness_mean);
             std::printf(" %6.1f (%.1f)", fitness.mean, fitness.error);
         }
-    for (const std::size_t generation : {std::size_t{1}, std::size_t{30}, series.generations})
+    }
+    for (const std::size_t generation : {std::size_t{1}, std::size_t{30}, series.generations}) {
         std::printf(" | g%zu alive %.2f food/s %.3f poison/s %.4f best %.0f", generation,
                     across_seeds(series, generation, &Generation::survival).mean,
                     across_seeds(series, generation, &Generation::food_per_s).mean,
                     across_seeds(series, generation, &Generation::poison_per_s).mean,
                     across_seeds(series, generation, &Generation::fitness_best).mean);
+    }
     std::printf("\n");
 }
 
@@ -146,15 +160,17 @@ TEST(TheDefaultWorld, BehavesAndEvolvesAsItWasMeasuredToDo) {
     run_on_all_cores(all);
     std::printf("%zu seeds; fitness: mean over the seeds (standard error) at generations 1, 10, 20, 30, 60\n",
                 seed_count);
-    for (const Series& series : all)
+    for (const Series& series : all) {
         print(series);
+    }
 
     // Generations 21 to 30 against random selection with the same seeds: one-sided paired t-test.
     const Series& random = all[4];
     for (std::size_t i = 0; i < 4; ++i) {
         std::array<double, seed_count> gain = mean_fitness_of_generations_21_to_30(all[i]);
-        for (std::size_t seed = 0; seed < seed_count; ++seed)
+        for (std::size_t seed = 0; seed < seed_count; ++seed) {
             gain[seed] -= mean_fitness_of_generations_21_to_30(random)[seed];
+        }
         const Estimate mean_gain = estimate(gain);
         const double t = mean_gain.mean / mean_gain.error;
         const double p = boost::math::cdf(boost::math::complement(boost::math::students_t(seed_count - 1), t));
@@ -173,9 +189,10 @@ TEST(TheDefaultWorld, BehavesAndEvolvesAsItWasMeasuredToDo) {
                     "roulette" + when);
         expect_near(across_seeds(all[1], known.generation, &Generation::fitness_mean), known.truncation, known.error,
                     "truncation" + when);
-        if (known.generation <= 30)
+        if (known.generation <= 30) {
             expect_near(across_seeds(random, known.generation, &Generation::fitness_mean), 79, known.error,
                         "random" + when);
+        }
     }
 
     // The first generation is the same whatever the selection; the other program's errors are taken to be ours.

@@ -17,8 +17,9 @@ class NoMemory : public testing::Test {
         parameters.generation_s = 2;
         EXPECT_TRUE(
             laboratory.apply(CreateWorld{.name = "w", .parameters = parameters, .seed = {7}, .run_id = {1, 2}}));
-        while (world().moment().generation < 3 || world().moment().generation_tick < 10)
+        while (world().moment().generation < 3 || world().moment().generation_tick < 10) {
             laboratory.advance(**laboratory.find("w"), executor);
+        }
         EXPECT_TRUE(laboratory.apply(
             SetParameters{.world = "w", .assignments = {{"food_health", 7.0}}, .expected_revision = {}}));
     }

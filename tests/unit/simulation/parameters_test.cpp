@@ -33,9 +33,11 @@ bool accepted(std::string_view name, ParameterValue value) {
 /// Where a set is refused, the violations as "field: got X, allowed Y".
 std::vector<std::string> violations(const base::Result<Parameters>& result) {
     std::vector<std::string> texts;
-    if (!result)
-        for (const base::Violation& violation : result.error().violations)
+    if (!result) {
+        for (const base::Violation& violation : result.error().violations) {
             texts.push_back(to_text(violation));
+        }
+    }
     return texts;
 }
 
@@ -44,20 +46,26 @@ std::vector<ParameterValue> other_values(const ParameterDescription& description
     std::vector<ParameterValue> values;
     if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
         const double now = std::get<double>(description.default_value());
-        for (const double value : {now * 0.9, now * 1.05, real->range.min, real->range.max})
-            if (value != now && value >= real->range.min && value <= real->range.max)
+        for (const double value : {now * 0.9, now * 1.05, real->range.min, real->range.max}) {
+            if (value != now && value >= real->range.min && value <= real->range.max) {
                 values.emplace_back(value);
+            }
+        }
     } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
         const std::uint32_t now = std::get<std::uint32_t>(description.default_value());
-        for (const std::uint32_t value : {now + 1, now - 1})
-            if (value >= count->range.min && value <= count->range.max)
+        for (const std::uint32_t value : {now + 1, now - 1}) {
+            if (value >= count->range.min && value <= count->range.max) {
                 values.emplace_back(value);
+            }
+        }
     } else if (std::holds_alternative<FlagParameter>(description.kind)) {
         values.emplace_back(!std::get<bool>(description.default_value()));
     } else {
-        for (const std::string_view name : std::get<ChoiceParameter>(description.kind).names)
-            if (name != std::get<std::string>(description.default_value()))
+        for (const std::string_view name : std::get<ChoiceParameter>(description.kind).names) {
+            if (name != std::get<std::string>(description.default_value())) {
                 values.emplace_back(std::string{name});
+            }
+        }
     }
     return values;
 }
@@ -66,8 +74,9 @@ std::vector<ParameterValue> other_values(const ParameterDescription& description
 Assignment other_value(const ParameterDescription& description, const Parameters& parameters) {
     for (const ParameterValue& value : other_values(description)) {
         const auto assignments = one(description.name, value);
-        if (assign(parameters, assignments))
+        if (assign(parameters, assignments)) {
             return assignments.front();
+        }
     }
     ADD_FAILURE() << description.name << " has no value but its default";
     return {};
@@ -103,9 +112,10 @@ TEST(ParameterRegistry, GivesBackWhatWasSetAndChangesNothingElse) {
         const Assignment assignment = other_value(description, {});
         const auto changed = assign({}, std::vector{assignment});
         ASSERT_TRUE(changed.has_value()) << description.name;
-        for (const ParameterDescription& each : parameter_registry())
+        for (const ParameterDescription& each : parameter_registry()) {
             EXPECT_EQ(each.get(*changed), &each == &description ? assignment.value : each.default_value())
                 << each.name << " after setting " << description.name;
+        }
         EXPECT_FALSE(*changed == Parameters{});
         EXPECT_THAT(parameters_that_differ({}, *changed), testing::ElementsAre(&description));
         Parameters copy;
@@ -115,12 +125,13 @@ TEST(ParameterRegistry, GivesBackWhatWasSetAndChangesNothingElse) {
 }
 
 TEST(ParameterRegistry, ReadsEachValueBackFromItsText) {
-    for (const ParameterDescription& description : parameter_registry())
+    for (const ParameterDescription& description : parameter_registry()) {
         for (const ParameterValue& value : other_values(description)) {
             const auto read = parse_value(description, to_text(value));
             ASSERT_TRUE(read.has_value()) << description.name << " " << to_text(value);
             EXPECT_EQ(*read, value) << description.name;
         }
+    }
 }
 
 TEST(ParameterRegistry, RefusesTextThatIsNoValue) {
@@ -311,8 +322,9 @@ RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForEverythingInIt, ()) {
                                                                {"crate_count", count(40)},
                                                                {"crate_size_px", real(5, 60)}});
     RC_CLASSIFY(parameters.has_value());
-    if (parameters)
+    if (parameters) {
         World{*parameters, base::Seed{count(1000)}}; // aborts if it runs out of room
+    }
 }
 
 TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
@@ -351,10 +363,12 @@ TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
         world.request_parameters(*assign(world.parameters().requested, std::vector{assignment}));
         EXPECT_EQ(description.get(world.parameters().requested), assignment.value);
         EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
-        if (world.outcome() != evolution::Outcome::Running)
+        if (world.outcome() != evolution::Outcome::Running) {
             continue;
-        while (!world.generation_over())
+        }
+        while (!world.generation_over()) {
             world.advance_tick(executor);
+        }
         EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
         if (world.outcome() == evolution::Outcome::Running) {
             world.advance_tick(executor); // the first tick of the next generation

@@ -84,12 +84,14 @@ TEST(PlaceCircles, ClearOfWallsBoxesAndEachOtherInACrowd) {
                                            .crate_mass_kg = 4},
                                           base::Seed{4}, 0, 1, area);
     Boxes all = boxes.crates;
-    for (std::size_t i = 0; i < boxes.obstacles.size(); ++i)
+    for (std::size_t i = 0; i < boxes.obstacles.size(); ++i) {
         all.add(boxes.obstacles.x[i], boxes.obstacles.y[i], 20, 20, 0);
+    }
     std::vector<float> radius;
     base::RandomStream random{base::RandomKey{base::Seed{5}, base::Purpose::ScenarioTest, 0, 0}, 0};
-    for (int i = 0; i < 250; ++i)
+    for (int i = 0; i < 250; ++i) {
         radius.push_back(static_cast<float>(random.uniform(2, 16)));
+    }
     base::InlineExecutor executor;
     const std::vector<Place> places = place_circles(radius, base::Seed{6}, 0, 1, area, BoxGrid{area, all}, executor);
     ASSERT_EQ(places.size(), radius.size());
@@ -98,22 +100,26 @@ TEST(PlaceCircles, ClearOfWallsBoxesAndEachOtherInACrowd) {
         ASSERT_LE(places[i].x, area.width - to_units(radius[i]));
         ASSERT_GE(places[i].y, to_units(radius[i]));
         ASSERT_LE(places[i].y, area.height - to_units(radius[i]));
-        for (std::size_t j = 0; j < i; ++j)
+        for (std::size_t j = 0; j < i; ++j) {
             ASSERT_FALSE(circles_touch(places[i], radius[i], places[j], radius[j])) << i << " and " << j;
-        for (std::size_t box = 0; box < all.size(); ++box)
+        }
+        for (std::size_t box = 0; box < all.size(); ++box) {
             ASSERT_FALSE(physics::box_circle(physics::distance_px(all.x[box], places[i].x),
                                              physics::distance_px(all.y[box], places[i].y),
                                              {all.half_width[box], all.half_height[box]}, radius[i])
                              .touching);
+        }
     }
 }
 
 bool clear_of_all(Place place, float radius, const Boxes& boxes) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
         if (physics::box_circle(physics::distance_px(boxes.x[i], place.x), physics::distance_px(boxes.y[i], place.y),
                                 {boxes.half_width[i], boxes.half_height[i]}, radius)
-                .touching)
+                .touching) {
             return false;
+        }
+    }
     return true;
 }
 
@@ -134,8 +140,9 @@ std::vector<Place> place_one_by_one(const std::vector<float>& radius, base::Seed
             place.x = coordinate(area.width);
             place.y = coordinate(area.height);
             clear = clear_of_all(place, radius[id], boxes);
-            for (std::size_t other = 0; other < places.size() && clear; ++other)
+            for (std::size_t other = 0; other < places.size() && clear; ++other) {
                 clear = !circles_touch(places[other], radius[other], place, radius[id]);
+            }
         }
         places.push_back(place);
     }
@@ -159,10 +166,11 @@ struct Crowd {
         const double side = std::sqrt(covered / 0.4) + 2 * static_cast<double>(greatest);
         area = {to_units(1.25 * side), to_units(0.8 * side)};
         const auto half = static_cast<float>(side / 100);
-        for (int i = 0; i < 10; ++i)
+        for (int i = 0; i < 10; ++i) {
             boxes.add(static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.width))),
                       static_cast<Coordinate>(random.below(static_cast<std::uint32_t>(area.height))), half, half / 2,
                       0);
+        }
     }
 };
 
@@ -174,15 +182,17 @@ class PlaceCirclesOnAnyThreadCount : public testing::TestWithParam<std::size_t> 
 
 TEST_P(PlaceCirclesOnAnyThreadCount, PutsThemWherePuttingThemOneByOneWould) {
     support::ThreadExecutor executor{GetParam()};
-    for (const auto& [least, greatest] : {std::pair{20.0f, 20.0f}, {1.0f, 30.0f}})
+    for (const auto& [least, greatest] : {std::pair{20.0f, 20.0f}, {1.0f, 30.0f}}) {
         for (const std::size_t count : {1u, 50u, 6000u}) {
             const Crowd crowd{count, least, greatest};
             const auto places = place_circles(crowd.radius, base::Seed{11}, 2, 3, crowd.area,
                                               BoxGrid{crowd.area, crowd.boxes}, executor);
             const auto expected = place_one_by_one(crowd.radius, base::Seed{11}, crowd.area, crowd.boxes);
-            for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t i = 0; i < count; ++i) {
                 ASSERT_TRUE(places[i] == expected[i]) << i << " of " << count;
+            }
         }
+    }
 }
 INSTANTIATE_TEST_SUITE_P(Threads, PlaceCirclesOnAnyThreadCount, testing::Values(1, 2, 3, 8, 13));
 
@@ -199,8 +209,9 @@ TEST(PlaceCircles, ManyAreClearOfEachOtherWhereTheyCoverTwoFifthsOfTheIsland) {
         ASSERT_TRUE(clear_of_all(places[i], crowd.radius[i], crowd.boxes));
         for (std::size_t b = a + 1; b < by_x.size(); ++b) {
             const std::size_t j = by_x[b];
-            if (places[j].x - places[i].x > to_units(49.0))
+            if (places[j].x - places[i].x > to_units(49.0)) {
                 break;
+            }
             ASSERT_FALSE(circles_touch(places[i], crowd.radius[i], places[j], crowd.radius[j])) << i << " and " << j;
         }
     }
@@ -213,8 +224,9 @@ TEST(PlaceCircles, FindsRoomOnTheLargestIsland) {
     const std::vector<float> radius(300, 10'000);
     const auto places = place_circles(radius, base::Seed{13}, 2, 3, area, {}, executor);
     const auto expected = place_one_by_one(radius, base::Seed{13}, area, {});
-    for (std::size_t i = 0; i < radius.size(); ++i)
+    for (std::size_t i = 0; i < radius.size(); ++i) {
         ASSERT_TRUE(places[i] == expected[i]) << i;
+    }
 }
 
 TEST(BoxGrid, SaysWhatAskingEveryBoxSays) {
@@ -238,11 +250,12 @@ TEST(BoxGrid, SaysWhatAskingEveryBoxSays) {
             const auto size = static_cast<float>(random.uniform(0, 60));
             ASSERT_EQ(grid.clear_of_circle(place, size), clear_of_all(place, size, boxes));
             bool box_clear = true;
-            for (std::size_t i = 0; i < boxes.size(); ++i)
+            for (std::size_t i = 0; i < boxes.size(); ++i) {
                 box_clear &= !physics::box_box(physics::distance_px(boxes.x[i], place.x),
                                                physics::distance_px(boxes.y[i], place.y),
                                                {boxes.half_width[i], boxes.half_height[i]}, {size, size})
                                   .touching;
+            }
             ASSERT_EQ(grid.clear_of_box(place, size), box_clear);
             clear += box_clear;
         }
@@ -280,10 +293,12 @@ TEST(PlaceBoxes, CratesClearOfObstaclesAndOfEachOtherAllInsideTheWalls) {
         EXPECT_FLOAT_EQ(placed.crates.inverse_mass[i], 0.5f);
         ASSERT_GE(placed.crates.x[i], to_units(12.0));
         ASSERT_LE(placed.crates.y[i], area.height - to_units(12.0));
-        for (std::size_t j = 0; j < i; ++j)
+        for (std::size_t j = 0; j < i; ++j) {
             ASSERT_TRUE(clear(placed.crates, i, placed.crates, j));
-        for (std::size_t j = 0; j < 20; ++j)
+        }
+        for (std::size_t j = 0; j < 20; ++j) {
             ASSERT_TRUE(clear(placed.crates, i, placed.obstacles, j));
+        }
     }
     for (std::size_t i = 0; i < 20; ++i) {
         EXPECT_EQ(placed.obstacles.inverse_mass[i], 0);

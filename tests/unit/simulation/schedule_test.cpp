@@ -25,9 +25,11 @@ class ScheduleTest : public testing::Test {
     static Experiment read(const std::string& more) {
         std::string text = "{" + more;
         for (const auto& [name, value] :
-             {std::pair{"population_size", "12"}, {"generation_s", "0.2"}, {"island_count", "2"}})
-            if (more.find('"' + std::string{name} + '"') == std::string::npos)
+             {std::pair{"population_size", "12"}, {"generation_s", "0.2"}, {"island_count", "2"}}) {
+            if (more.find('"' + std::string{name} + '"') == std::string::npos) {
                 text += ", \"" + std::string{name} + "\": " + value;
+            }
+        }
         const auto experiment = parse_experiment(text + "}");
         EXPECT_TRUE(experiment) << to_text(experiment.error());
         return experiment ? *experiment : Experiment{};
@@ -36,12 +38,14 @@ class ScheduleTest : public testing::Test {
         return {experiment.parameters, base::Seed{seed}, {}, experiment.schedule};
     }
     void advance_to(World& world, std::uint64_t generation, std::uint64_t generation_tick) {
-        while (world.moment().generation < generation || world.moment().generation_tick < generation_tick)
+        while (world.moment().generation < generation || world.moment().generation_tick < generation_tick) {
             world.advance_tick(executor);
+        }
     }
     void end_generation(World& world, std::uint64_t generation) {
-        while (world.moment().generation < generation || !world.generation_over())
+        while (world.moment().generation < generation || !world.generation_over()) {
             world.advance_tick(executor);
+        }
     }
     void set(World& world, const std::string& name, ParameterValue value) {
         const auto requested = request_of(world.parameters(), std::vector{Assignment{name, std::move(value)}});
@@ -87,12 +91,15 @@ TEST_F(ScheduleTest, ComesToTheSameAsCommandsAtThoseTicks) {
         if (at.generation == 1 && commanded.generation_over()) {
             set(commanded, "food_health", 90.0);
         }
-        if (at.generation == 2 && commanded.generation_over())
+        if (at.generation == 2 && commanded.generation_over()) {
             set(commanded, "food_count", 8u);
-        if (at.generation == 3 && at.generation_tick == 1)
+        }
+        if (at.generation == 3 && at.generation_tick == 1) {
             set(commanded, "mutation_chance", 0.05);
-        if (at.generation == 3 && commanded.generation_over())
+        }
+        if (at.generation == 3 && commanded.generation_over()) {
             set(commanded, "population_size", 30u);
+        }
         scheduled.advance_tick(executor);
         commanded.advance_tick(executor);
         ASSERT_EQ(scheduled.hash(), commanded.hash()) << "states part at tick " << scheduled.moment().tick;
@@ -199,8 +206,9 @@ TEST_F(ScheduleTest, AResetThatCannotBeginSoIsRefused) {
 TEST_F(ScheduleTest, OfAFunctionOfTheChromosomeHoldsToo) {
     World world = make(read(R"("fitness": "gene_sum", "mutation_step": {"3": 0}, "reset_chance": {"1": 0.5, "3": 0},
         "crossover": {"3": "none"})"));
-    for (int generation = 1; generation <= 3; ++generation)
+    for (int generation = 1; generation <= 3; ++generation) {
         world.advance_tick(executor);
+    }
     EXPECT_EQ(world.parameters().active.mutation_step, 0);
     EXPECT_EQ(world.opening().parameters.active.reset_chance, 0.5) << "bred by what held before";
     world.advance_tick(executor);
@@ -302,8 +310,9 @@ TEST_F(PlannedTest, WhatIsDueTogetherIsMadeInOrderAfterTheSchedule) {
     EXPECT_EQ(world_of(both).parameters().active.mutation_chance, 0.3);
     EXPECT_EQ(world_of(both).parameters().active.mutation_step, 1);
     std::vector<std::uint64_t> order;
-    for (const ParametersChanged& changed : events<ParametersChanged>(world_of(both)))
+    for (const ParametersChanged& changed : events<ParametersChanged>(world_of(both))) {
         order.push_back(changed.planned);
+    }
     EXPECT_THAT(order, ElementsAre(0, 1, 2));
 }
 
@@ -359,8 +368,9 @@ TEST_F(PlannedTest, WhatCannotBePlannedIsRefusedAndNothingWaits) {
     other.dry_run = true;
     EXPECT_EQ(plan(other), 0u) << "would be accepted";
     EXPECT_TRUE(world().planned().empty());
-    for (std::size_t i = 0; i < planned_changes_max; ++i)
+    for (std::size_t i = 0; i < planned_changes_max; ++i) {
         plan(set("food_health", 1.0, tick(16 + i)));
+    }
     EXPECT_EQ(refused(set("food_health", 1.0, tick(16))).code, base::RefusalCode::ResourceExhausted);
 }
 

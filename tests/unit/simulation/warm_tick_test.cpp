@@ -15,8 +15,9 @@ TEST_P(AWarmTick, AllocatesNothing) {
     World world{parse_experiment(GetParam()).value().parameters, base::Seed{1}};
     base::InlineExecutor executor;
     // A generation, its turnover, and part of the next: everything has been as large as it gets.
-    while (world.moment().generation < 2 || world.moment().generation_tick < 300)
+    while (world.moment().generation < 2 || world.moment().generation_tick < 300) {
         world.advance_tick(executor);
+    }
     for (int tick = 0; tick < 300; ++tick) {
         const std::size_t before = tests::allocations;
         world.advance_tick(executor);

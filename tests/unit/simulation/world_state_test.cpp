@@ -55,14 +55,17 @@ class WorldStateTest : public testing::Test {
     /// The world at the beginning of its generation, made anew, brought to the state.
     base::Result<World> again(const World& world, const WorldState& state, base::Executor& with) {
         std::vector<evolution::NextGeneration> born;
-        for (const Island& island : world.islands())
+        for (const Island& island : world.islands()) {
             born.push_back(island.born());
+        }
         World::History history = world.history();
-        if (world.generation_over())
+        if (world.generation_over()) {
             history.pop_back();
+        }
         World restored{world.seed(), world.opening(), std::move(born), std::move(history), with};
-        if (auto done = restored.restore(state, with); !done)
+        if (auto done = restored.restore(state, with); !done) {
             return done.error();
+        }
         return restored;
     }
     static void change_something(World& world, std::uint32_t choice) {
@@ -76,9 +79,10 @@ class WorldStateTest : public testing::Test {
 
     static std::vector<double> numbers(const std::vector<GenerationStatistics>& islands) {
         std::vector<double> found;
-        for (const GenerationStatistics& island : islands)
+        for (const GenerationStatistics& island : islands) {
             for_each_number(island,
                             [&](const std::string&, auto value) { found.push_back(static_cast<double>(value)); });
+        }
         return found;
     }
 
@@ -96,8 +100,9 @@ TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
             World world{parameters, base::Seed{static_cast<std::uint64_t>(round)}};
             for (auto ticks = random() % ticks_max; ticks > 0; --ticks) {
                 world.advance_tick(executor);
-                if (random() % 200 == 0)
+                if (random() % 200 == 0) {
                     change_something(world, static_cast<std::uint32_t>(random()));
+                }
             }
             const WorldState state =
                 world.state(round % 2 == 0 ? static_cast<base::Executor&>(executor) : three_threads);
@@ -121,8 +126,9 @@ TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
                 }
             }
             ASSERT_EQ(restored->history().size(), world.history().size());
-            for (std::size_t i = 0; i < world.history().size(); ++i)
+            for (std::size_t i = 0; i < world.history().size(); ++i) {
                 EXPECT_EQ(numbers(restored->history()[i]), numbers(world.history()[i]));
+            }
         }
     }
     EXPECT_GE(moments, 200);
@@ -132,8 +138,9 @@ TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
 TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
     Parameters parameters = with({{"generation_s", 1.0}, {"island_count", 2u}});
     World world{parameters, base::Seed{2}};
-    for (int tick = 0; tick < 120; ++tick)
+    for (int tick = 0; tick < 120; ++tick) {
         world.advance_tick(executor);
+    }
     ASSERT_TRUE(world.generation_over());
     // What the generation's statistics were made with is not what holds now.
     world.request_parameters(assign(world.parameters().requested,
@@ -153,8 +160,9 @@ TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
 TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
     const Parameters parameters = with({{"crate_count", 3u}, {"respawn_s", 2.0}, {"poison_count", 200u}});
     World world{parameters, base::Seed{9}};
-    for (int tick = 0; tick < 200; ++tick)
+    for (int tick = 0; tick < 200; ++tick) {
         world.advance_tick(executor);
+    }
     ASSERT_LT(world.alive_count(), 60u);
     ASSERT_GT(world.alive_count(), 2u);
     const WorldState sound = world.state(executor);
@@ -212,8 +220,9 @@ TEST_F(WorldStateTest, TheMostHealthThatMealsLeadToIsSummed) {
     world.advance_tick(executor);
     ASSERT_EQ(world.alive_count(), 1000u);
     WorldState state = world.state(executor);
-    for (auto& organism : state.islands[0].organisms)
+    for (auto& organism : state.islands[0].organisms) {
         organism.health = most;
+    }
     const auto restored = again(world, state, executor);
     ASSERT_TRUE(restored) << to_text(restored.error());
     EXPECT_EQ(restored->islands()[0].live_statistics().health_mean, most);

@@ -30,9 +30,9 @@ class WorldTest : public testing::Test {
     }
     World make() const { return {parameters, base::Seed{5}}; }
     void run_generation(World& world) {
-        do
+        do {
             world.advance_tick(executor);
-        while (!world.generation_over());
+        } while (!world.generation_over());
     }
     void request(World& world, std::vector<Assignment> assignments) {
         const auto requested = assign(world.parameters().requested, assignments);
@@ -110,12 +110,15 @@ TEST_F(WorldTest, EndsAGenerationWhenNobodyIsAliveOnAnyIsland) {
     EXPECT_EQ(world.alive_count(), 0u);
     std::vector<std::uint32_t> extinct;
     std::uint64_t longest = 0;
-    for (const Extinction& extinction : events<Extinction>(world))
+    for (const Extinction& extinction : events<Extinction>(world)) {
         extinct.push_back(extinction.island);
+    }
     EXPECT_THAT(extinct, testing::UnorderedElementsAre(0, 1, 2));
-    for (const Island& island : world.islands())
-        for (const std::uint32_t ticks : island.fate().lived_ticks)
+    for (const Island& island : world.islands()) {
+        for (const std::uint32_t ticks : island.fate().lived_ticks) {
             longest = std::max<std::uint64_t>(longest, ticks);
+        }
+    }
     EXPECT_EQ(world.moment().generation_tick, longest);
     world.advance_tick(executor);
     EXPECT_EQ(world.alive_count(), 36u) << "and everything is replaced";
@@ -140,7 +143,7 @@ TEST_F(WorldTest, TakesParametersOfTheTickAtOnceAndOthersWithTheGeneration) {
 }
 
 TEST_F(WorldTest, GrowsAndShrinksWithEveryModelAndSelection) {
-    for (const char* model : {"hybrid", "generational", "steady_state"})
+    for (const char* model : {"hybrid", "generational", "steady_state"}) {
         for (const char* selection : {"roulette", "stochastic_universal", "tournament", "random", "truncation"}) {
             World world = make();
             request(world, {{"population_model", std::string{model}}, {"selection", std::string{selection}}});
@@ -152,6 +155,7 @@ TEST_F(WorldTest, GrowsAndShrinksWithEveryModelAndSelection) {
                 ASSERT_EQ(world.islands()[0].bodies().size(), size) << model << ", " << selection;
             }
         }
+    }
 }
 
 TEST_F(WorldTest, LetsMigrantsGoOncePerEpochAndOnlyThen) {
@@ -188,10 +192,12 @@ TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
     World world = make();
     double best = 0;
     world.advance_tick(executor);
-    for (const GenerationStatistics& s : world.history().back())
+    for (const GenerationStatistics& s : world.history().back()) {
         best = std::max(best, s.fitness_best);
-    for (int generation = 0; generation < 20; ++generation)
+    }
+    for (int generation = 0; generation < 20; ++generation) {
         world.advance_tick(executor);
+    }
     for (const GenerationStatistics& s : world.history().back()) {
         EXPECT_EQ(s.fitness_best, best);
         EXPECT_EQ(s.fitness_worst, best) << "copies of the best take over both islands";
@@ -210,16 +216,18 @@ TEST_F(WorldTest, AccountsForWhatItsGenesDidFromOneGenerationToTheNext) {
     support::ThreadExecutor many{3};
     World world = make(), again = make();
     for (unsigned generation = 1; generation <= 6; ++generation) {
-        for (World* each : {&world, &again})
+        for (World* each : {&world, &again}) {
             request(*each, {{"population_size", std::array{20'000u, 23'000u, 17'000u}[generation % 3]}});
+        }
         world.advance_tick(executor);
         again.advance_tick(many);
         for (std::size_t island = 0; island < 2; ++island) {
             const GenerationStatistics& now = world.history().back()[island];
             ASSERT_EQ(now.account, again.history().back()[island].account);
             ASSERT_EQ(now.account.has_value(), generation > 1);
-            if (generation == 1)
+            if (generation == 1) {
                 continue;
+            }
             const GenerationStatistics& before = world.history()[generation - 2][island];
             for (unsigned gene = 0; gene < evolution::gene_count; ++gene) {
                 const evolution::GeneAccount& account = (*now.account)[gene];
@@ -258,8 +266,9 @@ TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
         EXPECT_NE(fitness[i], world.fitness()[i]);
         genes.push_back(world.islands()[i].born().genes);
     }
-    for (std::uint32_t i = 0; i < 3; ++i)
+    for (std::uint32_t i = 0; i < 3; ++i) {
         populations.push_back({&genes[i], fitness[i]});
+    }
     const std::vector<std::span<const double>> spans(fitness.begin(), fitness.end());
     evolution::migrate(evolution::choose_migrants(spans, parameters, base::Seed{5}, 1), populations);
     world.turn_over(executor);
@@ -284,11 +293,12 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     parameters.survivors = 1;
     World world = make();
     std::vector<evolution::Chromosome> first;
-    for (const Island& island : world.islands())
+    for (const Island& island : world.islands()) {
         for (std::uint32_t id = 0; id < 12; ++id) {
             EXPECT_EQ(world.founders(island)[id], first.size());
             first.emplace_back(island.born().genes.col(id));
         }
+    }
     bool came_from_elsewhere = false;
     const auto expect_founders = [&](const World& of) {
         for (const Island& island : of.islands()) {
@@ -309,8 +319,9 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     expect_founders(world.at_its_opening(executor));
 
     std::vector<evolution::NextGeneration> born;
-    for (const Island& island : world.islands())
+    for (const Island& island : world.islands()) {
         born.push_back(island.born());
+    }
     World later{base::Seed{5}, world.opening(), std::move(born), {}, executor};
     later.advance_tick(executor);
     later.turn_over(executor);
@@ -415,8 +426,9 @@ TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
     parameters.population_size = 2;
     parameters.island_count = 2048;
     World world = make();
-    while (world.moment().generation < 70 || !world.generation_over())
+    while (world.moment().generation < 70 || !world.generation_over()) {
         world.advance_tick(executor);
+    }
     EXPECT_EQ(world.history().size(), 64u);
     EXPECT_EQ(world.history().front().front().generation, 7u);
 }
@@ -424,8 +436,9 @@ TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
     parameters.fitness = FitnessFunction::GeneSum;
     World world = make();
-    while (world.moment().generation < 1'005 || !world.generation_over())
+    while (world.moment().generation < 1'005 || !world.generation_over()) {
         world.advance_tick(executor);
+    }
     world.become_fork();
     EXPECT_EQ(world.history().size(), World::history_generations_inherited + 1) << "and its own first";
     EXPECT_EQ(world.history().front().front().generation, 5u);
@@ -436,8 +449,9 @@ TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
 TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
     const auto outcome_with = [&](std::vector<Assignment> assignments) {
         World world{*assign(parameters, assignments), base::Seed{5}};
-        for (int generation = 0; generation < 50 && world.outcome() == evolution::Outcome::Running; ++generation)
+        for (int generation = 0; generation < 50 && world.outcome() == evolution::Outcome::Running; ++generation) {
             run_generation(world);
+        }
         const auto terminated = events<RunTerminated>(world);
         EXPECT_EQ(terminated.size(), world.outcome() == evolution::Outcome::Running ? 0u : 1u);
         return std::pair{world.outcome(), world.moment().generation};
@@ -572,10 +586,12 @@ TEST_F(WorldTest, GivesTheStatisticsThatItsOrganismsAddUpTo) {
             EXPECT_EQ(s.starved_count, starved);
             EXPECT_EQ(s.poisoned_count, poisoned);
             double mean = 0, variance = 0;
-            for (const double value : fitness)
+            for (const double value : fitness) {
                 mean += value / 25;
-            for (const double value : fitness)
+            }
+            for (const double value : fitness) {
                 variance += (value - mean) * (value - mean) / 25;
+            }
             EXPECT_NEAR(s.fitness_mean, mean, 1e-9);
             EXPECT_NEAR(s.fitness_deviation, std::sqrt(variance), 1e-9);
             const auto best = std::max_element(fitness.begin(), fitness.end());

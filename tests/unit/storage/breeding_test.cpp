@@ -21,11 +21,13 @@ class BreedingTest : public testing::TestWithParam<std::uint64_t> {
         StorageThread thread{{.durability = Durability::Relaxed, .vfs = nullptr, .keep_every = GetParam()}};
         RecordedRun run{data, thread};
         for (int tick = 0; tick < 540; ++tick) {
-            if (run.world().moment().generation_tick == 1)
+            if (run.world().moment().generation_tick == 1) {
                 begun.push_back(beginning_of(run.world()));
+            }
             run.advance(1);
-            if (run.world().generation_over())
+            if (run.world().generation_over()) {
                 ended.push_back(end_of(run.world()));
+            }
             if (tick == 170) {
                 run.command(set_parameter("mutation_chance", 0.5));
                 run.command(set_parameter("population_size", 17u));
@@ -51,7 +53,7 @@ class BreedingTest : public testing::TestWithParam<std::uint64_t> {
 
 TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
     ASSERT_EQ(begun.size(), 5u);
-    for (std::uint64_t generation = 1; generation <= 4; ++generation)
+    for (std::uint64_t generation = 1; generation <= 4; ++generation) {
         for (std::uint32_t island = 0; island < 2; ++island) {
             const auto bred = breeding(generation, island);
             ASSERT_TRUE(bred) << to_text(bred.error());
@@ -66,9 +68,11 @@ TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
             }
             // From generation 2 on every second time, the best of the other island for the worst of this one.
             std::vector<evolution::Migrant> migrants;
-            for (const auto& contender : bred->record.contenders)
-                if (contender.migrant)
+            for (const auto& contender : bred->record.contenders) {
+                if (contender.migrant) {
                     migrants.push_back(*contender.migrant);
+                }
+            }
             ASSERT_EQ(migrants.size(), generation % 2 == 0 ? 1u : 0u);
             for (const evolution::Migrant& migrant : migrants) {
                 EXPECT_EQ(migrant.from, 1 - island);
@@ -77,15 +81,17 @@ TEST_P(BreedingTest, TellsWhatWasBredAndByWhichParameters) {
                           ended[generation - 1].outcomes[migrant.from].fitness[migrant.organism]);
             }
         }
+    }
 }
 
 TEST_P(BreedingTest, WithoutAGenerationTellsOfTheLastThatBredAsSeenFromTheOneThatIsShown) {
     EXPECT_EQ(breeding({})->generation, 4u);
-    for (const auto& [seen_from, expected] : {std::pair{1u, 1u}, {2u, 1u}, {4u, 3u}, {99u, 4u}})
+    for (const auto& [seen_from, expected] : {std::pair{1u, 1u}, {2u, 1u}, {4u, 3u}, {99u, 4u}}) {
         EXPECT_EQ(
             breeding_of(*opened, {.generation = {}, .seen_from = seen_from, .island = 0, .rows = {}}, executor, {})
                 ->generation,
             expected);
+    }
 }
 
 TEST_P(BreedingTest, NamesWhatThereIsNot) {
@@ -149,15 +155,16 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
             run.command(set_parameter("elite_count", 2u));
             for (int tick = 0; tick < 540; ++tick) {
                 run.advance(1);
-                if (run.world().generation_over())
+                if (run.world().generation_over()) {
                     ended.push_back(end_of(run.world()));
+                }
             }
             run.recorder().close_all(run.laboratory());
         }
         const auto file = *RunFile::open_read_only(data.file_of("w"));
         base::InlineExecutor executor;
         std::size_t migrants = 0, others = 0;
-        for (std::uint64_t generation = 1; generation <= 4; ++generation)
+        for (std::uint64_t generation = 1; generation <= 4; ++generation) {
             for (std::uint32_t island = 0; island < 2; ++island) {
                 // Refused if other descendants came of it than those that are stored.
                 const auto bred = breeding_of(
@@ -167,9 +174,10 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
                 const std::vector<std::vector<double>> own{ended[generation - 1].outcomes[0].fitness,
                                                            ended[generation - 1].outcomes[1].fitness};
                 std::vector<std::vector<double>> dealt = own;
-                for (std::uint32_t i = 0; i < 2; ++i)
+                for (std::uint32_t i = 0; i < 2; ++i) {
                     evolution::shuffle_fitness(dealt[i], {.seed = base::Seed{7}, .island = i, .generation = generation},
                                                executor);
+                }
                 for (std::uint32_t id = 0; id < 12; ++id) {
                     const auto& contender = bred->record.contenders[id];
                     const std::uint32_t from = contender.migrant ? contender.migrant->from : island;
@@ -188,9 +196,11 @@ TEST(Breeding, OfAShuffledFitnessTellsWhatTheSelectionSawAndWhatWasTheirOwn) {
                                               executor, {});
                 ASSERT_TRUE(some);
                 ASSERT_EQ(some->record.contenders.size(), 3u);
-                for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t i = 0; i < 3; ++i) {
                     EXPECT_EQ(some->record.contenders[i].own_fitness, bred->record.contenders[5 + i].own_fitness);
+                }
             }
+        }
         EXPECT_GT(migrants, 0u);
         EXPECT_GT(others, 50u); // of 96
     }

@@ -31,8 +31,9 @@ class CheckpointTest : public testing::Test {
     }
     static std::vector<std::uint64_t> ticks_of(RunFile& file) {
         std::vector<std::uint64_t> ticks;
-        for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
+        for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
             ticks.push_back(checkpoint.moment.tick);
+        }
         return ticks;
     }
     void expect_agrees(RunFile& file, std::uint64_t checkpoints) {
@@ -73,11 +74,13 @@ TEST_F(CheckpointTest, AWorldGoesOnFromOneAsIfItHadNeverStopped) {
         run.advance(random() % 200);
         run.command(set_parameter("food_health", 3.0));
         run.advance(1 + random() % 200);
-        if (run.world().generation_over())
+        if (run.world().generation_over()) {
             run.advance(1);
+        }
         const std::uint64_t tick = run.world().moment().tick;
-        if (round % 2 == 0) // not what a server does, but what a file may tell
+        if (round % 2 == 0) { // not what a server does, but what a file may tell
             run.command(set_parameter("force_per_unit", 1.5));
+        }
         run.checkpoint();
         run.command(set_parameter("force_per_unit", 2.0));  // at the same tick, but after it
         run.command(set_parameter("population_size", 17u)); // from the next generation on
@@ -112,10 +115,12 @@ TEST_F(CheckpointTest, EveryTickIsReachedFromTheLastBeginningBeforeIt) {
     for (std::uint64_t tick = 1; tick <= 400; ++tick) {
         run.advance(1);
         hashes.push_back(run.world().hash());
-        if (tick == 130 || tick == 290 || tick == 330)
+        if (tick == 130 || tick == 290 || tick == 330) {
             run.checkpoint();
-        if (tick % 65 == 0)
+        }
+        if (tick % 65 == 0) {
             run.command(set_parameter("food_health", static_cast<double>(tick % 20)));
+        }
     }
     const auto file = file_left();
     for (const auto& [tick, from] : {std::pair{0u, 0u},
@@ -216,8 +221,9 @@ TEST_F(CheckpointTest, ThosePartsOfAPackedStateThatAreLeftAreRefused) {
     simulation::WorldState again;
     ASSERT_TRUE(unpack(packed, shapes, again));
     EXPECT_EQ(again.islands, state.islands);
-    for (std::size_t size = 0; size < packed.size(); ++size)
+    for (std::size_t size = 0; size < packed.size(); ++size) {
         EXPECT_FALSE(unpack(std::string_view{packed}.substr(0, size), shapes, again));
+    }
     std::mt19937 random{4};
     for (int flip = 0; flip < 2000; ++flip) {
         std::string flipped = packed;
@@ -289,8 +295,9 @@ TEST_F(CheckpointTest, AFileWithWholeOnesIsReadAndGoneOnWith) {
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         const StoredCheckpoint checkpoint = pack(checkpoint_of(recovered->world, 0, executor));
         int parts = 1;
-        for (; !*(*file)->write_part(checkpoint); ++parts)
+        for (; !*(*file)->write_part(checkpoint); ++parts) {
             EXPECT_THAT(ticks_of(**file), ElementsAre(170));
+        }
         EXPECT_GT(parts, 3);
     }
     const auto file = RunFile::open_read_only(data.file_of("w"));
@@ -333,8 +340,9 @@ TEST_F(CheckpointTest, OneInPartsIsThereWithItsLast) {
     {
         // From its beginning, over what is left.
         const auto file = RunFile::open(data.file_of("w"), {.part_bytes = 200});
-        while (!*(*file)->write_part(checkpoint))
+        while (!*(*file)->write_part(checkpoint)) {
             EXPECT_THAT(ticks_of(**file), ElementsAre());
+        }
         EXPECT_EQ(part_count(), static_cast<std::int64_t>((checkpoint.state.size() - 1) / 200));
         const auto read = *(*file)->last_checkpoint(170);
         EXPECT_EQ(read->state, checkpoint.state);
@@ -457,8 +465,9 @@ TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
     EXPECT_TRUE(recorder.checkpoint_due(world, 1h));
     // A generation that has just begun needs none.
     simulation::World next{small_world(), {1}};
-    for (int tick = 0; tick < 120; ++tick)
+    for (int tick = 0; tick < 120; ++tick) {
         next.advance_tick(executor);
+    }
     EXPECT_FALSE(recorder.checkpoint_due(next, 1000s)) << "its generation is over";
     next.advance_tick(executor);
     recorder.follow(next);

@@ -41,38 +41,48 @@ void write_content(const std::string& path, const Content& content) {
     std::filesystem::remove(path + "-shm");
     std::filesystem::remove(path + "-wal");
     write_bytes(path, content.file);
-    if (!content.log.empty())
+    if (!content.log.empty()) {
         write_bytes(path + "-wal", content.log);
+    }
 }
 
 /// Everything that a sound file tells, as one text.
 std::string told_by(RunFile& file) {
     std::ostringstream text;
     text << file.identity().name << ' ' << to_text(file.identity().run_id) << ' ' << file.identity().seed.value << '\n';
-    for (const JournalEntry& entry : *file.journal())
+    for (const JournalEntry& entry : *file.journal()) {
         text << entry.number << ' ' << entry.tick << ' ' << entry.origin.client << ' ' << entry.origin.client_key << ' '
              << entry.origin.request_id << ' ' << entry.origin.request << ' ' << entry.answer << '\n';
+    }
     for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
         const auto begun = *file.beginning_of(generation);
         text << generation << ' ' << begun->opening.moment.tick << ' ' << begun->opening.parameters.revision << '\n';
         for (const evolution::NextGeneration& born : begun->born) {
             text << born.genes << '\n';
-            for (const auto& [first, second] : born.parents)
+            for (const auto& [first, second] : born.parents) {
                 text << first << ' ' << second << ' ';
+            }
         }
-        if (const auto ended = *file.outcome_of(generation))
-            for (const IslandOutcome& outcome : ended->outcomes)
-                for (std::size_t i = 0; i < outcome.fitness.size(); ++i)
+        if (const auto ended = *file.outcome_of(generation)) {
+            for (const IslandOutcome& outcome : ended->outcomes) {
+                for (std::size_t i = 0; i < outcome.fitness.size(); ++i) {
                     text << outcome.fitness[i] << ' ' << outcome.lived_ticks[i] << ' ' << name_of(outcome.cause[i])
                          << ' ';
-        if (generation < file.last_generation())
-            for (const simulation::GenerationStatistics& statistics : *file.statistics_of(generation))
+                }
+            }
+        }
+        if (generation < file.last_generation()) {
+            for (const simulation::GenerationStatistics& statistics : *file.statistics_of(generation)) {
                 simulation::for_each_number(statistics, [&](const std::string&, auto value) { text << value << ' '; });
+            }
+        }
     }
-    for (const HashLink& link : *file.links(0, file.contents().tick))
+    for (const HashLink& link : *file.links(0, file.contents().tick)) {
         text << link.tick << ' ' << to_text(link.hash) << '\n';
-    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
+    }
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
         text << checkpoint.moment.tick << ' ' << to_text(checkpoint.hash) << ' ' << checkpoint.state << '\n';
+    }
     return text.str();
 }
 
@@ -97,40 +107,47 @@ class DamageTest : public testing::TestWithParam<Left> {
             }
         };
         const auto command = [&](const char* name, double value) {
-            if (GetParam() == Left::Restarted && run.world().moment().tick > middle)
+            if (GetParam() == Left::Restarted && run.world().moment().tick > middle) {
                 return;
+            }
             run.command(set_parameter(name, value));
             commands.push_back(run.world().moment().tick);
             write_out();
         };
         for (std::uint64_t tick = 0; tick < last_tick; ++tick) {
-            if (tick % 26 == 0)
+            if (tick % 26 == 0) {
                 command("mutation_chance", 0.001 * static_cast<double>(tick));
-            else if (tick % 13 == 0)
+            } else if (tick % 13 == 0) {
                 command("food_health", 0.1 * static_cast<double>(tick));
+            }
             if (tick == middle && GetParam() == Left::HalfCopied) {
                 reading = *RunFile::open_read_only(path);
                 EXPECT_TRUE(reading->hold_still());
                 EXPECT_EQ(reading->last_generation(), 3u);
             }
-            if (tick == middle && GetParam() == Left::Restarted)
+            if (tick == middle && GetParam() == Left::Restarted) {
                 copy_log(path);
-            if (tick % 60 == 1 && tick > middle)
+            }
+            if (tick % 60 == 1 && tick > middle) {
                 write_out();
+            }
             hashes.push_back(run.world().hash());
             histories.push_back(run.world().history().size());
             run.advance(1);
-            if (run.world().moment().tick % 90 == 50)
+            if (run.world().moment().tick % 90 == 50) {
                 run.checkpoint();
+            }
         }
         hashes.push_back(run.world().hash());
         histories.push_back(run.world().history().size());
         command("food_health", 7);
         write_out();
-        if (GetParam() == Left::HalfCopied)
+        if (GetParam() == Left::HalfCopied) {
             copy_log(path);
-        if (GetParam() == Left::Closed)
+        }
+        if (GetParam() == Left::Closed) {
             run.recorder().close_all(run.laboratory());
+        }
         write_out();
         sound = read_content(path);
         place = folder.path() + "/copy.evod";
@@ -159,11 +176,13 @@ class DamageTest : public testing::TestWithParam<Left> {
     void expect_no_other_world(const Content& damaged) {
         write_content(place, damaged);
         const auto file = RunFile::open(place, {});
-        if (!file)
+        if (!file) {
             return;
+        }
         const auto recovered = recover(**file, executor);
-        if (!recovered)
+        if (!recovered) {
             return;
+        }
         const std::uint64_t tick = recovered->world.moment().tick;
         ASSERT_LT(tick, hashes.size());
         EXPECT_EQ(recovered->world.hash(), hashes[tick]) << "tick " << tick;
@@ -184,13 +203,15 @@ class DamageTest : public testing::TestWithParam<Left> {
         }
         const std::string told = told_by(**file);
         ++(told == whole ? unread : earlier);
-        if (!known.insert(told).second)
+        if (!known.insert(told).second) {
             return;
+        }
         ASSERT_FALSE(sound.log.empty());
         const std::uint64_t tick = (*file)->contents().tick;
         expect_first_commands(*(*file)->journal(), tick);
-        for (const HashLink& link : *(*file)->links(0, tick))
+        for (const HashLink& link : *(*file)->links(0, tick)) {
             EXPECT_EQ(link.hash, hashes.at(link.tick));
+        }
         const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
         ASSERT_TRUE(verified) << to_text(verified.error());
         EXPECT_FALSE(verified->difference) << verified->difference->part;
@@ -256,8 +277,9 @@ TEST_P(DamageTest, AFlippedBitIsNamedOrChangesNothingThatIsRead) {
         SCOPED_TRACE((&bytes == &flipped.file ? "byte of the file: " : "byte of the log: ") + std::to_string(byte));
         flip(bytes, byte);
         expect_never_wrong(flipped);
-        if (HasFailure())
+        if (HasFailure()) {
             return;
+        }
     }
     EXPECT_GT(named, 0);
     EXPECT_GT(unread, 0);
@@ -269,14 +291,16 @@ TEST_P(DamageTest, APageThatHidesItsLastRowIsNamed) {
     for (std::size_t page = 0; page < sound.file.size(); page += page_bytes) {
         const std::size_t head = page == 0 ? 100 : page; // the file's own head comes before the first page's
         const char kind = sound.file[head];
-        if ((kind != 0x0a && kind != 0x0d) || sound.file[head + 4] == 0) // leaves of SQLite's trees, and their rows
+        if ((kind != 0x0a && kind != 0x0d) || sound.file[head + 4] == 0) { // leaves of SQLite's trees, and their rows
             continue;
+        }
         Content hiding = sound;
         --hiding.file[head + 4];
         SCOPED_TRACE("page at byte " + std::to_string(page));
         expect_never_wrong(hiding);
-        if (HasFailure())
+        if (HasFailure()) {
             return;
+        }
     }
 }
 
@@ -289,8 +313,9 @@ TEST_P(DamageTest, ACutIsNamedOrLeavesTheBeginning) {
         SCOPED_TRACE((&bytes == &cut.file ? "bytes of the file: " : "bytes of the log: ") +
                      std::to_string(bytes.size()));
         expect_never_wrong(cut);
-        if (HasFailure())
+        if (HasFailure()) {
             return;
+        }
     }
     EXPECT_GT(named, 0);
     EXPECT_EQ(earlier > 0, GetParam() != Left::Closed);

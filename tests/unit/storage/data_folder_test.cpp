@@ -39,8 +39,9 @@ TEST(DataFolder, TellsRunsOfWorldsFromEndedOnes) {
     const auto data = DataFolder::open(folder.path());
     const std::string ended = data->ended_file_of("b", {0xabc, 1});
     for (const std::string& path : {data->file_of("b"), data->file_of("a"), ended, folder.path() + "/notes.txt",
-                                    folder.path() + "/no name.evod", data->file_of("a") + "-wal"})
+                                    folder.path() + "/no name.evod", data->file_of("a") + "-wal"}) {
         std::ofstream{path} << "text";
+    }
     const auto files = data->files();
     ASSERT_TRUE(files);
     EXPECT_THAT(files->of_worlds, testing::ElementsAre(data->file_of("a"), data->file_of("b")));
@@ -173,14 +174,16 @@ TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
         ASSERT_TRUE(begun);
         std::filesystem::copy_file(next, folder.path() + "/begun.evod-next");
     }
-    for (const char* name : {"empty", "byte"})
+    for (const char* name : {"empty", "byte"}) {
         std::ofstream{folder.path() + "/" + name + ".evod-next"} << (name == std::string{"byte"} ? "x" : "");
+    }
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
     EXPECT_FALSE((*archive)->holds_worlds());
     EXPECT_EQ((*archive)->identity_of("w"), nullptr);
-    for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+    for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
         EXPECT_EQ(file.path().filename(), "lock");
+    }
 }
 
 TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
@@ -233,8 +236,9 @@ TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
     const auto archive = open();
     ASSERT_TRUE(archive) << to_text(archive.error());
     std::vector<std::uint64_t> remembered;
-    for (const JournalEntry& entry : (*archive)->take_answers())
+    for (const JournalEntry& entry : (*archive)->take_answers()) {
         remembered.push_back(entry.origin.request_id);
+    }
     EXPECT_THAT(remembered, testing::UnorderedElementsAre(1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u));
     EXPECT_EQ(remembered.back(), 9u); // of the run that goes on
 }

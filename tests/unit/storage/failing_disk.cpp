@@ -16,12 +16,15 @@ std::function<void()> to_call; // set while operations_to_call is 0
 
 /// Whether the operation that is asked for now is to fail.
 bool fails_now() {
-    if (operations_to_call.load() != 0 && operations_to_call.fetch_sub(1) == 1)
+    if (operations_to_call.load() != 0 && operations_to_call.fetch_sub(1) == 1) {
         to_call();
-    if (failed && how_to_fail.load() == Failure::Gone)
+    }
+    if (failed && how_to_fail.load() == Failure::Gone) {
         return true;
-    if (operations_left.load() == 0 || operations_left.fetch_sub(1) != 1)
+    }
+    if (operations_left.load() == 0 || operations_left.fetch_sub(1) != 1) {
         return false;
+    }
     failed = true;
     return true;
 }
@@ -44,8 +47,9 @@ const sqlite3_io_methods& methods(sqlite3_file* file) {
 
 int write(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset) {
     if (fails_now()) {
-        if (how_to_fail.load() == Failure::Torn)
+        if (how_to_fail.load() == Failure::Torn) {
             methods(file).xWrite(real(file), bytes, count / 2, offset);
+        }
         return code();
     }
     return methods(file).xWrite(real(file), bytes, count, offset);
@@ -123,8 +127,9 @@ int open(sqlite3_vfs* disk, const char* name, sqlite3_file* file, int flags, int
     sqlite3_vfs* usual = sqlite3_vfs_find(nullptr);
     file->pMethods = nullptr;
     const int opened = usual->xOpen(usual, name, real(file), flags, flags_out);
-    if (opened == SQLITE_OK)
+    if (opened == SQLITE_OK) {
         file->pMethods = &passing_on;
+    }
     return opened;
 }
 

@@ -18,8 +18,9 @@ class FirstPopulationTest : public testing::Test {
   protected:
     FirstPopulationTest() : data{*DataFolder::open(folder.path())} {
         std::vector<evolution::GeneMatrix> islands;
-        for (std::uint32_t island = 0; island < 2; ++island)
+        for (std::uint32_t island = 0; island < 2; ++island) {
             islands.push_back(evolution::initial_population(12, small_world(), {99}, island));
+        }
         population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
     }
 
@@ -35,8 +36,9 @@ class FirstPopulationTest : public testing::Test {
     }
     void expect_begins_with_it(const simulation::World& world) {
         ASSERT_EQ(world.moment().tick, 0u);
-        for (std::size_t island = 0; island < 2; ++island)
+        for (std::size_t island = 0; island < 2; ++island) {
             EXPECT_TRUE((genes(world, island) == (*population)[island]).all());
+        }
     }
 
     TemporaryFolder folder;
@@ -120,8 +122,9 @@ TEST_F(FirstPopulationTest, AForkGoesOnAsTheRunDidAndIsResetToItsBeginning) {
         const auto file = RunFile::open_read_only(path);
         auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
-        while (recovered->world.moment().tick < 300)
+        while (recovered->world.moment().tick < 300) {
             recovered->world.advance_tick(executor);
+        }
         EXPECT_EQ(recovered->world.hash(), hash);
         recovered->world.reset({7});
         expect_begins_with_it(recovered->world);

@@ -20,10 +20,12 @@ class ForkTest : public testing::Test {
         StorageThread thread{{}};
         RecordedRun run{*data, thread};
         for (int tick = 0; tick < 780; ++tick) {
-            if (tick == 150)
+            if (tick == 150) {
                 run.command(set_parameter("mutation_chance", 0.4));
-            if (tick == 500)
+            }
+            if (tick == 500) {
                 run.command(set_parameter("food_health", 1.0));
+            }
             hashes.push_back(run.world().hash());
             run.advance(1);
         }
@@ -37,8 +39,9 @@ class ForkTest : public testing::Test {
     /// From generation 1 on.
     static void expect_history(const simulation::World::History& history, RunFile& origin, std::size_t generations) {
         ASSERT_EQ(history.size(), generations);
-        for (std::size_t i = 0; i < generations; ++i)
+        for (std::size_t i = 0; i < generations; ++i) {
             EXPECT_FALSE(compare(history[i], *origin.statistics_of(i + 1))) << "generation " << i + 1;
+        }
     }
 
     TemporaryFolder folder;
@@ -101,8 +104,9 @@ TEST_F(ForkTest, OfARunWhoseGenerationIsOverGoesOnWithTheNext) {
     {
         StorageThread thread{{}};
         RecordedRun run{*data, thread};
-        while (!run.world().generation_over())
+        while (!run.world().generation_over()) {
             run.advance(1);
+        }
         run.command(set_parameter("mutation_chance", 0.25)); // what is asked for at the end comes with it
         run.recorder().close_all(run.laboratory());
         last_hash = run.world().hash();
@@ -186,8 +190,9 @@ TEST_F(ForkTest, KnowsWhatWentBeforeItAndItsFounders) {
     EXPECT_FALSE(recovered->world.founders().empty());
     EXPECT_EQ(recovered->world.founders(), (*(*origin)->beginning_of(4))->founders);
     EXPECT_EQ((*file)->last_generation_ended(), 0u) << "of its own";
-    while (!recovered->world.generation_over())
+    while (!recovered->world.generation_over()) {
         recovered->world.advance_tick(executor);
+    }
     (*file)->begin();
     (*file)->write(end_of(recovered->world));
     recovered->world.turn_over(executor);
@@ -247,8 +252,9 @@ TEST_F(ForkTest, OfALivingWorldHasTheSameHistoryAfterARestart) {
         const auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         ASSERT_EQ(recovered->world.history().size(), forked.history().size());
-        for (std::size_t i = 0; i < forked.history().size(); ++i)
+        for (std::size_t i = 0; i < forked.history().size(); ++i) {
             EXPECT_FALSE(compare(recovered->world.history()[i], forked.history()[i]));
+        }
         EXPECT_EQ(recovered->world.founders(), forked.founders());
     }
 }

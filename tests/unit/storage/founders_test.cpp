@@ -44,20 +44,21 @@ TEST_F(FoundersTest, AreWhereTheLineageOfFirstParentsLeads) {
         record(1, shuffled);
         const auto file = RunFile::open_read_only(path());
         simulation::Founders led_to;
-        const auto followed = each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
-            simulation::Founders next(families.size());
-            for (std::uint32_t i = 0; i < families.size(); ++i) {
-                for (std::uint32_t organism = 0; organism < families[i].organism_count; ++organism) {
-                    const bool initial = families[i].initial;
-                    next[i].push_back(initial ? i * families[i].organism_count + organism
-                                              : led_to[families[i].parents[organism][0].island]
-                                                      [families[i].parents[organism][0].organism]);
+        const auto followed =
+            each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
+                simulation::Founders next(families.size());
+                for (std::uint32_t i = 0; i < families.size(); ++i) {
+                    for (std::uint32_t organism = 0; organism < families[i].organism_count; ++organism) {
+                        const bool initial = families[i].initial;
+                        next[i].push_back(initial ? i * families[i].organism_count + organism
+                                                  : led_to[families[i].parents[organism][0].island]
+                                                          [families[i].parents[organism][0].organism]);
+                    }
                 }
-            }
-            led_to = std::move(next);
-            EXPECT_EQ(led_to, founders[generation - 1]) << "generation " << generation << ", shuffled " << shuffled;
-            return true;
-        });
+                led_to = std::move(next);
+                EXPECT_EQ(led_to, founders[generation - 1]) << "generation " << generation << ", shuffled " << shuffled;
+                return true;
+            });
         EXPECT_TRUE(followed);
     }
 }
@@ -95,8 +96,9 @@ TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
     auto recovered = recover(**file, executor);
     ASSERT_TRUE(recovered) << to_text(recovered.error());
     simulation::World& world = recovered->world;
-    while (!world.generation_over())
+    while (!world.generation_over()) {
         world.advance_tick(executor);
+    }
     (*file)->begin();
     (*file)->write(end_of(world));
     world.turn_over(executor);

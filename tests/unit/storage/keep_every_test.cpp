@@ -28,8 +28,9 @@ class KeepEveryTest : public testing::Test {
                 EXPECT_TRUE(wait_until([&] { return thread.idle(); }));
             }
             run.advance(1);
-            if (run.world().moment().generation_tick == 1 && run.world().moment().generation > 1)
+            if (run.world().moment().generation_tick == 1 && run.world().moment().generation > 1) {
                 begun.push_back(beginning_of(run.world()));
+            }
         }
         hash = run.world().hash();
     }
@@ -41,10 +42,11 @@ class KeepEveryTest : public testing::Test {
     static std::vector<std::uint64_t> held(RunFile& file) {
         std::vector<std::uint64_t> generations;
         for (std::uint64_t generation = 1; generation <= file.last_generation(); ++generation) {
-            if (*file.beginning_of(generation))
+            if (*file.beginning_of(generation)) {
                 generations.push_back(generation);
-            else
+            } else {
                 EXPECT_FALSE(*file.outcome_of(generation));
+            }
         }
         return generations;
     }
@@ -111,12 +113,15 @@ TEST_F(KeepEveryTest, IsTheFilesOwnWhateverAServerIsToldLater) {
         const auto& world = rerun->world();
         while (world.moment().generation < 48) {
             rerun->advance_tick(executor);
-            if (world.moment().generation_tick == 1 && world.moment().generation > 42)
+            if (world.moment().generation_tick == 1 && world.moment().generation > 42) {
                 (*opened)->write(beginning_of(world));
-            if (world.moment().tick % ticks_per_link == 0)
+            }
+            if (world.moment().tick % ticks_per_link == 0) {
                 (*opened)->write(HashLink{world.moment().tick, world.hash()});
-            if (world.generation_over())
+            }
+            if (world.generation_over()) {
                 (*opened)->write(end_of(world));
+            }
         }
         ASSERT_TRUE((*opened)->commit());
         EXPECT_THAT(held(**opened), ElementsAre(1, 6, 11, 16, 21, 26, 31, 36, 41, 46, 48));

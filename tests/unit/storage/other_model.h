@@ -21,8 +21,9 @@ inline std::unique_ptr<RunFile> record_other_model(const std::string& path, cons
     file->begin();
     file->write(beginning_of(world));
     for (int generation = 1; generation < 8; ++generation) {
-        while (!world.generation_over())
+        while (!world.generation_over()) {
             world.advance_tick(executor);
+        }
         file->write(end_of(world));
         world.turn_over(executor);
         file->write(beginning_of(world));

@@ -31,8 +31,9 @@ class TemporaryFolder {
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     const std::string& path() const { return path_; }
     void clear() const {
-        for (const auto& file : std::filesystem::directory_iterator{path_})
+        for (const auto& file : std::filesystem::directory_iterator{path_}) {
             std::filesystem::remove(file);
+        }
     }
 
   private:
@@ -123,8 +124,9 @@ class RecordedRun {
         v1::Request request, StorageThread::Done done = [] {}) {
         auto command = protocol::to_command(with_key(request), {});
         ASSERT_TRUE(command) << to_text(command.error());
-        if (auto* set = std::get_if<simulation::SetParameters>(&*command))
+        if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
             set->by = "somebody"; // as a server does
+        }
         const auto applied = laboratory_.apply(*command);
         ASSERT_TRUE(applied) << to_text(applied.error());
         recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
@@ -146,8 +148,9 @@ class RecordedRun {
         return request;
     }
     CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, StorageThread::Done done) {
-        if (request.client_key().empty())
+        if (request.client_key().empty()) {
             with_key(request);
+        }
         const auto there = laboratory_.find("w");
         return {.tick = applied.tick,
                 .control = there ? (*there)->control : simulation::RunControl{},

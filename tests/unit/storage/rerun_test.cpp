@@ -39,8 +39,9 @@ TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
         RecordedRun run{data, *thread};
         run.advance(random() % 200);
         run.command(set_parameter("mutation_chance", 0.3));
-        if (round % 2 == 1)
+        if (round % 2 == 1) {
             run.command(set_parameter("shuffle_fitness", true));
+        }
         run.advance(random() % 200);
         run.command(set_parameter("food_health", 3.0));
         run.command(set_parameter("population_size", 17u)); // from the next generation on
@@ -128,8 +129,9 @@ TEST_F(RerunTest, EveryGenerationCanBeBegunAgain) {
     RecordedRun run{data, *thread};
     std::vector<base::StateHash> hashes{run.world().hash()};
     for (int tick = 0; tick < 600; ++tick) {
-        if (tick % 130 == 50)
+        if (tick % 130 == 50) {
             run.command(set_parameter("mutation_chance", 0.1 + tick * 1e-3));
+        }
         run.advance(1);
         hashes.push_back(run.world().hash());
     }

@@ -90,8 +90,9 @@ TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
     base::InlineExecutor executor;
     simulation::World world{identity.parameters, identity.seed};
     const GenerationBegun begun{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
-    while (!world.generation_over())
+    while (!world.generation_over()) {
         world.advance_tick(executor);
+    }
     const GenerationEnded ended{
         1,
         {{world.fitness()[0], world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},

@@ -82,12 +82,15 @@ TEST_F(StoredScheduleTest, EveryGenerationAndEveryCheckpointLeadsToTheSame) {
         hashes.push_back(run.world().hash());
         for (int tick = 1; tick <= 700; ++tick) {
             run.advance(1);
-            if (tick == 250 || tick == 600)
+            if (tick == 250 || tick == 600) {
                 run.checkpoint();
-            if (tick == 300)
+            }
+            if (tick == 300) {
                 run.command(set_parameter("mutation_chance", 0.7)); // after what is scheduled for its generation
-            if (tick == 400)
+            }
+            if (tick == 400) {
                 run.command(set_parameter("food_health", 33.0)); // until the next that is scheduled
+            }
             hashes.push_back(run.world().hash());
         }
         EXPECT_EQ(run.world().parameters().active.food_health, 5);
@@ -128,8 +131,9 @@ TEST_F(StoredScheduleTest, AForkHasIt) {
         EXPECT_EQ((*forked)->identity().schedule, schedule);
         auto recovered = recover(**forked, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
-        while (recovered->world.moment().tick < 620)
+        while (recovered->world.moment().tick < 620) {
             recovered->world.advance_tick(executor);
+        }
         EXPECT_EQ(recovered->world.hash(), origin);
         EXPECT_EQ(recovered->world.parameters().active.food_health, 5);
         expect_agrees(**forked);
@@ -238,8 +242,9 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
         run.command(cancel(3));
         run.command(set_parameter("impulse_max", 230.0));
         run.advance(ticks - 10);
-        if (ticks % 2 == 0)
+        if (ticks % 2 == 0) {
             run.checkpoint();
+        }
         run.command(set_parameter("steering_lookahead_s", 0.2)); // so that the file tells of this moment
         const auto file = file_left();
         auto recovered = recover(*file, three_threads);
@@ -279,14 +284,18 @@ TEST_F(StoredScheduleTest, EveryMomentOfAPastWithPlannedChangesLeadsToTheSame) {
         RecordedRun run{data, *thread};
         for (std::uint64_t tick = 0; tick <= 600; ++tick) {
             hashes.push_back(run.world().hash());
-            if (tick == 130)
+            if (tick == 130) {
                 run.command(at_generation(set_parameter("population_size", 20u), 4));
-            if (tick == 240) // between generations 2 and 3
+            }
+            if (tick == 240) { // between generations 2 and 3
                 run.command(at_generation(set_parameter("mutation_chance", 0.9), 3));
-            if (tick == 250)
+            }
+            if (tick == 250) {
                 run.command(at_tick(set_parameter("food_health", 70.0), 480));
-            if (tick == 300)
+            }
+            if (tick == 300) {
                 run.checkpoint();
+            }
             run.advance(1);
         }
     }
@@ -312,8 +321,9 @@ TEST_F(StoredScheduleTest, EveryMomentOfAPastWithPlannedChangesLeadsToTheSame) {
     auto recovered = recover(**forked, executor);
     ASSERT_TRUE(recovered) << to_text(recovered.error());
     EXPECT_TRUE(recovered->world.planned().empty());
-    while (recovered->world.moment().tick < 600)
+    while (recovered->world.moment().tick < 600) {
         recovered->world.advance_tick(executor);
+    }
     EXPECT_EQ(recovered->world.parameters().active.population_size, 12u);
     EXPECT_NE(recovered->world.hash(), hashes[600]);
 }
@@ -348,8 +358,9 @@ TEST_F(StoredScheduleTest, APlanThatCannotHaveBeenIsNamed) {
     const v1::Request past_generation = at_generation(set_parameter("mutation_chance", 0.9), 1);
     EXPECT_THAT(error_of(past_generation, false), HasSubstr("entry 1 of its journal"));
     for (const v1::Request& forged : {at_tick(set_parameter("mutation_chance", 0.9), 50),
-                                      at_tick(set_parameter("mutation_chance", 7.0), 90), cancel(1)})
+                                      at_tick(set_parameter("mutation_chance", 7.0), 90), cancel(1)}) {
         EXPECT_THAT(error_of(forged, true), HasSubstr("entry 1 of its journal")) << forged.ShortDebugString();
+    }
 }
 
 } // namespace

@@ -20,15 +20,17 @@ using Accounts = std::vector<std::optional<evolution::SelectionAccount>>; // per
 
 Accounts accounts_of(const simulation::World& world) {
     Accounts accounts;
-    for (const simulation::Island& island : world.islands())
+    for (const simulation::Island& island : world.islands()) {
         accounts.push_back(island.born().account);
+    }
     return accounts;
 }
 
 Accounts accounts_of(const std::vector<simulation::GenerationStatistics>& statistics) {
     Accounts accounts;
-    for (const simulation::GenerationStatistics& island : statistics)
+    for (const simulation::GenerationStatistics& island : statistics) {
         accounts.push_back(island.account);
+    }
     return accounts;
 }
 
@@ -44,8 +46,9 @@ class SelectionAccountTest : public testing::Test {
             run.advance(1);
             accounts.resize(run.world().moment().generation);
             accounts.back() = accounts_of(run.world());
-            if (tick == 600 || tick == 700)
+            if (tick == 600 || tick == 700) {
                 run.checkpoint();
+            }
         }
         run.recorder().close_all(run.laboratory());
     }
@@ -99,8 +102,9 @@ TEST_F(SelectionAccountTest, AreTheSameAfterARestartAndInThePast) {
         const auto recovered = recover(**file, executor);
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_EQ(accounts_of(recovered->world), accounts.back());
-        for (const simulation::GenerationRows& rows : recovered->world.history())
+        for (const simulation::GenerationRows& rows : recovered->world.history()) {
             EXPECT_EQ(accounts_of(rows), accounts[rows.front().generation - 1]);
+        }
         for (std::uint64_t generation = 1; generation <= 7; ++generation) {
             const auto there = Rerun::at(**file, generation, executor);
             ASSERT_TRUE(there) << to_text(there.error());
@@ -135,8 +139,9 @@ TEST_F(SelectionAccountTest, AForkHasThoseOfItsOriginAndItsOwn) {
     ASSERT_TRUE(fork) << to_text(fork.error());
     EXPECT_EQ(accounts_of(fork->world), present);
     ASSERT_EQ(fork->world.history().size(), 3u);
-    for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < 3; ++i) {
         EXPECT_EQ(accounts_of(fork->world.history()[i]), accounts_of(run.world().history()[i]));
+    }
     EXPECT_TRUE(fork->world.history()[1][0].account);
 }
 
@@ -156,8 +161,9 @@ TEST_F(SelectionAccountTest, OfAFileOfTheFormatBeforeNobodyKnowsAndItIsGoneOnWit
             auto recovered = recover(**file, executor);
             ASSERT_TRUE(recovered) << to_text(recovered.error());
             simulation::World& world = recovered->world;
-            while (!world.generation_over())
+            while (!world.generation_over()) {
                 world.advance_tick(executor);
+            }
             (*file)->begin();
             (*file)->write(HashLink{world.moment().tick, world.hash()});
             (*file)->write(end_of(world));

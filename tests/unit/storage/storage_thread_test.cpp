@@ -90,8 +90,9 @@ TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     for (const bool another : {false, true}) {
         std::filesystem::rename(path, away);
-        if (another)
+        if (another) {
             std::ofstream{path} << "somebody else's";
+        }
         ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // it looks once a second
                                [&] {
                                    command();
@@ -151,8 +152,9 @@ TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
     for (std::uint64_t number = 1; number <= 5; ++number) {
         run.advance(10 * number);
         run.reset({number}, {0, number}, [&, number] {
-            if (number == 5)
+            if (number == 5) {
                 told.set_value();
+            }
         });
     }
     told.get_future().wait();
@@ -292,8 +294,9 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
     };
     command(0);
     const auto bytes = std::filesystem::file_size(data.file_of("w"));
-    for (int number = 1; number <= 100; ++number)
+    for (int number = 1; number <= 100; ++number) {
         command(number);
+    }
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
     EXPECT_GT(std::filesystem::file_size(data.file_of("w")), bytes);
     const auto file = RunFile::open_read_only(data.file_of("w"));
@@ -303,8 +306,9 @@ TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
 
 std::vector<std::uint64_t> ticks_of_checkpoints(RunFile& file) {
     std::vector<std::uint64_t> ticks;
-    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick))
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
         ticks.push_back(checkpoint.moment.tick);
+    }
     return ticks;
 }
 
@@ -312,8 +316,9 @@ TEST_F(StorageThreadTest, ACheckpointWhoseGenerationIsNotHeldAnyMoreIsNotWritten
     StorageThread thread{{.keep_every = 5}};
     RecordedRun run{data, thread};
     const auto in_generation = [&](std::uint64_t generation) {
-        while (run.world().moment().generation < generation)
+        while (run.world().moment().generation < generation) {
             run.advance(1);
+        }
     };
     in_generation(2);
     std::promise<void> at_work, go_on;
@@ -402,7 +407,8 @@ INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput,
 
 /// As if a server had been killed right before each of its operations of the disk in turn.
 TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
-    const std::uint64_t stride = std::max<std::uint64_t>(1, everyday_size("FAILING_STRIDE", 8) / 8); // a kill takes 30 ms
+    const std::uint64_t stride =
+        std::max<std::uint64_t>(1, everyday_size("FAILING_STRIDE", 8) / 8); // a kill takes 30 ms
     std::uint64_t operation = 0;
     int half_written = 0;
     { DataFolder taken = std::move(data); }
@@ -436,29 +442,34 @@ TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAn
             };
             for (int round = 0; round < 4; ++round) {
                 run.command(set_parameter("food_health", 1.0 * round), tells());
-                if (!wait())
+                if (!wait()) {
                     break;
+                }
                 advance(); // the checkpoint is written with the next command
-                if (round == 3)
+                if (round == 3) {
                     run.fork({5, 6}, tells());
+                }
             }
             hashes.push_back(run.world().hash());
             (void)wait();
         }
         // What has a world's name says what it is without its log too.
-        for (const std::string world : {"w", "fork"})
+        for (const std::string world : {"w", "fork"}) {
             if (const std::string path = folder.path() + "/" + world + ".evod"; std::filesystem::exists(path)) {
                 std::string head(72, '\0');
                 std::ifstream{path, std::ios::binary}.read(head.data(), std::ssize(head));
                 EXPECT_EQ(head.substr(68), "EVOD") << path;
             }
+        }
         const std::string path = folder.path() + "/w.evod";
-        if (std::filesystem::exists(path))
+        if (std::filesystem::exists(path)) {
             half_written += parts_in(path).of_none > 0;
+        }
         const auto archive = Archive::open(folder.path(), {}, executor);
         ASSERT_TRUE(archive) << to_text(archive.error());
-        for (const auto& file : std::filesystem::directory_iterator{folder.path()})
+        for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
             EXPECT_EQ(file.path().string().find("-next"), std::string::npos) << file.path();
+        }
         simulation::Laboratory laboratory = (*archive)->take_laboratory();
         for (const auto& entry : laboratory.entries()) {
             const std::uint64_t tick = entry->world.moment().tick;

@@ -29,10 +29,12 @@ class ThinningTest : public testing::Test {
             }
             run.advance(1);
             hashes.push_back(run.world().hash());
-            if (run.world().moment().generation_tick == 1)
+            if (run.world().moment().generation_tick == 1) {
                 begun.push_back(beginning_of(run.world()));
-            if (run.world().generation_over())
+            }
+            if (run.world().generation_over()) {
                 ended.push_back(end_of(run.world()));
+            }
         }
         run.recorder().close_all(run.laboratory());
     }
@@ -57,10 +59,11 @@ TEST_F(ThinningTest, KeepsTheFileSmallAndTheRunWhole) {
 
     std::vector<std::uint64_t> held;
     for (std::uint64_t generation = 1; generation <= 101; ++generation) {
-        if (*(*file)->beginning_of(generation))
+        if (*(*file)->beginning_of(generation)) {
             held.push_back(generation);
-        else
+        } else {
             EXPECT_FALSE(*(*file)->outcome_of(generation)) << generation;
+        }
     }
     EXPECT_LT(held.size(), 60u);
     EXPECT_EQ(held.front(), 1u);
@@ -111,10 +114,12 @@ TEST_F(ThinningTest, EveryGenerationIsReadWhole) {
             EXPECT_FALSE(compare(ended[generation - 1].statistics, whole->ended->statistics));
         }
     };
-    for (std::uint64_t generation = 1; generation <= begun.size(); ++generation)
+    for (std::uint64_t generation = 1; generation <= begun.size(); ++generation) {
         read(generation);
-    for (const std::uint64_t generation : {40u, 8u, 15u, 15u})
+    }
+    for (const std::uint64_t generation : {40u, 8u, 15u, 15u}) {
         read(generation);
+    }
 }
 
 TEST_F(ThinningTest, TheFamilyTreeIsWholeForwardsAndBackwards) {
@@ -184,9 +189,11 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
     const std::string path = data.file_of("w");
     const auto held_in = [](RunFile& file) {
         std::vector<std::uint64_t> generations;
-        for (std::uint64_t generation = 1; generation <= 41; ++generation)
-            if (*file.beginning_of(generation))
+        for (std::uint64_t generation = 1; generation <= 41; ++generation) {
+            if (*file.beginning_of(generation)) {
                 generations.push_back(generation);
+            }
+        }
         return generations;
     };
     const auto rows = [&](const char* of) {
@@ -200,13 +207,15 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
         ASSERT_TRUE(recovered) << to_text(recovered.error());
         EXPECT_GE(recovered->world.moment().tick, 4860u) << "its last hash";
         EXPECT_EQ(recovered->world.hash(), hashes[recovered->world.moment().tick]);
-        for (const HashLink& link : *file.links(0, 4900))
+        for (const HashLink& link : *file.links(0, 4900)) {
             EXPECT_EQ(link.hash, hashes[link.tick]);
+        }
     };
     const std::vector<std::uint64_t> halved = [] {
         std::vector<std::uint64_t> odd; // counted from the first; and the last two, which may be written to
-        for (std::uint64_t generation = 1; generation <= 39; generation += 2)
+        for (std::uint64_t generation = 1; generation <= 39; generation += 2) {
             odd.push_back(generation);
+        }
         odd.insert(odd.end(), {40, 41});
         return odd;
     }();
@@ -233,8 +242,9 @@ TEST(Thinning, TakesOutLittleByLittleWhatIsNotHeldAnyMore) {
     (*file)->begin();
     ASSERT_TRUE((*file)->commit());
     int times = 0;
-    while (*(*file)->tidy())
+    while (*(*file)->tidy()) {
         ASSERT_LT(++times, 1000);
+    }
     EXPECT_EQ(generations(), std::ssize(halved));
     EXPECT_EQ(rows("tick) FROM state_hash"), std::ssize(*(*file)->links(0, 4900)));
     EXPECT_LT(rows("tick) FROM state_hash"), 60);

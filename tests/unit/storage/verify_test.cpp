@@ -31,12 +31,15 @@ class VerifyTest : public testing::Test {
         run.command(set_parameter("food_health", 20.0)); // 1, before the first tick
         for (std::uint64_t tick = 0; tick < ticks; ++tick) {
             run.advance(1);
-            if (tick + 1 == 130)
+            if (tick + 1 == 130) {
                 run.command(set_parameter("food_health", 7.0)); // 2, from the next tick on
-            if (tick + 1 == 240)
+            }
+            if (tick + 1 == 240) {
                 run.command(set_parameter("mutation_chance", 0.5)); // 3, between generations 2 and 3
-            if (tick + 1 == 300)
+            }
+            if (tick + 1 == 300) {
                 run.command(set_parameter("food_count", 30u)); // 4, from generation 4 on
+            }
         }
     }
 
@@ -63,11 +66,13 @@ class VerifyTest : public testing::Test {
             const auto result = verified(*executor);
             EXPECT_TRUE(result) << to_text(result.error());
             EXPECT_TRUE(result && result->difference);
-            if (!result || !result->difference)
+            if (!result || !result->difference) {
                 return {};
+            }
             const Difference& told = *result->difference;
-            if (executor == &one_thread)
+            if (executor == &one_thread) {
                 first = told;
+            }
             EXPECT_EQ(told.agrees.has_value(), first.agrees.has_value());
             if (told.agrees && first.agrees) {
                 EXPECT_EQ(told.agrees->tick, first.agrees->tick);
@@ -117,11 +122,13 @@ TEST_F(VerifyTest, ARunWhoseFitnessWasShuffledForAWhileAgrees) {
             StorageThread thread{{}};
             RecordedRun run{data, thread};
             run.advance(130);
-            if (shuffled)
+            if (shuffled) {
                 run.command(set_parameter("shuffle_fitness", true)); // for the breeding of generations 3 …
+            }
             run.advance(230);
-            if (shuffled)
+            if (shuffled) {
                 run.command(set_parameter("shuffle_fitness", false)); // … but not of 4, though 3 is over
+            }
             run.advance(180);
             parents.push_back(run.world().islands()[0].born().parents);
             run.recorder().close_all(run.laboratory());
@@ -293,8 +300,9 @@ TEST_F(VerifyTest, TellsHowFarItIsWhileItReadsAndWhileItSimulates) {
     std::vector<std::uint64_t> read;
     VerifyProgress last;
     ASSERT_TRUE(verify(*file(), one_thread, [&](const VerifyProgress& now) {
-        if (now.ticks == 0)
+        if (now.ticks == 0) {
             read.push_back(now.generations);
+        }
         EXPECT_EQ(now.generations_in_all, file()->last_generation());
         EXPECT_GE(now.ticks, last.ticks);
         last = now;
@@ -544,8 +552,9 @@ TEST_F(VerifyTest, AServerMayGoOnWriting) {
     const auto reading = *RunFile::open_read_only(data.file_of("w"));
     std::uint64_t in_all = 0;
     const auto result = verify(*reading, one_thread, [&](const VerifyProgress& now) {
-        if (std::exchange(in_all, now.ticks_in_all) != 0)
+        if (std::exchange(in_all, now.ticks_in_all) != 0) {
             return;
+        }
         run.advance(300);
         while (!thread.idle()) {
         }

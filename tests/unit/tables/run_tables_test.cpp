@@ -25,23 +25,28 @@ class OtherModel : public testing::Test {
         const auto written = write_table({*file, executor}, wanted, text);
         lines.clear();
         std::istringstream rows{text.str()};
-        for (std::string line; std::getline(rows, line);)
+        for (std::string line; std::getline(rows, line);) {
             lines.push_back(line);
+        }
         return written;
     }
     /// Of every row of a table, in order, each once.
     std::vector<std::string> generations() const {
         std::vector<std::string> found;
-        for (std::size_t i = 1; i < lines.size(); ++i)
+        for (std::size_t i = 1; i < lines.size(); ++i) {
             if (const std::string generation = lines[i].substr(0, lines[i].find(','));
-                found.empty() || found.back() != generation)
+                found.empty() || found.back() != generation) {
                 found.push_back(generation);
+            }
+        }
         return found;
     }
     std::string row_of(const std::string& organism) const {
-        for (const std::string& line : lines)
-            if (line.starts_with(organism + ","))
+        for (const std::string& line : lines) {
+            if (line.starts_with(organism + ",")) {
                 return line;
+            }
+        }
         return "none";
     }
 

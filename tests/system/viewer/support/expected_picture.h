@@ -36,7 +36,8 @@ class ExpectedPicture {
     };
 
     /// organisms  by index in the picture: discs of these colours with a thin line around them; empty: rings
-    ExpectedPicture(const codec::DecodedSnapshot& picture, const Camera& camera, const std::vector<Colour>& organisms = {})
+    ExpectedPicture(const codec::DecodedSnapshot& picture, const Camera& camera,
+                    const std::vector<Colour>& organisms = {})
         : camera_{camera}
         , left_{static_cast<unsigned>(camera.viewport().left)}
         , top_{static_cast<unsigned>(camera.viewport().top)}

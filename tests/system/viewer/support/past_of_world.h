@@ -18,7 +18,7 @@ inline void make_world(RealServer& server, const std::string& name, std::uint64_
 
 /// A picture of a world as it stands.
 inline std::shared_ptr<const codec::DecodedSnapshot> picture_of(RealServer& server, const std::string& world,
-                                                       std::uint32_t island = 0) {
+                                                                std::uint32_t island = 0) {
     evod::v1::SubscribeSnapshots subscription;
     subscription.set_world(world);
     subscription.set_island(island);
@@ -35,7 +35,7 @@ inline std::shared_ptr<const codec::DecodedSnapshot> picture_of(RealServer& serv
 
 /// A picture of what a world was at a moment.
 inline std::shared_ptr<const codec::DecodedSnapshot> past_picture_of(RealServer& server, const std::string& world,
-                                                            const evod::v1::RunMoment& moment) {
+                                                                     const evod::v1::RunMoment& moment) {
     evod::v1::Request open, close;
     open.mutable_open_replay()->set_world(world);
     *open.mutable_open_replay()->mutable_at() = moment;

@@ -13,9 +13,7 @@ namespace {
 using testing::ElementsAre;
 
 struct WatchTest : testing::Test {
-    Watch::Wanted wanted() const {
-        return {.connection = server.options(), .world = "default", .island = 1};
-    }
+    Watch::Wanted wanted() const { return {.connection = server.options(), .world = "default", .island = 1}; }
 
     /// Updates until the condition holds; fails if it does not within some seconds.
     template <class Condition>
