@@ -1,0 +1,181 @@
+"""Rules of style that a program can check: plain words, braces, whole comment blocks, short test names, header pages, sizes.
+
+    tidy.py [ROOT]     prints every finding as PATH:LINE: what is wrong, and what to write instead
+
+Reads the files that git tracks below ROOT, by default this repository. Exit code 1 if there is a finding.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+TEST_NAME_CHARACTERS_MAX = 50
+SOURCE_LINES_MAX = 700
+
+# Word → what to write instead. A word is found in comments, texts and documents, and as a part of a name: `told` is found in
+# `told_count` and in `ToldCount`.
+BANNED = {
+    "picture": "snapshot (streamed or in memory), frame (drawn on the screen), image or plot (a file)",
+    "pictures": "snapshots, frames, images or plots",
+    "pictured": "shown or captured",
+    "tell": "the exact verb: encode, send, report, print, return, distinguish",
+    "tells": "the exact verb: encodes, sends, reports, prints, returns, distinguishes",
+    "told": "the exact verb: encoded, sent, reported, printed, returned, informed",
+    "telling": "the exact verb",
+    "untold": "not reported",
+    "whoever": "name the thread, client or caller",
+    "whomever": "name the thread, client or caller",
+    "nobody": "name who: no client, no viewer, no organism",
+    "somebody": "name who: a client, a viewer, a caller",
+    "anew": "again, or from the start",
+    "foretold": "predicted",
+    "foretell": "predict",
+    "foretells": "predicts",
+    "footing": "baseline",
+    "footings": "baselines",
+    "journey": "seek",
+    "journeys": "seeks",
+}
+# Names from the time before the glossary, which have an ordinary meaning as words: only as a whole name.
+BANNED_NAMES = {
+    "Retries": "ReplyCache", "Pulse": "Heartbeat", "Buffers": "SendMemory", "Breedings": "BreedingQueries",
+    "Rearranging": "OrderMutation", "Sight": "Perception or ViewOptions", "Scene": "QuantisedSnapshot or IslandRenderer",
+    "Chain": "DeltaStream", "Watch": "WorldFeed or StreamDemand", "Thinning": "Retention", "Inquiry": "Poll",
+    "Readout": "StatusText",
+}
+CODE = (".cpp", ".h", ".c", ".proto", ".py")
+TEXT = (*CODE, ".md", ".txt", ".in", ".cmake", ".sh", ".json", ".yaml", ".toml", "")
+# The changelog names what was renamed, and this test names what is banned. The rest is not ours to write, or not text.
+WITHOUT_WORDS = re.compile(r"CHANGELOG\.md|LICENSE|tests/tidy/|tests/fuzz/corpus/|proto/vectors/|\.gitignore")
+
+TOKEN = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<text>R"(?P<mark>\w*)\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')
+                       |(?P<word>[A-Za-z_]\w*)|(?P<other>\S)""", re.S | re.X)
+
+
+def line_of(text, offset):
+    """The number of the line, from 1, in which an offset lies."""
+    return text.count("\n", 0, offset) + 1
+
+
+def tokens_of(text):
+    """(kind, token, line) of C++ or Protocol Buffers, without comments and preprocessor lines."""
+    text = re.sub(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", lambda found: "\n" * found.group().count("\n"), text, flags=re.M)
+    line, end = 1, 0
+    for found in TOKEN.finditer(text):
+        line += text.count("\n", end, found.start())
+        end = found.start()
+        if found.lastgroup != "comment":
+            yield found.lastgroup, found.group(), line
+
+
+def words_of(name):
+    """The words of a snake_case or CamelCase name, in lower case."""
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
+
+
+def banned_words(path, text):
+    """Words and names that the glossary replaces."""
+    for number, line in enumerate(text.splitlines(), 1):
+        for found in re.finditer(r"[A-Za-z_]+", line):
+            name = found.group()
+            for word in sorted(set(words_of(name)) & BANNED.keys()):
+                yield path, number, f"`{name}`: instead of '{word}' write {BANNED[word]}"
+            if name in BANNED_NAMES and path.suffix in CODE:
+                yield path, number, f"`{name}`: the name is {BANNED_NAMES[name]}"
+
+
+def missing_braces(path, text):
+    """Statements after if, else, for, while and do that have no braces."""
+    if path.suffix not in (".cpp", ".h"):
+        return
+    tokens = list(tokens_of(text))
+    depth, do_depths = 0, []
+    for i, (kind, token, line) in enumerate(tokens):
+        if kind == "other" and token in "{}":
+            depth += 1 if token == "{" else -1
+        if kind != "word" or token not in ("if", "else", "for", "while", "do"):
+            continue
+        following = i + 1
+        if token == "do":
+            do_depths.append(depth)
+        if token == "while" and do_depths and do_depths[-1] == depth and tokens[i - 1][1] == "}":
+            do_depths.pop()
+            continue
+        if token in ("if", "for", "while"):
+            while following < len(tokens) and tokens[following][1] in ("constexpr", "consteval"):
+                following += 1
+            if following >= len(tokens) or tokens[following][1] != "(":
+                continue
+            parentheses = 0
+            while following < len(tokens):
+                parentheses += {"(": 1, ")": -1}.get(tokens[following][1], 0)
+                following += 1
+                if parentheses == 0:
+                    break
+        if following < len(tokens) and tokens[following][1] not in ("{", "[") and not (
+                token == "else" and tokens[following][1] == "if"):
+            yield path, line, f"`{token}` without braces: write them, around one statement too"
+
+
+def torn_comments(path, text):
+    """Comment blocks whose lines a formatter has joined."""
+    if path.suffix not in (".cpp", ".h"):
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if re.match(r"\s*//.*\S\s(Owner|Threads|Determinism|Source)\s{2,}\S", line):
+            yield path, number, "a comment block is torn: begin Owner, Threads, Determinism and Source on a line of their own"
+
+
+def long_test_names(path, text):
+    """Names of tests that are too long to read in a list."""
+    if not path.parts or path.parts[0] != "tests":
+        return
+    found = (re.finditer(r"^(?:TEST|TEST_F|TEST_P|TYPED_TEST|RC_GTEST_PROP|RC_GTEST_FIXTURE_PROP)\(\s*\w+,\s*(\w+)", text, re.M)
+             if path.suffix == ".cpp" else re.finditer(r"^\s*(?:async )?def test_(\w+)", text, re.M) if path.suffix == ".py" else ())
+    for name in found:
+        if len(name[1]) > TEST_NAME_CHARACTERS_MAX:
+            yield (path, line_of(text, name.start()),
+                   f"the test's name has {len(name[1])} characters, allowed {TEST_NAME_CHARACTERS_MAX}: claim it in fewer words")
+
+
+def header_without_page(path, text):
+    """Headers that do not begin with what they are."""
+    if path.suffix != ".h":
+        return
+    page = re.match(r"(?://[^\n]*\n)+", text)
+    if not page or not re.match(r"// .{20,}", page.group()):
+        yield path, 1, "the header begins without its page: what it is, owner, threads, determinism, source"
+
+
+def large_source(path, text):
+    """Sources that hold more than one subject."""
+    lines = text.count("\n")
+    if path.suffix in (".cpp", ".h") and path.parts[0] in ("server", "client", "proto") and lines > SOURCE_LINES_MAX:
+        yield path, 1, f"{lines} lines, allowed {SOURCE_LINES_MAX}: cut the source by its subjects"
+
+
+RULES = (banned_words, missing_braces, torn_comments, long_test_names, header_without_page, large_source)
+
+
+def findings(root):
+    """(path, line, what is wrong) of every rule and every tracked file below `root`."""
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True).stdout.decode()
+    for name in filter(None, listed.split("\0")):
+        path = pathlib.Path(name)
+        if path.suffix not in TEXT or not (root / path).is_file():
+            continue
+        try:
+            text = (root / path).read_text()
+        except UnicodeDecodeError:
+            continue
+        for rule in RULES:
+            if rule is banned_words and WITHOUT_WORDS.search(name):
+                continue
+            yield from rule(path, text)
+
+
+if __name__ == "__main__":
+    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
+    found = [f"{path}:{line}: {what}" for path, line, what in findings(root)]
+    print("\n".join(found) or "tidy")
+    sys.exit(bool(found))

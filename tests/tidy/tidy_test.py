@@ -1,0 +1,62 @@
+"""The tree keeps the rules of tidy.py, and each rule finds what breaks it."""
+import pathlib
+import unittest
+
+import tidy
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def found(rule, name, text):
+    """The lines in which a rule finds something in a file of that name."""
+    return [line for _, line, _ in rule(pathlib.Path(name), text)]
+
+
+class Tree(unittest.TestCase):
+    def test_keeps_every_rule(self):
+        findings = [f"{path}:{line}: {what}" for path, line, what in tidy.findings(ROOT)]
+        self.assertEqual(findings, [], "\n" + "\n".join(findings))
+
+
+class Rules(unittest.TestCase):
+    def test_banned_words_are_found_in_every_form(self):
+        text = "// It is told.\nint nobody_here;\nstruct PictureStream {};\nvoid anew();\n"
+        self.assertEqual(found(tidy.banned_words, "server/a.cpp", text), [1, 2, 3, 4])
+        self.assertEqual(found(tidy.banned_words, "docs/a.md", "The server is\ntold"), [2])
+        self.assertEqual(found(tidy.banned_words, "a.py", "class Retries:\n    pass"), [1])
+        self.assertEqual(found(tidy.banned_words, "a.md", "Retries of a request: total, stellar, newcomer\n"), [])
+        for _, _, what in tidy.banned_words(pathlib.Path("a.md"), "picture"):
+            self.assertIn("snapshot", what)
+
+    def test_statements_without_braces_are_found(self):
+        for statement in ("if (a) b();", "else b();", "for (;;) b();", "while (f(a)) b();", "do b(); while (a);",
+                          "if constexpr (a) b();", "if (a)\n    return \"{\";"):
+            self.assertEqual(found(tidy.missing_braces, "a.cpp", statement), [1], statement)
+        for statement in ("if (a) { b(); } else if (c) { d(); } else { e(); }", "do { b(); } while (a);", "while (a) { b(); }",
+                          "#if a\nb();\n#else\nc();\n#endif", "// if (a) b();", "auto text = \"if (a) b();\";"):
+            self.assertEqual(found(tidy.missing_braces, "a.cpp", statement), [], statement)
+
+    def test_torn_comment_blocks_are_found(self):
+        self.assertEqual(found(tidy.torn_comments, "a.h", "// stream. Source       Blickle 1996\n"), [1])
+        self.assertEqual(found(tidy.torn_comments, "a.h", "// Source       Blickle 1996\n// The Owner of it.\n"), [])
+
+    def test_long_test_names_are_found(self):
+        long = "A" * 51
+        self.assertEqual(found(tidy.long_test_names, "tests/a.cpp", f"TEST(Suite, {long}) {{}}\n"), [1])
+        self.assertEqual(found(tidy.long_test_names, "tests/a.cpp", f"TEST_F(Suite, {long[1:]}) {{}}\n"), [])
+        self.assertEqual(found(tidy.long_test_names, "tests/a.py", f"    def test_{long}(self):\n"), [1])
+        self.assertEqual(found(tidy.long_test_names, "tests/a.py", f"    def test_{long[1:]}(self):\n"), [])
+
+    def test_headers_without_a_page_are_found(self):
+        self.assertEqual(found(tidy.header_without_page, "server/a.h", "#pragma once\n"), [1])
+        self.assertEqual(found(tidy.header_without_page, "server/a.h", "// A.\n#pragma once\n"), [1])
+        self.assertEqual(found(tidy.header_without_page, "server/a.h", "// Migration: copies of the best go to neighbours.\n"), [])
+
+    def test_large_sources_are_found(self):
+        self.assertEqual(found(tidy.large_source, "server/a.cpp", "\n" * 701), [1])
+        self.assertEqual(found(tidy.large_source, "server/a.cpp", "\n" * 700), [])
+        self.assertEqual(found(tidy.large_source, "tests/a.cpp", "\n" * 701), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
