@@ -52,7 +52,7 @@ Result<RegularFile> RegularFile::open(const std::string& path, std::string_view 
     }
     if (const std::string_view other = other_than_file(about.st_mode); !other.empty()) {
         ::close(descriptor);
-        return refusal(RefusalCode::InvalidArgument,
+        return refusal(RefusalCode::FailedPrecondition,
                        path + ": this is " + std::string{other} + ", not " + std::string{kind});
     }
     return RegularFile{path, kind, descriptor, about};
