@@ -88,36 +88,36 @@ def generations(program, rounds):
             "python_processor_ms_a_generation": spread([1e3 * b[2] / GENERATIONS for _, b in pairs])}
 
 
-def look_at(frame):
+def look_at(snapshot):
     """Every column there is."""
-    kinds = (frame.organisms, frame.food, frame.poison)
+    kinds = (snapshot.organisms, snapshot.food, snapshot.poison)
     return sum(float(kind.x_px[0] + kind.y_px[0]) for kind in kinds) + float(
-        frame.organisms.radius_px[0] + frame.organisms.health[0])
+        snapshot.organisms.radius_px[0] + snapshot.organisms.health[0])
 
 
 def pictures(program, organisms, seconds):
     messages = []
     with evod.local(seed=1, program=program, experiment=benchmark_world(organisms)) as lab:
         world, core = lab.world(), lab._link.core
-        streams = [world.frames(120) for _ in range(SUBSCRIPTIONS)]
+        streams = [world.snapshots(120) for _ in range(SUBSCRIPTIONS)]
         world.run()
         for stream in streams:
             next(stream)
         began, tick, count = time.perf_counter(), next(streams[0]).tick, 0
         while time.perf_counter() < began + seconds:
             for stream in streams:
-                frame = next(stream)
-                look_at(frame)
+                snapshot = next(stream)
+                look_at(snapshot)
                 count += 1
         come_per_s = count / (time.perf_counter() - began)
-        ticks_per_s = (frame.tick - tick) / (time.perf_counter() - began)
+        ticks_per_s = (snapshot.tick - tick) / (time.perf_counter() - began)
         for stream in streams:
             stream.close()
         take = core._take_picture
         core._take_picture = lambda message: (messages.append(copy.deepcopy(message)), take(message))
-        with world.frames(120) as frames:
+        with world.snapshots(120) as snapshots:
             while len(messages) < 200:
-                next(frames)
+                next(snapshots)
     last = messages[-1].subscription_id  # what comes of the others was on its way
     messages = [message for message in messages if message.subscription_id == last]
     data = [framing.encode(message.SerializeToString()) for message in messages]

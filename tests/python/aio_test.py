@@ -13,7 +13,7 @@ from walk import asked_kinds, walk_all
 
 class Faces(unittest.TestCase):
     def test_both_have_the_same_words(self):
-        for name in ("Lab", "LocalLab", "World", "Past", "Run", "Frames", "Events"):
+        for name in ("Lab", "LocalLab", "World", "Replay", "Run", "Snapshots", "Events"):
             plain, awaited = getattr(evod, name), getattr(evod.aio, name)
             words = {word for word in dir(plain) if not word.startswith("_")} - {"parameters"}  # attributes cannot wait
             self.assertEqual(words, {word for word in dir(awaited) if not word.startswith("_")}, name)
@@ -41,9 +41,9 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             world = await lab.world()
 
             async def ticks():
-                return [(await anext(frames)).tick for _ in range(20)]
+                return [(await anext(snapshots)).tick for _ in range(20)]
 
-            async with world.frames(120) as frames, world.run() as run:
+            async with world.snapshots(120) as snapshots, world.run() as run:
                 seen, ended, *asked = await asyncio.gather(
                     ticks(), self.first_of(run, 20), *(world.organism(i % 50) for i in range(200)))
             self.assertEqual(seen, sorted(seen))

@@ -96,9 +96,9 @@ class Commands(unittest.TestCase):
         self.refused(lambda: world.run(generations=1.5), "run.generations")
         self.refused(lambda: world.set_speed(0), "set_speed.speed.real_time_factor")
         self.refused(lambda: world.set_speed("fast"), "set_speed.speed")
-        self.refused(lambda: world.frames(rate_hz=0), "subscribe_snapshots.rate_hz")
-        self.refused(lambda: world.frames(detail="all"), "view.detail")
-        self.refused(lambda: world.frames(region=(0, 0, 1)), "view.region")
+        self.refused(lambda: world.snapshots(rate_hz=0), "subscribe_snapshots.rate_hz")
+        self.refused(lambda: world.snapshots(detail="all"), "view.detail")
+        self.refused(lambda: world.snapshots(region=(0, 0, 1)), "view.region")
         self.refused(lambda: world.export("organism"), "export_run.table")
         self.refused(lambda: world.step(-1), "run_until_tick.tick")
         self.refused(lambda: world.step("one"), "run_until_tick.tick")
@@ -107,8 +107,8 @@ class Commands(unittest.TestCase):
         self.refused(lambda: world.fork(7), "fork_world.name")
         self.refused(lambda: world.history(first=0.5), "get_history.first_generation")
         self.refused(lambda: world.export("lineage", of=(1, -1, 2)), "export_run.of.island")
-        self.refused(lambda: world.frames(region=(0, 0, "1", 1)), "view.region.width_px")
-        self.refused(lambda: world.frames(bytes_per_s_max=-1), "view.bytes_per_s_max")
+        self.refused(lambda: world.snapshots(region=(0, 0, "1", 1)), "view.region.width_px")
+        self.refused(lambda: world.snapshots(bytes_per_s_max=-1), "view.bytes_per_s_max")
         with self.assertRaisesRegex(evod.Error, "NOT_FOUND: there is no world 'nowhere': there are default"):
             self.lab.world("nowhere")
         with self.assertRaises(evod.Error) as raised:
@@ -142,9 +142,9 @@ class Commands(unittest.TestCase):
 
     def test_many_threads_share_a_connection(self):
         world = self.lab.create_world("shared", speed="max")
-        with world.frames(rate_hz=120) as frames, concurrent.futures.ThreadPoolExecutor(8) as pool:
+        with world.snapshots(rate_hz=120) as snapshots, concurrent.futures.ThreadPoolExecutor(8) as pool:
             run = world.run()
-            seen = pool.submit(lambda: [next(frames).tick for _ in range(20)])
+            seen = pool.submit(lambda: [next(snapshots).tick for _ in range(20)])
             ended = pool.submit(lambda: [next(run).number for _ in range(20)])
             asked = [pool.submit(world.organism, i % 50) for i in range(300)]
             self.assertEqual([answer.result().id for answer in asked], [i % 50 for i in range(300)])
@@ -303,8 +303,8 @@ class Access(unittest.TestCase):
         ca, key = str(self.folder / "evod.crt"), str(self.folder / "evod.key")
         secured = ["--tls-cert", ca, "--tls-key", key]
         address = self.serve(*secured, "--seed", "1")
-        with evod.connect(address, ca=ca) as lab, lab.world().frames() as frames:
-            self.assertEqual(len(next(frames).organisms), 50)
+        with evod.connect(address, ca=ca) as lab, lab.world().snapshots() as snapshots:
+            self.assertEqual(len(next(snapshots).organisms), 50)
         with mock.patch.dict(os.environ, EVOD_CA=ca):
             evod.connect(address).close()
         with self.assertRaisesRegex(evod.NoConnection, "its certificate is not believed"):

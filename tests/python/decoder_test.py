@@ -27,10 +27,10 @@ def recorded(lab, world, count, **options):
         take(message)
 
     lab._link.core._take_picture = keep
-    with world.frames(120, **options) as frames:
+    with world.snapshots(120, **options) as snapshots:
         world.run()
         for _ in range(count):
-            next(frames)
+            next(snapshots)
     world.pause()
     lab._link.core._take_picture = take
     return messages
@@ -75,8 +75,8 @@ class Decoder(Told):
             cls.dots = recorded(lab, world, 3, detail="dots")
             cls.density = recorded(lab, world, 3, detail="density")
 
-            with world.frames(1) as frames:  # the same once more in columns
-                cls.same = next(frames)
+            with world.snapshots(1) as snapshots:  # the same once more in columns
+                cls.same = next(snapshots)
             found, take = [], lab._link.core._take_picture
             lab._link.core._take_picture = lambda message: found.append(message) if message.codec == 1 else take(message)
             columns = c.SubscribeSnapshots(world=world.name, rate_hz=1)
@@ -97,37 +97,37 @@ class Decoder(Told):
         for message in self.deltas:
             if not message.base_sequence:
                 reference = delta_decoder.Decoder(unpack)
-            frame, content = decoder.decode(message), reference.decode(message)
-            self.assertEqual((frame.world, frame.width_px, frame.tick), ("default", 3000, message.tick))
-            self.assert_same(frame.organisms, content["organisms"], ("id", "x", "y", "radius", "health", "dx", "dy"))
-            self.assert_same(frame.food, content["food"], ("id", "x", "y"))
-            self.assert_same(frame.poison, content["poison"], ("id", "x", "y"))
-            self.assert_same(frame.crates, content["crates"], ("x", "y", "half_width", "half_height", "dx", "dy"))
-            self.assert_same(frame.obstacles, content["obstacles"], ("x", "y", "half_width", "half_height"))
+            snapshot, content = decoder.decode(message), reference.decode(message)
+            self.assertEqual((snapshot.world, snapshot.width_px, snapshot.tick), ("default", 3000, message.tick))
+            self.assert_same(snapshot.organisms, content["organisms"], ("id", "x", "y", "radius", "health", "dx", "dy"))
+            self.assert_same(snapshot.food, content["food"], ("id", "x", "y"))
+            self.assert_same(snapshot.poison, content["poison"], ("id", "x", "y"))
+            self.assert_same(snapshot.crates, content["crates"], ("x", "y", "half_width", "half_height", "dx", "dy"))
+            self.assert_same(snapshot.obstacles, content["obstacles"], ("x", "y", "half_width", "half_height"))
 
     def test_columns_show_what_deltas_show(self):
-        frame = picture_decoder.FrameDecoder().decode(self.columns)
-        self.assertEqual((frame.tick, frame.state_hash), (self.same.tick, self.same.state_hash))
+        snapshot = picture_decoder.FrameDecoder().decode(self.columns)
+        self.assertEqual((snapshot.tick, snapshot.state_hash), (self.same.tick, self.same.state_hash))
         for kind in ("organisms", "food", "poison", "crates", "obstacles"):
-            numpy.testing.assert_array_equal(getattr(frame, kind).x_px, getattr(self.same, kind).x_px)
-            numpy.testing.assert_array_equal(getattr(frame, kind).y_px, getattr(self.same, kind).y_px)
-        numpy.testing.assert_array_equal(frame.organisms.health, self.same.organisms.health)
-        numpy.testing.assert_array_equal(frame.crates.half_width_px, self.same.crates.half_width_px)
+            numpy.testing.assert_array_equal(getattr(snapshot, kind).x_px, getattr(self.same, kind).x_px)
+            numpy.testing.assert_array_equal(getattr(snapshot, kind).y_px, getattr(self.same, kind).y_px)
+        numpy.testing.assert_array_equal(snapshot.organisms.health, self.same.organisms.health)
+        numpy.testing.assert_array_equal(snapshot.crates.half_width_px, self.same.crates.half_width_px)
 
     def test_tiles_are_what_they_are_for_the_protocols_own_decoder(self):
         for messages in (self.full, self.dots, self.density):
             decoder, reference = picture_decoder.FrameDecoder(), delta_decoder.TilesDecoder(unpack)
             for message in messages:
-                frame, seen = decoder.decode(message), reference.decode(message)
-                self.assertEqual([tile.index for tile in frame.tiles], list(seen))
-                self.assertTrue(frame.tiles)
-                full = [seen[tile.index] for tile in frame.tiles if tile.detail == stream_pb2.DETAIL_FULL]
+                snapshot, seen = decoder.decode(message), reference.decode(message)
+                self.assertEqual([tile.index for tile in snapshot.tiles], list(seen))
+                self.assertTrue(snapshot.tiles)
+                full = [seen[tile.index] for tile in snapshot.tiles if tile.detail == stream_pb2.DETAIL_FULL]
                 if full:
                     ids = numpy.concatenate([content["organisms"]["id"] for content in full])
                     xs = numpy.concatenate([content["organisms"]["x"] for content in full])
-                    numpy.testing.assert_array_equal(frame.organisms.id, numpy.sort(ids))
-                    numpy.testing.assert_array_equal(frame.organisms.x_px, xs[numpy.argsort(ids)] / 16)
-                for tile in frame.tiles:
+                    numpy.testing.assert_array_equal(snapshot.organisms.id, numpy.sort(ids))
+                    numpy.testing.assert_array_equal(snapshot.organisms.x_px, xs[numpy.argsort(ids)] / 16)
+                for tile in snapshot.tiles:
                     if tile.dots is not None:
                         x = seen[tile.index]["food"]["x"] * (tile.side_px / 256) + tile.left_px
                         numpy.testing.assert_allclose(tile.dots["food"][0], x)
@@ -138,12 +138,12 @@ class Decoder(Told):
 
     def test_a_picture_does_not_change_when_the_next_one_comes(self):
         decoder = picture_decoder.FrameDecoder()
-        frames = [decoder.decode(message) for message in self.deltas[:30]]
+        snapshots = [decoder.decode(message) for message in self.deltas[:30]]
         again = picture_decoder.FrameDecoder()
-        for frame, message in zip(frames, self.deltas):
-            numpy.testing.assert_array_equal(frame.organisms.x_px, again.decode(message).organisms.x_px)
+        for snapshot, message in zip(snapshots, self.deltas):
+            numpy.testing.assert_array_equal(snapshot.organisms.x_px, again.decode(message).organisms.x_px)
         with self.assertRaises(ValueError):
-            frames[0].organisms.id[0] = 7
+            snapshots[0].organisms.id[0] = 7
 
     # ---- bytes that lie ----------------------------------------------------------------------------------------------
 
@@ -174,12 +174,12 @@ class Decoder(Told):
                 for before in self.deltas[: self.deltas.index(message)]:
                     decoder.decode(before)
                 try:
-                    frame = decoder.decode(self.resealed(message, bytes(body)))
+                    snapshot = decoder.decode(self.resealed(message, bytes(body)))
                 except evod.DamagedData:
                     refused += 1
                 else:
-                    self.assertEqual(len(frame.organisms), message.organism_count)
-                    self.assertLessEqual(frame.organisms.x_px.nbytes, 1 << 20)
+                    self.assertEqual(len(snapshot.organisms), message.organism_count)
+                    self.assertLessEqual(snapshot.organisms.x_px.nbytes, 1 << 20)
         self.assertGreater(refused, 100)
         self.assertTrue(base.base_sequence == 0)
 
@@ -317,7 +317,7 @@ class Streams(Told):
     def test_a_refused_view_is_not_asked_for_in_the_next_session(self):
         core = self.core()
         subscription = core.subscribe(c.Request(subscribe_snapshots=c.SubscribeSnapshots(world="w")))
-        stream = plans.FrameStream(core, subscription)
+        stream = plans.SnapshotStream(core, subscription)
         plan = stream.set_view(c.View(detail=stream_pb2.DETAIL_DOTS))
         step = next(plan)
         self.assertFalse(step.holds(), "the server has not accepted the subscription yet")

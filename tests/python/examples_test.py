@@ -60,16 +60,16 @@ for _name in SMALL:
 class Pictures(unittest.TestCase):
     def test_a_world_is_drawn_where_it_is(self):
         with evod.local(seed=3, experiment={"crate_count": 3, "obstacle_count": 2}) as lab:
-            frame = lab.world().frame()
-        axes = frame.plot()
+            snapshot = lab.world().snapshot()
+        axes = snapshot.plot()
         obstacles, crates, food, poison, organisms = axes.collections
-        numpy.testing.assert_array_equal(organisms.get_offsets()[:, 0], frame.organisms.x_px)
-        numpy.testing.assert_array_equal(organisms.get_array(), frame.organisms.health)
-        self.assertEqual([len(x.get_offsets()) for x in (food, poison)], [len(frame.food), len(frame.poison)])
+        numpy.testing.assert_array_equal(organisms.get_offsets()[:, 0], snapshot.organisms.x_px)
+        numpy.testing.assert_array_equal(organisms.get_array(), snapshot.organisms.health)
+        self.assertEqual([len(x.get_offsets()) for x in (food, poison)], [len(snapshot.food), len(snapshot.poison)])
         self.assertEqual([len(x.get_paths()) for x in (obstacles, crates)], [2, 3])
         left = crates.get_paths()[0].vertices[:, 0].min()
-        self.assertEqual(left, frame.crates.x_px[0] - frame.crates.half_width_px[0])
-        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((0, frame.width_px), (frame.height_px, 0)))
+        self.assertEqual(left, snapshot.crates.x_px[0] - snapshot.crates.half_width_px[0])
+        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((0, snapshot.width_px), (snapshot.height_px, 0)))
 
     def test_curves_are_what_the_statistics_tell_over_all_islands(self):
         experiment = {"island_count": 2, "population_size": 10, "generation_s": 2}

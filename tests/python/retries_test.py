@@ -132,14 +132,14 @@ class Retries(unittest.TestCase):
         relay = Relay(self.server.port)
         world = self.connect(relay).world()
         events = world.events()
-        frames = world.frames(rate_hz=100)
+        snapshots = world.snapshots(rate_hz=100)
         world.run()
-        first = next(frames)
+        first = next(snapshots)
         self.restart(relay)
-        for frame in frames:
-            if frame.generation > first.generation + 2:
+        for snapshot in snapshots:
+            if snapshot.generation > first.generation + 2:
                 break
-        self.assertEqual(frame.run_id, first.run_id)
+        self.assertEqual(snapshot.run_id, first.run_id)
         for event in events:
             if event.HasField("events_dropped"):
                 break

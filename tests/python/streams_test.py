@@ -42,7 +42,7 @@ class Generations(unittest.TestCase):
         self.assertEqual([island.island for island in g.islands], [0, 1, 2])
         self.assertEqual(g.best, max(island.fitness_best for island in g.islands))
         self.assertAlmostEqual(g.mean, sum(island.fitness_mean for island in g.islands) / 3)
-        self.assertEqual({frame.island for _, frame in zip(range(3), world.frames())}, {0, 1, 2})
+        self.assertEqual({snapshot.island for _, snapshot in zip(range(3), world.snapshots())}, {0, 1, 2})
         world.delete()
 
     def test_a_run_that_others_end_sooner_ends(self):
@@ -70,25 +70,25 @@ class Generations(unittest.TestCase):
         self.assertEqual(self.world.wait().generation, 3)
 
     def test_frames_stop_coming_when_they_are_closed(self):
-        frames = self.world.frames(10**6)
-        self.assertEqual(frames.rate_hz, self.lab.describe().limits.snapshot_rate_hz_max)
-        next(frames)
-        frames.close()
+        snapshots = self.world.snapshots(10**6)
+        self.assertEqual(snapshots.rate_hz, self.lab.describe().limits.snapshot_rate_hz_max)
+        next(snapshots)
+        snapshots.close()
         self.world.run(2).wait()
         self.assertEqual(self.lab._link.core._sights, {})
 
     def test_who_takes_long_is_shown_fewer_and_newer(self):
-        with self.world.frames(120) as frames:
+        with self.world.snapshots(120) as snapshots:
             self.world.run()
-            next(frames)
-            while len(frames._stream._subscription.arrived) < PICTURES_AHEAD - 1:
+            next(snapshots)
+            while len(snapshots._stream._subscription.arrived) < PICTURES_AHEAD - 1:
                 self.world.info()
             last = self.world.pause()
             behind = []
             while not behind or behind[-1].tick < last.tick:
-                behind.append(next(frames))
+                behind.append(next(snapshots))
         self.assertLessEqual(len(behind), PICTURES_AHEAD)
-        self.assertEqual([frame.tick for frame in behind], sorted(frame.tick for frame in behind))
+        self.assertEqual([snapshot.tick for snapshot in behind], sorted(snapshot.tick for snapshot in behind))
 
     def test_events_of_one_world_and_of_all(self):
         events, everything = self.world.events(), self.lab.events()

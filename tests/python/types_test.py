@@ -20,9 +20,9 @@ with evod.connect("host", token="") as lab:
     world = lab.world()
     for g in world.run(generations=5):
         assert_type(g.best, float)
-    for frame in world.frames():
-        assert_type(frame, evod.Frame)
-        assert_type(frame.organisms, evod.Organisms)
+    for snapshot in world.snapshots():
+        assert_type(snapshot, evod.Snapshot)
+        assert_type(snapshot.organisms, evod.Organisms)
     assert_type(world.get_parameters()["mutation_chance"].allowed, str)
 
 async def main() -> None:
@@ -31,8 +31,8 @@ async def main() -> None:
         world = await lab.world()
         async for g in world.run(generations=5):
             assert_type(g, evod.Generation)
-        async with world.frames() as frames:
-            assert_type(await anext(frames), evod.Frame)
+        async with world.snapshots() as snapshots:
+            assert_type(await anext(snapshots), evod.Snapshot)
         assert_type(await world.run(1), evod.aio.Run)
 '''
 
@@ -63,7 +63,7 @@ class Optional(unittest.TestCase):
         return subprocess.run([sys.executable, "-c", whole], capture_output=True, text=True)
 
     def test_pictures_come_without_zstandard(self):
-        done = self.run_without("zstandard", "print(len(next(world.frames()).organisms))")
+        done = self.run_without("zstandard", "print(len(next(world.snapshots()).organisms))")
         self.assertEqual(done.stdout, "50\n", done.stderr)
 
     def test_what_is_missing_is_named(self):

@@ -43,9 +43,9 @@ def columns_of(entities, with_ids):
     return {name: column.tolist() for name, column in columns.items() if name not in ("dx", "dy")}
 
 
-def entities_of(frame, with_ids):
+def entities_of(snapshot, with_ids):
     """Whole numbers; a kind without entities is left out."""
-    return {kind: columns_of(getattr(frame, kind), with_ids) for kind in KINDS if len(getattr(frame, kind))}
+    return {kind: columns_of(getattr(snapshot, kind), with_ids) for kind in KINDS if len(getattr(snapshot, kind))}
 
 
 def told_of(tile):
@@ -101,10 +101,10 @@ class Vectors(unittest.TestCase):
                 with self.assertRaises(evod.DamagedData, msg=vector.name):
                     decoder.decode(vector.snapshot)
                 continue
-            frame, expected = decoder.decode(vector.snapshot), dict(vector.decoded)
-            shown = {field: getattr(frame, field) for field in ABOUT} | entities_of(frame, "tiles" in expected)
+            snapshot, expected = decoder.decode(vector.snapshot), dict(vector.decoded)
+            shown = {field: getattr(snapshot, field) for field in ABOUT} | entities_of(snapshot, "tiles" in expected)
             if "tiles" in expected:
-                shown |= {"tile_px": vector.snapshot.tile_px, "tiles": [told_of(tile) for tile in frame.tiles]}
+                shown |= {"tile_px": vector.snapshot.tile_px, "tiles": [told_of(tile) for tile in snapshot.tiles]}
                 expected["tiles"], entities = together(expected["tiles"])
                 expected |= entities
             self.assertEqual(shown, expected, vector.name)

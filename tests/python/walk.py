@@ -67,15 +67,15 @@ async def walk_all(lab):
     assert await there(world.cancel(later.id)) == later
 
     # Pictures, whole and in tiles.
-    assert len((await there(world.frame())).organisms) == 10
-    frames = await there(world.frames(120, region=(0, 0, 10, 10)))
-    assert len((await first(frames)).tiles) == 1
-    await there(frames.set_view(detail="dots"))
-    dotted = await first(frames, lambda frame: frame.tiles[0].dots is not None)
+    assert len((await there(world.snapshot())).organisms) == 10
+    snapshots = await there(world.snapshots(120, region=(0, 0, 10, 10)))
+    assert len((await first(snapshots)).tiles) == 1
+    await there(snapshots.set_view(detail="dots"))
+    dotted = await first(snapshots, lambda snapshot: snapshot.tiles[0].dots is not None)
     assert sum(len(tile.dots["organisms"].T) for tile in dotted.tiles) == 10
-    await there(frames.request_keyframe())
-    await first(frames)
-    await there(frames.close())
+    await there(snapshots.request_keyframe())
+    await first(snapshots)
+    await there(snapshots.close())
 
     # Running.
     run = await there(world.run(generations=3))

@@ -11,12 +11,12 @@
 `evod.local()` starts a private server and stops it; notebooks need nothing else. `evod.open_run("x.evod")` reads a run file
 without a server. `evod.aio` has the same words for asyncio. `evod.v1` has the messages of the protocol.
 """
-from evod.lab import Events, Frames, Lab, Past, Run, World, connect
+from evod.lab import Events, Snapshots, Lab, Replay, Run, World, connect
 from evod.errors import DamagedData, Error, NoConnection, Timeout, Violation
 from evod.generations import Generation, Population
 from evod.local_server import LocalLab, local
 from evod.parameters import Actor, Parameter, Parameters, PlannedChange, Registry
-from evod.pictures import Boxes, Frame, Items, Organisms, Tile
+from evod.snapshots import Boxes, Snapshot, Items, Organisms, Tile
 from evod.run_file import RunFile, open_run
 from evod.tables import GENE_NAMES
 from evod.v1.world_pb2 import (
@@ -28,8 +28,8 @@ from evod.v1.world_pb2 import (
 from evod.version import __version__
 
 __all__ = [
-    "Actor", "Boxes", "DamagedData", "Error", "Events", "Frame", "Frames", "GENE_NAMES", "Generation", "Items", "Lab",
-    "LocalLab", "NoConnection", "Organisms", "Parameter", "Parameters", "Past", "PAUSED", "PlannedChange", "Population", "Registry",
+    "Actor", "Boxes", "DamagedData", "Error", "Events", "Snapshot", "Snapshots", "GENE_NAMES", "Generation", "Items", "Lab",
+    "LocalLab", "NoConnection", "Organisms", "Parameter", "Parameters", "Replay", "PAUSED", "PlannedChange", "Population", "Registry",
     "Run", "RunFile", "RUNNING", "TERMINATED", "Tile", "Timeout", "Violation", "WAITING", "World", "connect",
     "__version__", "local", "open_run",
 ]  # fmt: skip

@@ -22,7 +22,7 @@ import google.protobuf.message
 
 from evod import framing, picture_decoder
 from evod.errors import DamagedData, Error, NoConnection, refusal
-from evod.pictures import Frame
+from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2, session_pb2, stream_pb2
 from evod.version import __version__
 
@@ -70,7 +70,7 @@ class Subscription:
         self.sessions = 0  # in which it was accepted
         self.rate_hz = 0.0  # pictures: that holds
         self.ended = False
-        self.arrived: collections.deque[Any] = collections.deque()  # events or Frame, the oldest first
+        self.arrived: collections.deque[Any] = collections.deque()  # events or Snapshot, the oldest first
         self._lost = 0  # events that were not kept
 
     def take_event(self) -> stream_pb2.Event | None:
@@ -228,13 +228,13 @@ class Core:
         if subscription.server_id is not None:
             self._unsubscribe_from(subscription.server_id)
 
-    def acknowledge(self, subscription: Subscription, frame: Frame) -> None:
+    def acknowledge(self, subscription: Subscription, snapshot: Snapshot) -> None:
         """The picture has been dealt with: another one may come."""
-        if subscription.server_id is not None and frame.sequence:
+        if subscription.server_id is not None and snapshot.sequence:
             self._send(
                 session_pb2.ClientMessage(
                     acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
-                        subscription_id=subscription.server_id, island=frame.island, sequence=frame.sequence
+                        subscription_id=subscription.server_id, island=snapshot.island, sequence=snapshot.sequence
                     )
                 )
             )
@@ -369,10 +369,10 @@ class Core:
         told_from_others = message.codec == stream_pb2.CODEC_DELTA and (
             message.base_sequence or any(tile.base_sequence for tile in message.tiles)
         )
-        frame = None
+        snapshot = None
         if not (told_from_others and sight.keyframe_needed):
             try:
-                frame = sight.decoder.decode(message)
+                snapshot = sight.decoder.decode(message)
             except DamagedData:
                 self.damaged_snapshot_count += 1
                 sight.keyframe_needed = True
@@ -383,7 +383,7 @@ class Core:
                         commands_pb2.Request(request_keyframe=commands_pb2.RequestKeyframe(subscription_id=server_id)),
                         first=True,
                     )
-        if frame is None:
+        if snapshot is None:
             self._send(
                 session_pb2.ClientMessage(
                     acknowledge_snapshot=session_pb2.AcknowledgeSnapshot(
@@ -393,4 +393,4 @@ class Core:
             )
             return
         sight.keyframe_needed, sight.keyframe_requests = False, 0
-        subscription.arrived.append(frame)
+        subscription.arrived.append(snapshot)

@@ -11,7 +11,7 @@ from evod.endpoint import Endpoint, tls_context, token_of
 from evod.generations import Generation, Population
 from evod.link import Link
 from evod.parameters import Parameters, PlannedChange, Registry, Value
-from evod.pictures import Frame
+from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
 T = TypeVar("T")
@@ -319,11 +319,11 @@ class World:
         """Where it stands: tick, generation, state, seed, …"""
         return self._link.perform(plans.info_of(self.name))
 
-    def frame(self, island: int = 0) -> Frame:
+    def snapshot(self, island: int = 0) -> Snapshot:
         """A picture of an island as it is now."""
-        return self._link.perform(self._desk.frame(self.name, island))
+        return self._link.perform(self._desk.snapshot(self.name, island))
 
-    def frames(
+    def snapshots(
         self,
         rate_hz: float = 30.0,
         *,
@@ -331,7 +331,7 @@ class World:
         region: tuple[float, float, float, float] | None = None,
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
-    ) -> Frames:
+    ) -> Snapshots:
         """Pictures, at most so many a second, of one island or of all; who takes long is shown fewer.
 
         With one of the others they are made of tiles: region (left, top, width, height in px) is what is wanted, detail
@@ -340,17 +340,17 @@ class World:
         >>> import evod
         >>> with evod.local(seed=1) as lab:
         ...     world = lab.world()
-        ...     with world.frames() as frames:
+        ...     with world.snapshots() as snapshots:
         ...         run = world.run(generations=1)
-        ...         for frame in frames:
-        ...             if frame.tick > 100:
+        ...         for snapshot in snapshots:
+        ...             if snapshot.tick > 100:
         ...                 break
-        >>> frame.organisms.health.max() > 0
+        >>> snapshot.organisms.health.max() > 0
         True
         """
         view = plans.view_of(region, detail, bytes_per_s_max)
         subscription = self._link.perform(self._desk.subscribe_snapshots(self.name, island, rate_hz, view))
-        return Frames(self._link, plans.FrameStream(self._link.core, subscription))
+        return Snapshots(self._link, plans.SnapshotStream(self._link.core, subscription))
 
     def events(self) -> Events:
         """What happens to it, from now on."""
@@ -407,11 +407,11 @@ class World:
         """How its bodies move: energy, momentum, overlaps."""
         return self._link.perform(plans.ask("get_motion", world=self.name, island=island)).motion
 
-    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Past:
+    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Replay:
         """Its past, as a world beside it: from a generation, a tick of it, or a tick of the run; without a number from the
         beginning. The server has to keep its runs."""
         at = plans.moment_of("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
-        return Past(self._lab, self._command("open_replay", at=at).name)
+        return Replay(self._lab, self._command("open_replay", at=at).name)
 
     def export(
         self,
@@ -446,7 +446,7 @@ class World:
         >>> axes.get_title()
         'default, generation 1, 50 alive, 0 s'
         """
-        return self.frame(island).plot(ax)
+        return self.snapshot(island).plot(ax)
 
     def plot_fitness(self, ax: Any = None) -> Any:
         """Draws the fitness of the generations that have ended."""
@@ -473,16 +473,16 @@ class World:
         notebooks play."""
         from evod import plotting
 
-        seen: list[Frame] = []
-        with self.frames(rate_hz, island=island) as frames:
-            for frame in frames:
-                seen.append(frame)
-                if len(seen) >= count or frame.state != world_pb2.RUN_STATE_RUNNING:
+        seen: list[Snapshot] = []
+        with self.snapshots(rate_hz, island=island) as snapshots:
+            for snapshot in snapshots:
+                seen.append(snapshot)
+                if len(seen) >= count or snapshot.state != world_pb2.RUN_STATE_RUNNING:
                     break
         return plotting.animation_of(seen, 1000 / rate_hz)
 
 
-class Past(World, _Closing):
+class Replay(World, _Closing):
     """A world that shows the past of another one; made by World.open_replay(), gone with close() or the connection."""
 
     def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
@@ -564,15 +564,15 @@ class Run(_Stream):
         return last
 
 
-class Frames(_Stream):
+class Snapshots(_Stream):
     """Pictures as they come; the next ones are let come by taking them."""
 
-    _stream: plans.FrameStream
+    _stream: plans.SnapshotStream
 
-    def __iter__(self) -> Frames:
+    def __iter__(self) -> Snapshots:
         return self
 
-    def __next__(self) -> Frame:
+    def __next__(self) -> Snapshot:
         return self._link.perform(self._stream.next())
 
     @property

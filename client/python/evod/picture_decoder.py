@@ -9,7 +9,7 @@ from typing import Any, Mapping, Sequence
 import numpy
 
 from evod.errors import DamagedData
-from evod.pictures import Array, Boxes, Columns, Frame, Items, Organisms, Tile
+from evod.snapshots import Array, Boxes, Columns, Snapshot, Items, Organisms, Tile
 from evod.v1 import stream_pb2, world_pb2
 
 try:
@@ -42,7 +42,7 @@ class FrameDecoder:
         self._tiles: dict[int, _Deltas] = {}
         self._same: dict[str, Any] = {}  # what deltas leave out
 
-    def decode(self, message: stream_pb2.SnapshotFrame) -> Frame:
+    def decode(self, message: stream_pb2.SnapshotFrame) -> Snapshot:
         """DamagedData: ask for a keyframe, if it is of CODEC_DELTA."""
         tiles: tuple[Tile, ...] = ()
         if message.codec != stream_pb2.CODEC_DELTA:
@@ -58,7 +58,7 @@ class FrameDecoder:
             }
         live = world_pb2.LiveStatistics()  # of its own, so that the picture does not hold the whole message
         live.CopyFrom(message.live)
-        return Frame(
+        return Snapshot(
             **{**self._same, "run_id": self._same["run_id"].hex()},
             island=message.island,
             tick=message.tick,

@@ -18,7 +18,7 @@ from evod.core import PICTURES_AHEAD, Core, Subscription
 from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.pictures import Frame
+from evod.snapshots import Snapshot
 from evod.v1 import commands_pb2 as c, stream_pb2, world_pb2
 
 T = TypeVar("T")
@@ -236,8 +236,8 @@ class Desk:
         yield from ask("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
-    def frame(self, world: str, island: int) -> Plan[Frame]:
-        stream = FrameStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
+    def snapshot(self, world: str, island: int) -> Plan[Snapshot]:
+        stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
         try:
             return (yield from stream.next())
         finally:
@@ -260,14 +260,14 @@ class EventStream:
         self._core.unsubscribe(self._subscription)
 
 
-class FrameStream:
+class SnapshotStream:
     """Pictures as they come; the next one is let come by taking it."""
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
-        self._taken: tuple[int, Frame] | None = None  # and in which session
+        self._taken: tuple[int, Snapshot] | None = None  # and in which session
 
-    def next(self) -> Plan[Frame]:
+    def next(self) -> Plan[Snapshot]:
         subscription = self._subscription
         if self._taken is not None:
             session, taken = self._taken
@@ -277,9 +277,9 @@ class FrameStream:
         yield Until(lambda: subscription.arrived or subscription.refused)
         if not subscription.arrived:
             raise subscription.refused or DamagedData("no picture came")
-        frame: Frame = subscription.arrived.popleft()
-        self._taken = subscription.sessions, frame
-        return frame
+        snapshot: Snapshot = subscription.arrived.popleft()
+        self._taken = subscription.sessions, snapshot
+        return snapshot
 
     def set_view(self, view: c.View) -> Plan[None]:
         subscription_id = yield from self._server_id()

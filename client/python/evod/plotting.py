@@ -12,7 +12,7 @@ from evod.generations import ACCOUNT_PARTS, account_part
 
 if TYPE_CHECKING:
     from evod.generations import Generation
-    from evod.pictures import Frame
+    from evod.snapshots import Snapshot
 
 Array = numpy.typing.NDArray[Any]
 
@@ -38,56 +38,56 @@ def axes_of(ax: Any, **how: Any) -> Any:
 class WorldPicture:
     """A picture of an island that can be brought up to date: an organism is as large as it is, its colour is its health."""
 
-    def __init__(self, frame: Frame, ax: Any = None) -> None:
+    def __init__(self, snapshot: Snapshot, ax: Any = None) -> None:
         width = 8.0
-        self.axes = ax = axes_of(ax, figsize=(width, width * frame.height_px / frame.width_px + 0.5))
-        ax.set(xlim=(0, frame.width_px), ylim=(frame.height_px, 0), aspect="equal", xticks=[], yticks=[])
+        self.axes = ax = axes_of(ax, figsize=(width, width * snapshot.height_px / snapshot.width_px + 0.5))
+        ax.set(xlim=(0, snapshot.width_px), ylim=(snapshot.height_px, 0), aspect="equal", xticks=[], yticks=[])
         self._obstacles = _boxes(ax, _WALL)
         self._crates = _boxes(ax, _CRATE)
         self._food = _discs(ax, color=_FOOD)
         self._poison = _discs(ax, color=_POISON)
         self._organisms = _discs(ax, cmap="cividis", clim=(0, _HEALTH_SHOWN), edgecolor="black", linewidth=0.4)
         self.artists = (self._obstacles, self._crates, self._food, self._poison, self._organisms)
-        self.show(frame)
+        self.show(snapshot)
 
-    def show(self, frame: Frame) -> None:
-        for artist, boxes in ((self._obstacles, frame.obstacles), (self._crates, frame.crates)):
+    def show(self, snapshot: Snapshot) -> None:
+        for artist, boxes in ((self._obstacles, snapshot.obstacles), (self._crates, snapshot.crates)):
             x, y, half_width, half_height = boxes.x_px, boxes.y_px, boxes.half_width_px, boxes.half_height_px
             corners = ((x - half_width, y - half_height), (x + half_width, y - half_height),
                        (x + half_width, y + half_height), (x - half_width, y + half_height))  # fmt: skip
             artist.set_verts(numpy.stack([numpy.stack(corner, axis=1) for corner in corners], axis=1))
-        for artist, items in ((self._food, frame.food), (self._poison, frame.poison)):
-            _place(artist, items.x_px, items.y_px, numpy.full(len(items), frame.item_radius_px))
-        organisms = frame.organisms
+        for artist, items in ((self._food, snapshot.food), (self._poison, snapshot.poison)):
+            _place(artist, items.x_px, items.y_px, numpy.full(len(items), snapshot.item_radius_px))
+        organisms = snapshot.organisms
         _place(self._organisms, organisms.x_px, organisms.y_px, organisms.radius_px)
         self._organisms.set_array(organisms.health)
         self.axes.set_title(
-            f"{frame.world}, generation {frame.generation}, {len(organisms)} alive, {frame.simulated_s:.0f} s", fontsize=10
+            f"{snapshot.world}, generation {snapshot.generation}, {len(organisms)} alive, {snapshot.simulated_s:.0f} s", fontsize=10
         )
 
 
-def plot_frame(frame: Frame, ax: Any = None) -> Any:
-    return WorldPicture(frame, ax).axes
+def plot_snapshot(snapshot: Snapshot, ax: Any = None) -> Any:
+    return WorldPicture(snapshot, ax).axes
 
 
-def animation_of(frames: Sequence[Frame], interval_ms: float) -> Any:
+def animation_of(snapshots: Sequence[Snapshot], interval_ms: float) -> Any:
     """A matplotlib animation, which notebooks play."""
-    if not frames:
-        raise Error("there are no frames to be shown")
+    if not snapshots:
+        raise Error("there are no snapshots to be shown")
     from matplotlib import animation
 
-    picture = WorldPicture(frames[0])
+    picture = WorldPicture(snapshots[0])
     figure = picture.axes.figure
 
-    def show(frame: Frame) -> Any:
-        picture.show(frame)
+    def show(snapshot: Snapshot) -> Any:
+        picture.show(snapshot)
         return picture.artists
 
     class Shown(animation.FuncAnimation):  # type: ignore[misc]
         def _repr_html_(self) -> str:
             return str(self.to_jshtml())
 
-    made = Shown(figure, show, frames=list(frames), interval=interval_ms, init_func=lambda: picture.artists)
+    made = Shown(figure, show, snapshots=list(snapshots), interval=interval_ms, init_func=lambda: picture.artists)
     pyplot().close(figure)  # notebooks would show it once more, standing still
     return made
 

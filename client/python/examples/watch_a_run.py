@@ -16,14 +16,14 @@ options = parser.parse_args()
 with evod.connect(options.server) if options.server else evod.local(seed=42, speed=40) as lab:
     world = lab.world()
     run = world.run(generations=options.generations)
-    with world.frames(rate_hz=5) as frames:
-        for frame in frames:
-            organisms, food = frame.organisms, frame.food
+    with world.snapshots(rate_hz=5) as snapshots:
+        for snapshot in snapshots:
+            organisms, food = snapshot.organisms, snapshot.food
             away_px = numpy.hypot(organisms.x_px[:, None] - food.x_px, organisms.y_px[:, None] - food.y_px)
             if away_px.size:
-                print(f"generation {frame.generation}, {frame.generation_tick / 60:4.1f} s: {len(organisms)} alive, "
+                print(f"generation {snapshot.generation}, {snapshot.generation_tick / 60:4.1f} s: {len(organisms)} alive, "
                       f"mean health {organisms.health.mean():5.1f}, food {away_px.min(axis=1).mean():4.0f} px away")
-            if frame.state != evod.RUNNING:
+            if snapshot.state != evod.RUNNING:
                 break
     for generation in run:
         print(generation)

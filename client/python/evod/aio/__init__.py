@@ -8,6 +8,6 @@
 
 Threads      all on the event loop that it was connected on.
 """
-from evod.aio.lab import Events, Frames, Lab, LocalLab, Past, Run, World, connect, local
+from evod.aio.lab import Events, Snapshots, Lab, LocalLab, Replay, Run, World, connect, local
 
-__all__ = ["Events", "Frames", "Lab", "LocalLab", "Past", "Run", "World", "connect", "local"]
+__all__ = ["Events", "Snapshots", "Lab", "LocalLab", "Replay", "Run", "World", "connect", "local"]

@@ -16,7 +16,7 @@ from evod.core import Core
 from evod.endpoint import Endpoint, tls_context, token_of
 from evod.generations import Generation, Population
 from evod.parameters import Parameters, PlannedChange, Registry
-from evod.pictures import Frame
+from evod.snapshots import Snapshot
 from evod.plans import Plan
 from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
 
@@ -268,10 +268,10 @@ class World:
     async def info(self) -> world_pb2.WorldInfo:
         return await self._link.perform(plans.info_of(self.name))
 
-    async def frame(self, island: int = 0) -> Frame:
-        return await self._link.perform(self._desk.frame(self.name, island))
+    async def snapshot(self, island: int = 0) -> Snapshot:
+        return await self._link.perform(self._desk.snapshot(self.name, island))
 
-    def frames(
+    def snapshots(
         self,
         rate_hz: float = 30.0,
         *,
@@ -279,13 +279,13 @@ class World:
         region: tuple[float, float, float, float] | None = None,
         detail: str | None = None,
         bytes_per_s_max: int | None = None,
-    ) -> OpeningStream[Frames, Frame]:
-        async def open_frames() -> Frames:
+    ) -> OpeningStream[Snapshots, Snapshot]:
+        async def open_snapshots() -> Snapshots:
             view = plans.view_of(region, detail, bytes_per_s_max)
             plan = self._desk.subscribe_snapshots(self.name, island, rate_hz, view)
-            return Frames(self._link, plans.FrameStream(self._link.core, await self._link.perform(plan)))
+            return Snapshots(self._link, plans.SnapshotStream(self._link.core, await self._link.perform(plan)))
 
-        return OpeningStream(open_frames())
+        return OpeningStream(open_snapshots())
 
     def events(self) -> OpeningStream[Events, stream_pb2.Event]:
         return _events(self._link, self._desk.subscribe_events(self.name))
@@ -327,10 +327,10 @@ class World:
     async def motion(self, island: int = 0) -> c.Motion:
         return (await self._link.perform(plans.ask("get_motion", world=self.name, island=island))).motion
 
-    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Opening[Past]:
-        async def open_it() -> Past:
+    def open_replay(self, generation: int | None = None, tick: int | None = None) -> Opening[Replay]:
+        async def open_it() -> Replay:
             at = plans.moment_of("open_replay.at.", generation, tick) if (generation, tick) != (None, None) else None
-            return Past(self._lab, (await self._command("open_replay", at=at)).name)
+            return Replay(self._lab, (await self._command("open_replay", at=at)).name)
 
         return Opening(open_it())
 
@@ -351,7 +351,7 @@ class World:
 
 
     async def plot(self, island: int = 0, ax: Any = None) -> Any:
-        return (await self.frame(island)).plot(ax)
+        return (await self.snapshot(island)).plot(ax)
 
     async def plot_fitness(self, ax: Any = None) -> Any:
         from evod import plotting
@@ -374,17 +374,17 @@ class World:
     async def animate(self, count: int = 100, rate_hz: float = 20.0, island: int = 0) -> Any:
         from evod import plotting
 
-        seen: list[Frame] = []
-        async with self.frames(rate_hz, island=island) as frames:
-            async for frame in frames:
-                seen.append(frame)
-                if len(seen) >= count or frame.state != world_pb2.RUN_STATE_RUNNING:
+        seen: list[Snapshot] = []
+        async with self.snapshots(rate_hz, island=island) as snapshots:
+            async for snapshot in snapshots:
+                seen.append(snapshot)
+                if len(seen) >= count or snapshot.state != world_pb2.RUN_STATE_RUNNING:
                     break
         return plotting.animation_of(seen, 1000 / rate_hz)
 
 
-class Past(World, _Closing):
-    """As evod.Past, and what it answers is awaited."""
+class Replay(World, _Closing):
+    """As evod.Replay, and what it answers is awaited."""
 
     async def seek(self, generation: int | None = None, tick: int | None = None) -> world_pb2.WorldInfo:
         return await self._command("seek", to=plans.moment_of("seek.to.", generation, tick))
@@ -426,15 +426,15 @@ class Run(_Stream):
         return last
 
 
-class Frames(_Stream):
-    """As evod.Frames, for `async for`."""
+class Snapshots(_Stream):
+    """As evod.Snapshots, for `async for`."""
 
-    _stream: plans.FrameStream
+    _stream: plans.SnapshotStream
 
-    def __aiter__(self) -> Frames:
+    def __aiter__(self) -> Snapshots:
         return self
 
-    async def __anext__(self) -> Frame:
+    async def __anext__(self) -> Snapshot:
         return await self._link.perform(self._stream.next())
 
     @property
@@ -476,7 +476,7 @@ def _events(link: Link, plan: Plan[Any]) -> OpeningStream[Events, stream_pb2.Eve
 def _say_what_the_plain_face_says() -> None:
     """Without its examples, which do not await anything."""
     for ours, theirs in ((Lab, plain.Lab), (LocalLab, local_server.LocalLab), (World, plain.World),
-                        (Past, plain.Past), (Run, plain.Run), (Frames, plain.Frames), (Events, plain.Events),
+                        (Replay, plain.Replay), (Run, plain.Run), (Snapshots, plain.Snapshots), (Events, plain.Events),
                         (_Stream, plain._Stream)):  # fmt: skip
         for name, member in vars(ours).items():
             if not name.startswith("_") and inspect.isfunction(member):

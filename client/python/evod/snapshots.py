@@ -95,15 +95,15 @@ class Tile:
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Frame:
+class Snapshot:
     """A picture of one island after `tick`.
 
     >>> import evod
     >>> with evod.local(seed=1) as lab:
-    ...     frame = lab.world().frame()
-    >>> frame
-    <frame of default: island 0, generation 1, tick 0, 50 organisms>
-    >>> frame.organisms.x_px.shape, float(frame.width_px)
+    ...     snapshot = lab.world().snapshot()
+    >>> snapshot
+    <snapshot of default: island 0, generation 1, tick 0, 50 organisms>
+    >>> snapshot.organisms.x_px.shape, float(snapshot.width_px)
     ((50,), 1280.0)
     """
 
@@ -136,10 +136,10 @@ class Frame:
         """Draws it with matplotlib, into new axes or those that are given; returns them."""
         from evod import plotting
 
-        return plotting.plot_frame(self, ax)
+        return plotting.plot_snapshot(self, ax)
 
     def __repr__(self) -> str:
         return (
-            f"<frame of {self.world}: island {self.island}, generation {self.generation}, tick {self.tick}, "
+            f"<snapshot of {self.world}: island {self.island}, generation {self.generation}, tick {self.tick}, "
             f"{len(self.organisms)} organisms>"
         )
