@@ -87,7 +87,7 @@ def animation_of(snapshots: Sequence[Snapshot], interval_ms: float) -> Any:
         def _repr_html_(self) -> str:
             return str(self.to_jshtml())
 
-    made = Shown(figure, show, snapshots=list(snapshots), interval=interval_ms, init_func=lambda: picture.artists)
+    made = Shown(figure, show, frames=list(snapshots), interval=interval_ms, init_func=lambda: picture.artists)
     pyplot().close(figure)  # notebooks would show it once more, standing still
     return made
 
