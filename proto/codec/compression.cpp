@@ -15,7 +15,7 @@ namespace {
 
 // The fastest of the ordinary levels: a picture waits for it on the network thread.
 constexpr int level = 1;
-// Instead of 1: of a world at full speed a quarter less time and 1 % more bytes, by picture_bench.
+// Instead of 1: of a world at full speed a quarter less time and 1 % more bytes, by snapshot_bench.
 constexpr int bytes_between_looks = 16;
 
 constexpr std::size_t block_bytes_min = 1024; // shorter ones would cost more than they save

@@ -6,13 +6,15 @@
 // Full         at most `bytes_max`: then `over` is called, and has to see to it that some are let go.
 #pragma once
 
-#include "server/network/retries.h"
+#include "proto/codec/shared_bytes.h"
 
 #include <cstddef>
 #include <functional>
 #include <unordered_map>
 
 namespace evod::network {
+
+using codec::SharedBytes;
 
 class Buffers {
   public:

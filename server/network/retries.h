@@ -8,6 +8,7 @@
 // Owner        the dispatcher, on the network thread.
 #pragma once
 
+#include "proto/codec/shared_bytes.h"
 #include "server/base/state_hash.h"
 
 #include <cstdint>
@@ -24,8 +25,7 @@
 
 namespace evod::network {
 
-/// A frame as it goes to clients, shared by all who get it.
-using SharedBytes = std::shared_ptr<const std::string>;
+using codec::SharedBytes;
 
 class Retries {
   public:

@@ -705,8 +705,9 @@ bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscrip
                 add_parts(tried);
                 return codec::header_bytes + outgoing_.body_bytes();
             };
-            const Budget::Choice choice = island.shown ? subscription.budget->look_closer(now, *island.shown, cost)
-                                                       : subscription.budget->choose(now, cost);
+            const streaming::Bandwidth::Choice choice = island.shown
+                                                            ? subscription.budget->look_closer(now, *island.shown, cost)
+                                                            : subscription.budget->choose(now, cost);
             island.not_before = choice.again;
             if (!choice.detail) {
                 return false;

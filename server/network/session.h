@@ -14,14 +14,14 @@
 #include "server/access/gate.h"
 #include "server/base/result.h"
 #include "server/metrics/traffic.h"
-#include "server/network/budget.h"
 #include "server/network/buffers.h"
-#include "server/network/chains.h"
 #include "server/network/limits.h"
 #include "server/network/line.h"
-#include "server/network/tiled_pictures.h"
 #include "server/network/token_bucket.h"
 #include "server/runtime/clock.h"
+#include "server/streaming/bandwidth.h"
+#include "server/streaming/delta_stream.h"
+#include "server/streaming/tiles.h"
 
 #include <boost/asio/steady_timer.hpp>
 
@@ -76,16 +76,16 @@ struct SnapshotSubscription {
     v1::Compression compression = v1::COMPRESSION_NONE;
     std::optional<std::uint32_t> unacknowledged_max; // pictures of an island on their way; nullopt: any number
     std::optional<v1::View> view;                    // CODEC_DELTA: pictures come in tiles
-    std::optional<Budget> budget;                    // of view
+    std::optional<streaming::Bandwidth> budget;      // of view
 
     void set_view(const v1::View& wanted);
 
     /// A picture as it waits, in one of three ways.
     struct Waiting {
         std::uint64_t sequence = 0;
-        SharedBytes columns = {};     // fields 1 to 49
-        ChainPicturePtr chained = {}; // CODEC_DELTA: its form is chosen when it is sent
-        TiledPicturePtr tiled = {};   // with a view: so are its tiles and theirs
+        SharedBytes columns = {};                 // fields 1 to 49
+        streaming::DeltaSnapshotPtr chained = {}; // CODEC_DELTA: its form is chosen when it is sent
+        streaming::TiledSnapshotPtr tiled = {};   // with a view: so are its tiles and theirs
         explicit operator bool() const { return columns || chained || tiled; }
     };
     struct Island {
@@ -94,7 +94,7 @@ struct SnapshotSubscription {
         Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
         runtime::Clock::time_point not_before;    // the budget does not allow it
         std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
-        TilesSent tiles_sent;                     // with a view
+        streaming::SentTiles tiles_sent;          // with a view
         std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
         std::uint64_t turn = 0;                   // number of its turn to be sent; 0: it waits for an acknowledgement
     };

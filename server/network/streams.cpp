@@ -1,11 +1,11 @@
 #include "server/network/streams.h"
 
 #include "proto/codec/snapshot_codec.h"
-#include "server/network/scene.h"
 #include "server/protocol/actors.h"
 #include "server/protocol/events.h"
 #include "server/protocol/worlds.h"
 #include "server/simulation/world_name.h"
+#include "server/streaming/quantise.h"
 
 #include <algorithm>
 #include <utility>
@@ -233,13 +233,13 @@ class EncodedIsland {
     }
     const std::shared_ptr<const codec::QuantisedSnapshot>& scene() {
         if (!scene_) {
-            scene_ = std::make_shared<const codec::QuantisedSnapshot>(scene_of(island_));
+            scene_ = std::make_shared<const codec::QuantisedSnapshot>(streaming::quantise(island_));
         }
         return scene_;
     }
-    const std::shared_ptr<IslandTiles>& tiles() {
+    const std::shared_ptr<streaming::IslandTiles>& tiles() {
         if (!tiles_) {
-            tiles_ = std::make_shared<IslandTiles>(*about(), scene(), compressor_);
+            tiles_ = std::make_shared<streaming::IslandTiles>(*about(), scene(), compressor_);
         }
         return tiles_;
     }
@@ -252,7 +252,7 @@ class EncodedIsland {
     std::shared_ptr<const v1::SnapshotFrame> about_;
     SharedBytes columns_;
     std::shared_ptr<const codec::QuantisedSnapshot> scene_;
-    std::shared_ptr<IslandTiles> tiles_;
+    std::shared_ptr<streaming::IslandTiles> tiles_;
 };
 
 struct Streams::Viewer {
@@ -369,13 +369,13 @@ SnapshotSubscription::Waiting Streams::encode_for(const Viewer& viewer, EncodedI
     if (viewer.group == nullptr) {
         waiting.columns = island.columns();
     } else if (subscription.view) {
-        TiledPicturePtr& newest = viewer.group->tiled[island.number()];
+        streaming::TiledSnapshotPtr& newest = viewer.group->tiled[island.number()];
         if (!newest || newest->sequence() != waiting.sequence) { // otherwise it was made for another of the group
-            newest = std::make_shared<TiledPicture>(island.tiles(), newest, of.began, between);
+            newest = std::make_shared<streaming::TiledSnapshot>(island.tiles(), newest, of.began, between);
         }
         waiting.tiled = newest;
     } else {
-        Chain& chain = viewer.group->chains[island.number()];
+        streaming::DeltaStream& chain = viewer.group->chains[island.number()];
         if (!chain.latest() || chain.latest()->sequence() != waiting.sequence) {
             chain.add(island.about(), island.scene(), compressor_, of.began, between);
         }

@@ -71,10 +71,11 @@ class Streams {
     void update_demand();
     /// The viewers of a world at one rate that take deltas, whole or in tiles.
     struct Group {
-        runtime::Clock::time_point next_picture;        // not before then
-        std::map<std::uint32_t, Chain> chains;          // by island, of those that are watched whole
-        std::map<std::uint32_t, TiledPicturePtr> tiled; // the newest by island, of those that are watched in tiles
-        simulation::RunId run_id;                       // of these
+        runtime::Clock::time_point next_picture;                // not before then
+        std::map<std::uint32_t, streaming::DeltaStream> chains; // by island, of those that are watched whole
+        std::map<std::uint32_t, streaming::TiledSnapshotPtr>
+            tiled;                // the newest by island, of those that are watched in tiles
+        simulation::RunId run_id; // of these
         void forget_pictures() {
             chains.clear();
             tiled.clear();

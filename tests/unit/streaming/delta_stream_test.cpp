@@ -1,4 +1,4 @@
-#include "server/network/chains.h"
+#include "server/streaming/delta_stream.h"
 
 #include "proto/codec/snapshot_decoder.h"
 
@@ -6,16 +6,16 @@
 
 #include <utility>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using namespace std::chrono_literals;
 using runtime::Clock;
 
-class ChainTest : public testing::Test {
+class DeltaStreamTest : public testing::Test {
   protected:
     /// Adds a picture of what `frame_` tells, `between` after the last.
-    ChainPicturePtr add(Clock::duration between = 100ms) {
+    DeltaSnapshotPtr add(Clock::duration between = 100ms) {
         const auto x = static_cast<std::uint32_t>(frame_.generation_tick()) * 16;
         codec::QuantisedSnapshot scene{
             .organisms = {.id = {1, 2}, .x = {x, x}, .y = {16, 16}, .width = {16, 16}, .height = {1600, 1600}}};
@@ -29,7 +29,7 @@ class ChainTest : public testing::Test {
                           std::make_shared<const codec::QuantisedSnapshot>(std::move(scene)), compressor_, now_,
                           between);
     }
-    ChainPicturePtr add_next() {
+    DeltaSnapshotPtr add_next() {
         frame_.set_generation_tick(frame_.generation_tick() + 6);
         return add();
     }
@@ -43,10 +43,10 @@ class ChainTest : public testing::Test {
     v1::SnapshotFrame frame_;
     codec::Compressor compressor_;
     Clock::time_point now_{1h};
-    Chain chain_;
+    DeltaStream chain_;
 };
 
-TEST_F(ChainTest, EveryPictureButTheFirstIsToldFromTheOneBefore) {
+TEST_F(DeltaStreamTest, EveryPictureButTheFirstIsToldFromTheOneBefore) {
     EXPECT_EQ(add()->base_sequence(), 0U);
     for (std::uint64_t sequence = 2; sequence < 10; ++sequence) {
         const auto picture = add_next();
@@ -55,7 +55,7 @@ TEST_F(ChainTest, EveryPictureButTheFirstIsToldFromTheOneBefore) {
     }
 }
 
-TEST_F(ChainTest, EachFormIsMadeOnce) {
+TEST_F(DeltaStreamTest, EachFormIsMadeOnce) {
     add();
     const auto picture = add_next();
     for (const auto compression : {v1::COMPRESSION_NONE, v1::COMPRESSION_ZSTD}) {
@@ -65,7 +65,7 @@ TEST_F(ChainTest, EachFormIsMadeOnce) {
     EXPECT_NE(picture->delta(v1::COMPRESSION_NONE), picture->keyframe(v1::COMPRESSION_NONE));
 }
 
-TEST_F(ChainTest, AViewerOfDeltasAndOneOfKeyframesSeeTheSame) {
+TEST_F(DeltaStreamTest, AViewerOfDeltasAndOneOfKeyframesSeeTheSame) {
     codec::SnapshotDecoder of_deltas, of_keyframes;
     ASSERT_TRUE(of_deltas.decode(frame_of(add()->keyframe(v1::COMPRESSION_ZSTD))));
     for (int i = 0; i < 5; ++i) {
@@ -77,7 +77,7 @@ TEST_F(ChainTest, AViewerOfDeltasAndOneOfKeyframesSeeTheSame) {
     EXPECT_TRUE(of_keyframes.decode(frame_of(add_next()->delta(v1::COMPRESSION_NONE)))) << "it may go on with deltas";
 }
 
-TEST_F(ChainTest, AKeyframeForAllComesAtLeastEveryTwoSeconds) {
+TEST_F(DeltaStreamTest, AKeyframeForAllComesAtLeastEveryTwoSeconds) {
     auto last_keyframe = now_;
     for (int i = 0; i < 100; ++i) {
         const auto picture = add_next();
@@ -90,13 +90,13 @@ TEST_F(ChainTest, AKeyframeForAllComesAtLeastEveryTwoSeconds) {
     EXPECT_LE(now_ - last_keyframe, keyframe_interval);
 }
 
-TEST_F(ChainTest, AtALowRateEveryPictureIsAKeyframe) {
+TEST_F(DeltaStreamTest, AtALowRateEveryPictureIsAKeyframe) {
     for (int i = 0; i < 5; ++i) {
         EXPECT_EQ(add(3s)->base_sequence(), 0U);
     }
 }
 
-TEST_F(ChainTest, WhatCannotBeForetoldBeginsAnew) {
+TEST_F(DeltaStreamTest, WhatCannotBeForetoldBeginsAnew) {
     add();
     const std::vector<void (*)(v1::SnapshotFrame&)> changes{
         [](v1::SnapshotFrame& frame) { frame.set_run_id("another"); },
@@ -111,7 +111,7 @@ TEST_F(ChainTest, WhatCannotBeForetoldBeginsAnew) {
     }
 }
 
-TEST_F(ChainTest, WhatWouldNotBecomeSmallerIsNotCompressed) {
+TEST_F(DeltaStreamTest, WhatWouldNotBecomeSmallerIsNotCompressed) {
     add();
     const auto frame = frame_of(add_next()->delta(v1::COMPRESSION_ZSTD));
     EXPECT_EQ(frame.compression(), v1::COMPRESSION_UNSPECIFIED);
@@ -119,4 +119,4 @@ TEST_F(ChainTest, WhatWouldNotBecomeSmallerIsNotCompressed) {
 }
 
 } // namespace
-} // namespace evod::network
+} // namespace evod::streaming

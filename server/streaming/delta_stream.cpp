@@ -1,4 +1,4 @@
-#include "server/network/chains.h"
+#include "server/streaming/delta_stream.h"
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/wire_format_lite.h>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace evod::network {
+namespace evod::streaming {
 
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after) {
     if (!codec::same_unchanging(after, before) || after.generation() != before.generation() ||
@@ -17,11 +17,11 @@ std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, cons
     return static_cast<std::uint16_t>(after.generation_tick() - before.generation_tick());
 }
 
-ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                   bool with_delta) const {
+DeltaSnapshotPtr DeltaSnapshot::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                     bool with_delta) const {
     const auto ticks = ticks_between(*about_, *about);
     if (!ticks || !with_delta || !codec::follows(*scene, *baseline_.scene)) {
-        return std::make_shared<ChainPicture>(std::move(about), std::move(scene), *compressor_);
+        return std::make_shared<DeltaSnapshot>(std::move(about), std::move(scene), *compressor_);
     }
     // What stayed is paired once for both: the next baseline, and the delta, which whoever keeps up is sent.
     codec::Baseline baseline = codec::initial_baseline(std::move(scene));
@@ -30,14 +30,14 @@ ChainPicturePtr ChainPicture::next(AboutPtr about, std::shared_ptr<const codec::
                                        .crates = {baseline.crates.x, baseline.crates.y}};
     codec::Seams seams;
     std::string delta = codec::encode_delta(baseline_, *baseline.scene, *ticks, &moved, &seams);
-    auto picture = std::make_shared<ChainPicture>(std::move(about), std::move(baseline), *compressor_);
+    auto picture = std::make_shared<DeltaSnapshot>(std::move(about), std::move(baseline), *compressor_);
     picture->delta_body_ = std::move(delta);
     picture->delta_seams_ = std::move(seams);
     picture->base_sequence_ = sequence();
     return picture;
 }
 
-const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression, bool as_delta) {
+const SharedBytes& DeltaSnapshot::form(Forms& forms, v1::Compression compression, bool as_delta) {
     SharedBytes& bytes = forms[compression == v1::COMPRESSION_ZSTD ? 1 : 0];
     if (bytes) {
         return bytes;
@@ -63,13 +63,13 @@ const SharedBytes& ChainPicture::form(Forms& forms, v1::Compression compression,
     return bytes = std::make_shared<const std::string>(std::move(made));
 }
 
-const ChainPicturePtr& Chain::add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                  codec::Compressor& compressor, runtime::Clock::time_point now,
-                                  runtime::Clock::duration between) {
+const DeltaSnapshotPtr& DeltaStream::add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                         codec::Compressor& compressor, runtime::Clock::time_point now,
+                                         runtime::Clock::duration between) {
     // The next picture would come too late to be the keyframe.
     const bool keyframe_due = now + between > keyframe_made_ + keyframe_interval;
     latest_ = latest_ ? latest_->next(std::move(about), std::move(scene), !keyframe_due)
-                      : std::make_shared<ChainPicture>(std::move(about), std::move(scene), compressor);
+                      : std::make_shared<DeltaSnapshot>(std::move(about), std::move(scene), compressor);
     if (latest_->base_sequence() == 0) {
         keyframe_made_ = now;
     }
@@ -90,4 +90,4 @@ std::size_t field_bytes(int number, std::size_t bytes) {
     return WireFormatLite::TagSize(number, WireFormatLite::TYPE_BYTES) + WireFormatLite::LengthDelimitedSize(bytes);
 }
 
-} // namespace evod::network
+} // namespace evod::streaming

@@ -1,4 +1,4 @@
-// Budget: how closely a viewer is shown each picture so that it is sent no more bytes a second than it wants.
+// Bandwidth: how closely a viewer is shown each picture so that it is sent no more bytes a second than it wants.
 //
 // What is not spent is saved for a while, for keyframes are long. When a picture costs more than there is, detail is
 // left out, and where that does not help the picture is. More detail is tried again after a while, of the same picture
@@ -15,18 +15,16 @@
 #include <cstdint>
 #include <optional>
 
-namespace evod::network {
+namespace evod::streaming {
 
-namespace v1 = evod::v1;
-
-class Budget {
+class Bandwidth {
   public:
     using Clock = runtime::Clock;
     static constexpr double saved_s_max = 2;                                 // of the rate, is saved
     static constexpr std::chrono::seconds patience_min{2}, patience_max{64}; // before more detail is tried
 
     /// bytes_per_s  above 0; most: the detail that is wanted.
-    Budget(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
+    Bandwidth(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
 
     /// Something else is wanted now: it is shown as closely as it can be. What is saved stays, as far as it may; what
     /// may be saved beyond that is there, as at the beginning.
@@ -64,7 +62,7 @@ class Budget {
 };
 
 template <class Cost>
-Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
+Bandwidth::Choice Bandwidth::choose(Clock::time_point now, const Cost& cost) {
     save(now);
     if (detail_ != most_ && now >= try_more_) {
         // From the most on: where little changes, all of a picture that is told from the one before may cost less than
@@ -93,7 +91,7 @@ Budget::Choice Budget::choose(Clock::time_point now, const Cost& cost) {
 }
 
 template <class Cost>
-Budget::Choice Budget::look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost) {
+Bandwidth::Choice Bandwidth::look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost) {
     save(now);
     if (detail_ >= shown && now < try_more_) {
         return {std::nullopt, try_more_};
@@ -113,4 +111,4 @@ Budget::Choice Budget::look_closer(Clock::time_point now, v1::Detail shown, cons
     return {std::nullopt, Clock::time_point::max()};
 }
 
-} // namespace evod::network
+} // namespace evod::streaming

@@ -2,7 +2,7 @@
 // number, what the server had, whatever was dropped on the way.
 //
 // FRAMES, in the environment, says how many pictures are compared; docs/LONG_TESTS.md.
-#include "server/network/chains.h"
+#include "server/streaming/delta_stream.h"
 
 #include "proto/codec/snapshot_decoder.h"
 #include "tests/support/everyday.h"
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using namespace std::chrono_literals;
@@ -29,7 +29,7 @@ class Server {
         island_.populate(random_);
     }
 
-    ChainPicturePtr next() {
+    DeltaSnapshotPtr next() {
         std::uint64_t ticks = below(random_, 8) == 0 ? 0 : 1 + below(random_, 4); // 0: it is paused
         if (below(random_, 60) == 0) {
             ticks += 300; // a command took long
@@ -71,7 +71,7 @@ class Server {
     codec::Compressor compressor_;
     std::uint64_t sequence_ = 0, tick_ = 0, generation_ = 1;
     Clock::time_point now_{1h};
-    Chain chain_;
+    DeltaStream chain_;
 };
 
 /// How a viewer fares, each a share of 1000.
@@ -88,7 +88,7 @@ class DroppingViewer {
     DroppingViewer(const Habits& habits, std::uint64_t seed) : habits_{habits}, random_{seed} {}
 
     /// Returns whether a picture came to be compared.
-    bool take(ChainPicture& picture, const codec::QuantisedSnapshot& scene) {
+    bool take(DeltaSnapshot& picture, const codec::QuantisedSnapshot& scene) {
         if (hiccup_ > 0 || happens(habits_.slow)) { // often several one after another
             hiccup_ = hiccup_ > 0 ? hiccup_ - 1 : below(random_, 6);
             return false;
@@ -149,7 +149,7 @@ class DroppingViewer {
     std::uint64_t hiccup_ = 0, keyframes_ = 0, deltas_ = 0, refusals_ = 0;
 };
 
-TEST(DroppedPictures, WhatIsDecodedIsWhatTheServerHad) {
+TEST(DroppedSnapshots, WhatIsDecodedIsWhatTheServerHad) {
     const std::vector<Habits> all_habits{
         {},
         {.compression = v1::COMPRESSION_ZSTD},
@@ -168,7 +168,7 @@ TEST(DroppedPictures, WhatIsDecodedIsWhatTheServerHad) {
             viewers.emplace_back(habits, 1000 * seed + viewers.size());
         }
         for (int n = 0; n < 250; ++n) {
-            const ChainPicturePtr picture = server.next();
+            const DeltaSnapshotPtr picture = server.next();
             for (DroppingViewer& viewer : viewers) {
                 compared += viewer.take(*picture, server.scene());
             }
@@ -185,4 +185,4 @@ TEST(DroppedPictures, WhatIsDecodedIsWhatTheServerHad) {
 }
 
 } // namespace
-} // namespace evod::network
+} // namespace evod::streaming

@@ -8,10 +8,10 @@
 #pragma once
 
 #include "proto/codec/compression.h"
+#include "proto/codec/shared_bytes.h"
 #include "proto/codec/tiles.h"
-#include "server/network/chains.h"
-#include "server/network/retries.h"
 #include "server/runtime/clock.h"
+#include "server/streaming/delta_stream.h"
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@
 #include <string_view>
 #include <vector>
 
-namespace evod::network {
+namespace evod::streaming {
 
 /// An island cut into tiles at one moment: what all viewers share, whatever their rates.
 class IslandTiles {
@@ -52,12 +52,12 @@ class IslandTiles {
 /// One picture of an island in tiles, for the viewers of its world at one rate.
 ///
 /// A tile is told from the picture before if somebody was sent it of that: otherwise nobody could take the delta.
-class TiledPicture {
+class TiledSnapshot {
   public:
     /// before   the picture before it at this rate; null: there is none.
     /// between  how long it usually is to the next picture.
-    TiledPicture(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledPicture>& before,
-                 runtime::Clock::time_point now, runtime::Clock::duration between);
+    TiledSnapshot(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledSnapshot>& before,
+                  runtime::Clock::time_point now, runtime::Clock::duration between);
 
     std::uint64_t sequence() const { return island_->about().sequence(); }
     const codec::TileLayout& layout() const { return island_->scene().layout(); }
@@ -81,8 +81,8 @@ class TiledPicture {
     codec::BaselineView baseline(std::uint32_t tile) const;
 
     std::shared_ptr<IslandTiles> island_;
-    std::shared_ptr<TiledPicture> before_; // nothing is told from it if it is null
-    std::uint16_t ticks_ = 0;              // since then
+    std::shared_ptr<TiledSnapshot> before_; // nothing is told from it if it is null
+    std::uint16_t ticks_ = 0;               // since then
     runtime::Clock::time_point now_;
     runtime::Clock::duration between_;
     std::vector<std::unique_ptr<Tile>> tiles_; // by index; null: nobody was sent it
@@ -92,17 +92,17 @@ class TiledPicture {
     Displacements organisms_, crates_;
 };
 
-using TiledPicturePtr = std::shared_ptr<TiledPicture>;
+using TiledSnapshotPtr = std::shared_ptr<TiledSnapshot>;
 
 /// What of an island a viewer was sent last, which is what its next frame can be told from.
-class TilesSent {
+class SentTiles {
   public:
     /// Adds the parts of a frame to `parts`: together its fields 1 to 49. They are there as long as the picture is.
-    void add_parts(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail, v1::Compression compression,
+    void add_parts(TiledSnapshot& picture, const codec::TileRange& seen, v1::Detail detail, v1::Compression compression,
                    std::vector<const SharedBytes*>& parts) const;
 
     /// That frame has been sent.
-    void sent(const TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail);
+    void sent(const TiledSnapshot& picture, const codec::TileRange& seen, v1::Detail detail);
 
     /// Keyframes are next.
     void forget() { *this = {}; }
@@ -112,4 +112,4 @@ class TilesSent {
     codec::TileRange full_; // the tiles that were at DETAIL_FULL
 };
 
-} // namespace evod::network
+} // namespace evod::streaming

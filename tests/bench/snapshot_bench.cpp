@@ -7,9 +7,9 @@
 // --movers`; pictures are 3 ticks apart, or 300 to 302, as a world at full speed has them.
 #include "proto/codec/snapshot_codec.h"
 #include "server/base/inline_executor.h"
-#include "server/network/chains.h"
-#include "server/network/scene.h"
 #include "server/runtime/snapshot.h"
+#include "server/streaming/delta_stream.h"
+#include "server/streaming/quantise.h"
 #include "tests/bench/experiment.h"
 
 #include <benchmark/benchmark.h>
@@ -70,7 +70,7 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
     std::chrono::duration<double> scene{0}, delta{0}, bytes{0};
     std::uint64_t entities = 0, size = 0;
     for (auto _ : state) {
-        network::Chain chain;
+        streaming::DeltaStream chain;
         for (std::size_t i = 0; i < snapshots.size(); ++i) {
             const runtime::Snapshot& snapshot = *snapshots[i];
             v1::SnapshotFrame about;
@@ -78,13 +78,13 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             about.set_generation(snapshot.moment.generation);
             about.set_generation_tick(snapshot.moment.generation_tick);
             const auto began = Clock::now();
-            auto made = std::make_shared<const codec::QuantisedSnapshot>(network::scene_of(snapshot.islands.front()));
+            auto made = std::make_shared<const codec::QuantisedSnapshot>(streaming::quantise(snapshot.islands.front()));
             codec::describe(*made, about);
             const auto ready = Clock::now();
-            const network::ChainPicturePtr& picture =
+            const streaming::DeltaSnapshotPtr& picture =
                 chain.add(std::make_shared<const v1::SnapshotFrame>(about), std::move(made), compressor, {}, {});
             const auto told = Clock::now();
-            const network::SharedBytes frame = picture->after(i, compression);
+            const streaming::SharedBytes frame = picture->after(i, compression);
             benchmark::DoNotOptimize(frame->data());
             const auto done = Clock::now();
             if (i == 0) { // a keyframe

@@ -1,4 +1,4 @@
-#include "server/network/budget.h"
+#include "server/streaming/bandwidth.h"
 
 #include "tests/support/manual_clock.h"
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using namespace std::chrono_literals;
@@ -16,15 +16,15 @@ using v1::DETAIL_DENSITY;
 using v1::DETAIL_DOTS;
 using v1::DETAIL_FULL;
 
-class BudgetTest : public testing::Test {
+class BandwidthTest : public testing::Test {
   protected:
     /// What becomes of a picture of these costs now, and what of one every 50 ms for a while.
-    std::optional<v1::Detail> choose(Budget& budget) {
+    std::optional<v1::Detail> choose(Bandwidth& budget) {
         const auto detail = budget.choose(clock_.now(), [&](v1::Detail of) { return costs_.at(of); }).detail;
         sent_bytes_ += detail ? costs_.at(*detail) : 0;
         return detail;
     }
-    std::vector<std::optional<v1::Detail>> choose_for(Budget& budget, std::chrono::seconds time) {
+    std::vector<std::optional<v1::Detail>> choose_for(Bandwidth& budget, std::chrono::seconds time) {
         std::vector<std::optional<v1::Detail>> chosen;
         for (auto passed = 0ms; passed < time; passed += 50ms) {
             clock_.advance(50ms);
@@ -48,15 +48,15 @@ class BudgetTest : public testing::Test {
     std::size_t sent_bytes_ = 0;
 };
 
-TEST_F(BudgetTest, EverythingIsShownWhileThereIsEnough) {
-    Budget budget{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
+TEST_F(BandwidthTest, EverythingIsShownWhileThereIsEnough) {
+    Bandwidth budget{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
     for (const auto& detail : choose_for(budget, 60s)) {
         EXPECT_EQ(detail, DETAIL_FULL);
     }
 }
 
-TEST_F(BudgetTest, DetailIsLeftOutBeforePicturesAre) {
-    Budget dots{10'000, DETAIL_FULL}, density{2'500, DETAIL_FULL};
+TEST_F(BandwidthTest, DetailIsLeftOutBeforePicturesAre) {
+    Bandwidth dots{10'000, DETAIL_FULL}, density{2'500, DETAIL_FULL};
     choose_for(dots, 60s);
     choose_for(density, 60s);
     const auto in_dots = choose_for(dots, 60s), in_density = choose_for(density, 60s);
@@ -65,17 +65,17 @@ TEST_F(BudgetTest, DetailIsLeftOutBeforePicturesAre) {
     EXPECT_GT(count(in_density, DETAIL_DENSITY), 1000);
     EXPECT_EQ(count(in_dots, std::nullopt), 0);
     EXPECT_EQ(count(in_density, std::nullopt), 0);
-    Budget pictures{1'000, DETAIL_FULL};
+    Bandwidth pictures{1'000, DETAIL_FULL};
     choose_for(pictures, 60s);
     const auto few = choose_for(pictures, 2s);
     EXPECT_GT(count(few, std::nullopt), 10);
     EXPECT_GT(count(few, DETAIL_DENSITY), 10);
 }
 
-TEST_F(BudgetTest, IsKeptInTheLongRunWhateverPicturesCost) {
+TEST_F(BandwidthTest, IsKeptInTheLongRunWhateverPicturesCost) {
     std::uint64_t random = 1;
     for (const double bytes_per_s : {1'000.0, 7'000.0, 30'000.0}) {
-        Budget budget{bytes_per_s, DETAIL_FULL};
+        Bandwidth budget{bytes_per_s, DETAIL_FULL};
         sent_bytes_ = 0;
         for (int round = 0; round < 200; ++round) {
             random = random * 6364136223846793005U + 1442695040888963407U;
@@ -85,35 +85,35 @@ TEST_F(BudgetTest, IsKeptInTheLongRunWhateverPicturesCost) {
             choose_for(budget, 1s);
         }
         // What was saved at first, and the longest picture.
-        EXPECT_LE(static_cast<double>(sent_bytes_), (200 + Budget::saved_s_max) * bytes_per_s + 5000);
+        EXPECT_LE(static_cast<double>(sent_bytes_), (200 + Bandwidth::saved_s_max) * bytes_per_s + 5000);
         EXPECT_GT(static_cast<double>(sent_bytes_), 100 * bytes_per_s) << "it is made use of, too";
     }
 }
 
-TEST_F(BudgetTest, DetailComesBackWhenItFitsAgain) {
-    Budget budget{10'000, DETAIL_FULL};
+TEST_F(BandwidthTest, DetailComesBackWhenItFitsAgain) {
+    Bandwidth budget{10'000, DETAIL_FULL};
     EXPECT_GT(count(choose_for(budget, 30s), DETAIL_DOTS), 400);
     costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 300}, {DETAIL_DENSITY, 100}};
-    const auto chosen = choose_for(budget, std::chrono::seconds{Budget::patience_max} + 1s);
+    const auto chosen = choose_for(budget, std::chrono::seconds{Bandwidth::patience_max} + 1s);
     EXPECT_EQ(chosen.back(), DETAIL_FULL);
     EXPECT_EQ(changes(chosen), 1U);
 }
 
-TEST_F(BudgetTest, EverythingIsShownWhereItCostsLessThanDots) {
-    Budget budget{10'000, DETAIL_FULL};
+TEST_F(BandwidthTest, EverythingIsShownWhereItCostsLessThanDots) {
+    Bandwidth budget{10'000, DETAIL_FULL};
     choose_for(budget, 30s);
     costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 1200}, {DETAIL_DENSITY, 100}};
-    EXPECT_EQ(choose_for(budget, std::chrono::seconds{Budget::patience_max} + 1s).back(), DETAIL_FULL);
+    EXPECT_EQ(choose_for(budget, std::chrono::seconds{Bandwidth::patience_max} + 1s).back(), DETAIL_FULL);
 }
 
-TEST_F(BudgetTest, DetailDoesNotComeAndGoWithEveryPicture) {
-    Budget budget{6'000, DETAIL_FULL}; // dots, just
+TEST_F(BandwidthTest, DetailDoesNotComeAndGoWithEveryPicture) {
+    Bandwidth budget{6'000, DETAIL_FULL}; // dots, just
     choose_for(budget, 60s);
     EXPECT_LE(changes(choose_for(budget, 120s)), 8U) << "of 2400 pictures";
 }
 
-TEST_F(BudgetTest, AKeyframeNowAndThenIsSavedFor) {
-    Budget budget{12'000, DETAIL_FULL};
+TEST_F(BandwidthTest, AKeyframeNowAndThenIsSavedFor) {
+    Bandwidth budget{12'000, DETAIL_FULL};
     for (int i = 0; i < 1000; ++i) { // 39 of 400 bytes and one of 8,000 every 2 s: 11,800 a second
         costs_[DETAIL_FULL] = i % 40 == 0 ? 8000 : 400;
         clock_.advance(50ms);
@@ -121,9 +121,9 @@ TEST_F(BudgetTest, AKeyframeNowAndThenIsSavedFor) {
     }
 }
 
-TEST_F(BudgetTest, WhatIsLongerThanCanBeSavedForIsSentNowAndThen) {
+TEST_F(BandwidthTest, WhatIsLongerThanCanBeSavedForIsSentNowAndThen) {
     costs_ = {{DETAIL_FULL, 90'000}, {DETAIL_DOTS, 80'000}, {DETAIL_DENSITY, 70'000}};
-    Budget budget{1'000, DETAIL_FULL};
+    Bandwidth budget{1'000, DETAIL_FULL};
     EXPECT_EQ(choose(budget), DETAIL_DENSITY);
     sent_bytes_ = 0;
     const auto chosen = choose_for(budget, 700s);
@@ -131,9 +131,9 @@ TEST_F(BudgetTest, WhatIsLongerThanCanBeSavedForIsSentNowAndThen) {
     EXPECT_EQ(sent_bytes_, 700'000U);
 }
 
-TEST_F(BudgetTest, TellsWhenAPictureCanBeSent) {
+TEST_F(BandwidthTest, TellsWhenAPictureCanBeSent) {
     costs_ = {{DETAIL_DENSITY, 1'500}};
-    Budget budget{1'000, DETAIL_DENSITY};
+    Bandwidth budget{1'000, DETAIL_DENSITY};
     const auto cost = [&](v1::Detail of) { return costs_.at(of); };
     EXPECT_TRUE(choose(budget)); // 500 are left
     const auto now = clock_.now();
@@ -142,19 +142,19 @@ TEST_F(BudgetTest, TellsWhenAPictureCanBeSent) {
     EXPECT_EQ(budget.choose(now + 1s, cost).detail, DETAIL_DENSITY);
 }
 
-TEST_F(BudgetTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
+TEST_F(BandwidthTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
     const auto cost = [&](v1::Detail of) { return costs_.at(of); };
-    const auto look_closer = [&](Budget& budget) { return budget.look_closer(clock_.now(), DETAIL_DENSITY, cost); };
-    Budget budget{550, DETAIL_FULL};
+    const auto look_closer = [&](Bandwidth& budget) { return budget.look_closer(clock_.now(), DETAIL_DENSITY, cost); };
+    Bandwidth budget{550, DETAIL_FULL};
     EXPECT_EQ(choose(budget), DETAIL_FULL); // 100 are left
-    const Budget::Choice shown = budget.choose(clock_.now(), cost);
+    const Bandwidth::Choice shown = budget.choose(clock_.now(), cost);
     EXPECT_EQ(shown.detail, DETAIL_DENSITY);
-    EXPECT_EQ(shown.again, clock_.now() + Budget::patience_min);
+    EXPECT_EQ(shown.again, clock_.now() + Bandwidth::patience_min);
     EXPECT_EQ(look_closer(budget).again, shown.again);
-    clock_.advance(Budget::patience_min);
+    clock_.advance(Bandwidth::patience_min);
     EXPECT_EQ(look_closer(budget).detail, DETAIL_FULL); // 100 are left
     // Another island's picture, that was shown as this was.
-    const Budget::Choice other = look_closer(budget);
+    const Bandwidth::Choice other = look_closer(budget);
     EXPECT_FALSE(other.detail);
     clock_.advance(other.again - clock_.now() - 1ms);
     EXPECT_FALSE(look_closer(budget).detail);
@@ -164,11 +164,11 @@ TEST_F(BudgetTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
     clock_.advance(1h);
     EXPECT_EQ(look_closer(budget).detail, DETAIL_DOTS);
     costs_[DETAIL_DOTS] = 1101;
-    EXPECT_EQ(look_closer(budget).again, Budget::Clock::time_point::max());
+    EXPECT_EQ(look_closer(budget).again, Bandwidth::Clock::time_point::max());
 }
 
-TEST_F(BudgetTest, AHugePictureDoesNotKeepAnotherWishAway) {
-    Budget budget{500, DETAIL_DENSITY};
+TEST_F(BandwidthTest, AHugePictureDoesNotKeepAnotherWishAway) {
+    Bandwidth budget{500, DETAIL_DENSITY};
     costs_[DETAIL_DENSITY] = 1'000'000;
     EXPECT_EQ(choose(budget), DETAIL_DENSITY);
     costs_[DETAIL_DENSITY] = 100; // of a small region
@@ -177,8 +177,8 @@ TEST_F(BudgetTest, AHugePictureDoesNotKeepAnotherWishAway) {
     EXPECT_EQ(choose(budget), DETAIL_DENSITY);
 }
 
-TEST_F(BudgetTest, WhoWantsMoreHasMoreAtOnce) {
-    Budget budget{500, DETAIL_FULL};
+TEST_F(BandwidthTest, WhoWantsMoreHasMoreAtOnce) {
+    Bandwidth budget{500, DETAIL_FULL};
     EXPECT_EQ(choose(budget), DETAIL_FULL); // nothing is left
     budget.change(400, DETAIL_FULL);
     EXPECT_EQ(choose(budget), std::nullopt);
@@ -186,8 +186,8 @@ TEST_F(BudgetTest, WhoWantsMoreHasMoreAtOnce) {
     EXPECT_EQ(choose(budget), DETAIL_FULL);
 }
 
-TEST_F(BudgetTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
-    Budget budget{1e9, DETAIL_DOTS};
+TEST_F(BandwidthTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
+    Bandwidth budget{1e9, DETAIL_DOTS};
     for (const auto& detail : choose_for(budget, 10s)) {
         EXPECT_EQ(detail, DETAIL_DOTS);
     }
@@ -201,4 +201,4 @@ TEST_F(BudgetTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
 }
 
 } // namespace
-} // namespace evod::network
+} // namespace evod::streaming

@@ -7,8 +7,8 @@
 #include "proto/codec/quantised_snapshot.h"
 #include "server/runtime/snapshot.h"
 
-namespace evod::network {
+namespace evod::streaming {
 
-codec::QuantisedSnapshot scene_of(const runtime::IslandSnapshot& island);
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island);
 
-} // namespace evod::network
+} // namespace evod::streaming

@@ -1,11 +1,11 @@
-#include "server/network/scene.h"
+#include "server/streaming/quantise.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <initializer_list>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using testing::ElementsAre;
@@ -36,7 +36,7 @@ runtime::OrganismsSnapshot lying(std::uint32_t born, std::initializer_list<Organ
     return to;
 }
 
-TEST(Scene, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
+TEST(Quantise, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
     constexpr std::int32_t away = physics::elsewhere;
     runtime::IslandSnapshot island;
     island.organisms = lying(11, {{7, 70 * step, 71 * step, 7.5F, 77.F},
@@ -44,22 +44,22 @@ TEST(Scene, OrganismsComeInOrderOfIdAndTheDeadDoNot) {
                                   {2, 20 * step, 21 * step, 2.5F, 22.F},
                                   {0, 1 * step, 2 * step, 0.5F, 3.F},
                                   {9, away, away, 0, -1}});
-    const codec::Entities organisms = scene_of(island).organisms;
+    const codec::Entities organisms = quantise(island).organisms;
     EXPECT_THAT(organisms.id, ElementsAre(0, 2, 7));
     EXPECT_THAT(organisms.x, ElementsAre(1, 20, 70));
     EXPECT_THAT(organisms.y, ElementsAre(2, 21, 71));
     EXPECT_THAT(organisms.width, ElementsAre(8, 40, 120));
     EXPECT_THAT(organisms.height, ElementsAre(48, 352, 1232));
     island.organisms = lying(11, {});
-    EXPECT_THAT(scene_of(island).organisms.id, IsEmpty());
+    EXPECT_THAT(quantise(island).organisms.id, IsEmpty());
 }
 
-TEST(Scene, ItemsThatAreAwayAreLeftOut) {
+TEST(Quantise, ItemsThatAreAwayAreLeftOut) {
     runtime::IslandSnapshot island;
     island.food.all = {{1 * step, 2 * step, 0}, {3, 4, 9}, {5 * step, 6 * step, 0}, {7, 8, 1}};
     island.food.present_count = 2;
     island.poison.all = {{1, 1, 5}};
-    const codec::QuantisedSnapshot scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = quantise(island);
     EXPECT_THAT(scene.food.id, ElementsAre(0, 2));
     EXPECT_THAT(scene.food.x, ElementsAre(1, 5));
     EXPECT_THAT(scene.food.y, ElementsAre(2, 6));
@@ -67,30 +67,30 @@ TEST(Scene, ItemsThatAreAwayAreLeftOut) {
     EXPECT_THAT(scene.poison.id, IsEmpty());
 }
 
-TEST(Scene, CratesAndObstaclesAreToldApart) {
+TEST(Quantise, CratesAndObstaclesAreToldApart) {
     runtime::IslandSnapshot island;
     island.boxes = {.x = {1 * step, 2 * step, 3 * step},
                     .y = {4 * step, 5 * step, 6 * step},
                     .half_width_px = {1, 2, 3},
                     .half_height_px = {4, 5, 6}};
     island.crate_count = 2;
-    const codec::QuantisedSnapshot scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = quantise(island);
     EXPECT_THAT(scene.crates.x, ElementsAre(1, 2));
     EXPECT_THAT(scene.crates.id, IsEmpty());
     EXPECT_THAT(scene.obstacles.y, ElementsAre(6));
     EXPECT_THAT(scene.obstacles.height, ElementsAre(96));
 }
 
-TEST(Scene, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
+TEST(Quantise, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
     runtime::IslandSnapshot island;
     island.width_px = 4095.9375;
-    EXPECT_EQ(scene_of(island).position_bytes, 2U);
+    EXPECT_EQ(quantise(island).position_bytes, 2U);
     island.width_px = 286'000;
     island.organisms = lying(2, {{1, 285'999 * physics::units_per_px, 0, 1, 1}});
-    const codec::QuantisedSnapshot scene = scene_of(island);
+    const codec::QuantisedSnapshot scene = quantise(island);
     EXPECT_EQ(scene.position_bytes, 4U);
     EXPECT_THAT(scene.organisms.x, ElementsAre(16 * 285'999));
 }
 
 } // namespace
-} // namespace evod::network
+} // namespace evod::streaming

@@ -1,8 +1,8 @@
-#include "server/network/budget.h"
+#include "server/streaming/bandwidth.h"
 
-namespace evod::network {
+namespace evod::streaming {
 
-void Budget::change(double bytes_per_s, v1::Detail most) {
+void Bandwidth::change(double bytes_per_s, v1::Detail most) {
     const double saved_bytes_more = saved_s_max * (bytes_per_s - bytes_per_s_);
     bytes_per_s_ = bytes_per_s;
     // After one huge snapshot the debt is limited, so that the next snapshot need not wait long.
@@ -12,18 +12,18 @@ void Budget::change(double bytes_per_s, v1::Detail most) {
     rose_ = {};
 }
 
-void Budget::save(Clock::time_point now) {
+void Bandwidth::save(Clock::time_point now) {
     const std::chrono::duration<double> passed = looked_ ? now - *looked_ : Clock::duration{0};
     looked_ = now;
     saved_bytes_ = std::min(saved_bytes_ + bytes_per_s_ * passed.count(), saved_bytes_max());
 }
 
-Budget::Clock::time_point Budget::when_saved(double bytes, Clock::time_point now) const {
+Bandwidth::Clock::time_point Bandwidth::when_saved(double bytes, Clock::time_point now) const {
     const std::chrono::duration<double> wait{(bytes - saved_bytes_) / bytes_per_s_};
     return now + std::chrono::ceil<Clock::duration>(wait);
 }
 
-void Budget::tell_more(v1::Detail detail, Clock::time_point now) {
+void Bandwidth::tell_more(v1::Detail detail, Clock::time_point now) {
     if (detail < detail_) {
         rose_ = now;
     }
@@ -31,7 +31,7 @@ void Budget::tell_more(v1::Detail detail, Clock::time_point now) {
     try_more_ = now + patience_;
 }
 
-void Budget::tell_less(Clock::time_point now) {
+void Bandwidth::tell_less(Clock::time_point now) {
     // More detail that could not be kept up is tried less often; what could for long enough begins anew.
     const bool kept_up = now - rose_ > 2 * patience_;
     patience_ = kept_up ? Clock::duration{patience_min} : std::min<Clock::duration>(2 * patience_, patience_max);
@@ -39,4 +39,4 @@ void Budget::tell_less(Clock::time_point now) {
     try_more_ = now + patience_;
 }
 
-} // namespace evod::network
+} // namespace evod::streaming

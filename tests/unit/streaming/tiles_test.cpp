@@ -1,4 +1,4 @@
-#include "server/network/tiled_pictures.h"
+#include "server/streaming/tiles.h"
 
 #include "proto/codec/snapshot_decoder.h"
 #include "tests/unit/codec/living_island.h"
@@ -9,7 +9,7 @@
 
 #include <numeric>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,7 +24,7 @@ class TileViewer {
     explicit TileViewer(v1::Compression compression = v1::COMPRESSION_NONE) : compression_{compression} {}
 
     /// The frame that it is sent.
-    v1::SnapshotFrame send(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
+    v1::SnapshotFrame send(TiledSnapshot& picture, const codec::TileRange& seen, v1::Detail detail = v1::DETAIL_FULL) {
         std::vector<const SharedBytes*> parts;
         sent_.add_parts(picture, seen, detail, compression_, parts);
         sent_.sent(picture, seen, detail);
@@ -36,7 +36,7 @@ class TileViewer {
         EXPECT_TRUE(frame.ParseFromString(bytes));
         return frame;
     }
-    codec::Result<codec::DecodedSnapshot> watch(TiledPicture& picture, const codec::TileRange& seen,
+    codec::Result<codec::DecodedSnapshot> watch(TiledSnapshot& picture, const codec::TileRange& seen,
                                                 v1::Detail detail = v1::DETAIL_FULL) {
         return decoder_.decode(send(picture, seen, detail));
     }
@@ -45,7 +45,7 @@ class TileViewer {
 
   private:
     v1::Compression compression_;
-    TilesSent sent_;
+    SentTiles sent_;
     codec::SnapshotDecoder decoder_;
 };
 
@@ -57,7 +57,7 @@ class Pictures {
         island_.populate(random_);
     }
 
-    TiledPicturePtr next(std::uint64_t ticks = 2) {
+    TiledSnapshotPtr next(std::uint64_t ticks = 2) {
         if (ticks > 0) {
             island_.live(random_, ticks);
         }
@@ -67,8 +67,8 @@ class Pictures {
         about.set_generation_tick(tick_);
         scene_ = std::make_shared<const codec::QuantisedSnapshot>(island_.scene());
         now_ += between;
-        latest_ = std::make_shared<TiledPicture>(std::make_shared<IslandTiles>(std::move(about), scene_, compressor_),
-                                                 latest_, now_, between);
+        latest_ = std::make_shared<TiledSnapshot>(std::make_shared<IslandTiles>(std::move(about), scene_, compressor_),
+                                                  latest_, now_, between);
         return latest_;
     }
 
@@ -111,7 +111,7 @@ class Pictures {
     std::shared_ptr<const codec::QuantisedSnapshot> scene_;
     codec::Compressor compressor_;
     Clock::time_point now_{1h};
-    TiledPicturePtr latest_;
+    TiledSnapshotPtr latest_;
 };
 
 int deltas_in(const v1::SnapshotFrame& frame) {
@@ -119,7 +119,7 @@ int deltas_in(const v1::SnapshotFrame& frame) {
         std::ranges::count_if(frame.tiles(), [](const auto& tile) { return tile.base_sequence() != 0; }));
 }
 
-RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIsThere, (std::uint64_t seed)) {
+RC_GTEST_PROP(Tiles, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIsThere, (std::uint64_t seed)) {
     Random random{seed};
     Pictures pictures{seed, std::array{700.0, 2000.0, 6000.0}[below(random, 3)]};
     std::vector<TileViewer> viewers;
@@ -158,7 +158,7 @@ RC_GTEST_PROP(TiledPictures, WhateverAViewerMissesAndWhereverItLooksItSeesWhatIs
     }
 }
 
-TEST(TiledPictures, EveryTileIsToldFromThePictureBefore) {
+TEST(Tiles, EveryTileIsToldFromThePictureBefore) {
     Pictures pictures{1};
     TileViewer viewer;
     viewer.send(*pictures.next(), pictures.everything());
@@ -168,7 +168,7 @@ TEST(TiledPictures, EveryTileIsToldFromThePictureBefore) {
     }
 }
 
-TEST(TiledPictures, EveryTileTakesAKeyframeAtLeastEveryTwoSeconds) {
+TEST(Tiles, EveryTileTakesAKeyframeAtLeastEveryTwoSeconds) {
     Pictures pictures{2};
     TileViewer viewer;
     std::vector<int> age(16);
@@ -182,7 +182,7 @@ TEST(TiledPictures, EveryTileTakesAKeyframeAtLeastEveryTwoSeconds) {
     }
 }
 
-TEST(TiledPictures, ATileIsEncodedOnceForAll) {
+TEST(Tiles, ATileIsEncodedOnceForAll) {
     Pictures pictures{3};
     const auto first = pictures.next();
     first->tile(5, v1::DETAIL_FULL, v1::COMPRESSION_NONE, 0);
@@ -199,7 +199,7 @@ TEST(TiledPictures, ATileIsEncodedOnceForAll) {
     EXPECT_EQ(picture->about().get(), picture->about().get());
 }
 
-TEST(TiledPictures, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
+TEST(Tiles, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
     Pictures pictures{4};
     TileViewer viewer;
     const auto picture = pictures.next();
@@ -214,7 +214,7 @@ TEST(TiledPictures, PanningShowsWhatIsNewAsKeyframesAndTheRestAsItWas) {
     EXPECT_EQ(deltas_in(next), 2);
 }
 
-TEST(TiledPictures, AnotherIslandSizeBeginsAnew) {
+TEST(Tiles, AnotherIslandSizeBeginsAnew) {
     Pictures pictures{5};
     TileViewer viewer;
     ASSERT_TRUE(viewer.watch(*pictures.next(), pictures.everything()));
@@ -224,4 +224,4 @@ TEST(TiledPictures, AnotherIslandSizeBeginsAnew) {
 }
 
 } // namespace
-} // namespace evod::network
+} // namespace evod::streaming

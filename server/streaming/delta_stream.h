@@ -4,13 +4,13 @@
 // Each is made once, and the sessions share the bytes. All viewers of a world at one rate are shown the same pictures,
 // so that what is a delta for one is a delta for all.
 //
-// Owner        Streams; a ChainPicture lives as long as a session is to send it.
+// Owner        Streams; a DeltaSnapshot lives as long as a session is to send it.
 // Threads      the network thread.
 #pragma once
 
 #include "proto/codec/compression.h"
 #include "proto/codec/delta_codec.h"
-#include "server/network/retries.h"
+#include "proto/codec/shared_bytes.h"
 #include "server/runtime/clock.h"
 
 #include <array>
@@ -23,7 +23,9 @@
 #include <string_view>
 #include <utility>
 
-namespace evod::network {
+namespace evod::streaming {
+
+using codec::SharedBytes;
 
 /// Everybody takes a keyframe at least so often, if there are pictures.
 constexpr std::chrono::seconds keyframe_interval{2};
@@ -36,20 +38,20 @@ using AboutPtr = std::shared_ptr<const v1::SnapshotFrame>;
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after);
 
 /// One picture of a chain, in every form in which it is sent: fields 1 to 49 of a SnapshotFrame.
-class ChainPicture {
+class DeltaSnapshot {
   public:
     /// about       what the codec says of it is set here.
     /// scene       its entities, of which nothing has moved yet; or with the way they came.
     /// compressor  there as long as forms of the picture are asked for.
-    ChainPicture(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor)
-        : ChainPicture{std::move(about), codec::initial_baseline(std::move(scene)), compressor} {}
-    ChainPicture(AboutPtr about, codec::Baseline baseline, codec::Compressor& compressor)
+    DeltaSnapshot(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor)
+        : DeltaSnapshot{std::move(about), codec::initial_baseline(std::move(scene)), compressor} {}
+    DeltaSnapshot(AboutPtr about, codec::Baseline baseline, codec::Compressor& compressor)
         : about_{std::move(about)}, baseline_{std::move(baseline)}, compressor_{&compressor} {}
 
     /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
     /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
-    std::shared_ptr<ChainPicture> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                       bool with_delta) const;
+    std::shared_ptr<DeltaSnapshot> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                        bool with_delta) const;
 
     std::uint64_t sequence() const { return about_->sequence(); }
     /// Who was sent that picture last can take the delta; 0: there is none.
@@ -75,21 +77,21 @@ class ChainPicture {
     Forms keyframe_, delta_;
 };
 
-using ChainPicturePtr = std::shared_ptr<ChainPicture>;
+using DeltaSnapshotPtr = std::shared_ptr<DeltaSnapshot>;
 
 /// The pictures of one island at one rate.
-class Chain {
+class DeltaStream {
   public:
     /// between  how long it usually is to the next picture.
-    const ChainPicturePtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                               codec::Compressor& compressor, runtime::Clock::time_point now,
-                               runtime::Clock::duration between);
+    const DeltaSnapshotPtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
+                                codec::Compressor& compressor, runtime::Clock::time_point now,
+                                runtime::Clock::duration between);
 
     /// Null before the first.
-    const ChainPicturePtr& latest() const { return latest_; }
+    const DeltaSnapshotPtr& latest() const { return latest_; }
 
   private:
-    ChainPicturePtr latest_;
+    DeltaSnapshotPtr latest_;
     runtime::Clock::time_point keyframe_made_; // the last that was one for all
 };
 
@@ -117,4 +119,4 @@ void append_field_head(int number, std::size_t bytes, std::string& to);
 /// Of that head and the bytes.
 std::size_t field_bytes(int number, std::size_t bytes);
 
-} // namespace evod::network
+} // namespace evod::streaming

@@ -1,9 +1,9 @@
-#include "server/network/tiled_pictures.h"
+#include "server/streaming/tiles.h"
 
 #include <span>
 #include <utility>
 
-namespace evod::network {
+namespace evod::streaming {
 
 IslandTiles::IslandTiles(v1::SnapshotFrame about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
                          codec::Compressor& compressor)
@@ -53,8 +53,8 @@ const SharedBytes& IslandTiles::coarse(std::uint32_t tile, v1::Detail detail, v1
     return bytes;
 }
 
-TiledPicture::TiledPicture(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledPicture>& before,
-                           runtime::Clock::time_point now, runtime::Clock::duration between)
+TiledSnapshot::TiledSnapshot(std::shared_ptr<IslandTiles> island, const std::shared_ptr<TiledSnapshot>& before,
+                             runtime::Clock::time_point now, runtime::Clock::duration between)
     : island_{std::move(island)}, now_{now}, between_{between}, tiles_(layout().count()) {
     const codec::Counts counts = island_->scene().counts_before(layout().count());
     organisms_.x.resize(counts[0]);
@@ -73,8 +73,8 @@ TiledPicture::TiledPicture(std::shared_ptr<IslandTiles> island, const std::share
     ticks_ = *ticks;
 }
 
-const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression,
-                                      std::uint64_t sent) {
+const SharedBytes& TiledSnapshot::tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression,
+                                       std::uint64_t sent) {
     if (detail != v1::DETAIL_FULL) {
         return island_->coarse(tile, detail, compression);
     }
@@ -101,7 +101,7 @@ const SharedBytes& TiledPicture::tile(std::uint32_t tile, v1::Detail detail, v1:
     return bytes = island_->encode(std::move(picture), codec::encode_delta(here, here.scene, 0), {}, compression);
 }
 
-TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
+TiledSnapshot::Tile& TiledSnapshot::full(std::uint32_t tile) {
     if (tiles_[tile]) {
         return *tiles_[tile];
     }
@@ -128,7 +128,7 @@ TiledPicture::Tile& TiledPicture::full(std::uint32_t tile) {
     return of;
 }
 
-codec::BaselineView TiledPicture::baseline(std::uint32_t tile) const {
+codec::BaselineView TiledSnapshot::baseline(std::uint32_t tile) const {
     const codec::Counts begin = island_->scene().counts_before(tile), count = island_->scene().counts(tile);
     const auto part = [&](const Displacements& all, std::size_t k) {
         return codec::BaselineView::Displacements{std::span{all.x}.subspan(begin[k], count[k]),
@@ -142,7 +142,7 @@ codec::BaselineView TiledPicture::baseline(std::uint32_t tile) const {
     return baseline;
 }
 
-void TilesSent::add_parts(TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail,
+void SentTiles::add_parts(TiledSnapshot& picture, const codec::TileRange& seen, v1::Detail detail,
                           v1::Compression compression, std::vector<const SharedBytes*>& parts) const {
     parts.push_back(&picture.about());
     const std::uint32_t columns = picture.layout().columns;
@@ -155,9 +155,9 @@ void TilesSent::add_parts(TiledPicture& picture, const codec::TileRange& seen, v
     }
 }
 
-void TilesSent::sent(const TiledPicture& picture, const codec::TileRange& seen, v1::Detail detail) {
+void SentTiles::sent(const TiledSnapshot& picture, const codec::TileRange& seen, v1::Detail detail) {
     sequence_ = picture.sequence();
     full_ = detail == v1::DETAIL_FULL ? seen : codec::TileRange{};
 }
 
-} // namespace evod::network
+} // namespace evod::streaming

@@ -1,4 +1,4 @@
-#include "server/network/scene.h"
+#include "server/streaming/quantise.h"
 
 #include "proto/codec/steps.h"
 
@@ -6,7 +6,7 @@
 #include <bit>
 #include <span>
 
-namespace evod::network {
+namespace evod::streaming {
 namespace {
 
 using codec::Column;
@@ -94,7 +94,7 @@ codec::Entities organisms_of(const runtime::OrganismsSnapshot& organisms, std::u
 
 } // namespace
 
-codec::QuantisedSnapshot scene_of(const runtime::IslandSnapshot& island) {
+codec::QuantisedSnapshot quantise(const runtime::IslandSnapshot& island) {
     const std::uint32_t position_bytes = codec::position_bytes_of(island.width_px, island.height_px);
     const std::size_t crates = island.crate_count, boxes = island.boxes.x.size();
     return {.position_bytes = position_bytes,
@@ -105,4 +105,4 @@ codec::QuantisedSnapshot scene_of(const runtime::IslandSnapshot& island) {
             .obstacles = boxes_of(island.boxes, crates, boxes, position_bytes)};
 }
 
-} // namespace evod::network
+} // namespace evod::streaming
