@@ -203,7 +203,8 @@ std::optional<Clock::time_point> SimulationLoop::answer_queries() {
             query_budget_.spend(now - began);
         }
         if (mailbox_.pending()) {
-            mind_mail(); // commands do not wait for the queries of others
+            mind_mail();     // commands do not wait for the queries of others
+            follow_worlds(); // a command may have created a world
             woken = true;
         }
     }

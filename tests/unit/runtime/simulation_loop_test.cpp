@@ -287,6 +287,16 @@ TEST_F(Loop, CommandsDoNotWaitForTheQueriesOfOthers) {
     EXPECT_EQ(order, (std::vector<std::string>{"first", "second"}));
 }
 
+TEST_F(Loop, FollowsAWorldThatIsCreatedBetweenQueries) {
+    send(create("w"));
+    watch("late", 60);
+    loop.pass();
+    mailbox.push(QueryMail{[&](const Laboratory&) { send(create("late", 2)); }});
+    loop.pass();
+    ASSERT_EQ(pictures.size(), 1u);
+    EXPECT_EQ(pictures[0]->world, "late");
+}
+
 TEST_F(Loop, IsCalledAgainWhenItIsWokenWhileQueriesAreAnswered) {
     send(create("w"));
     send(simulation::Run{"w", {}});
