@@ -16,8 +16,8 @@
 #include "server/log/log.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
+#include "server/parameters/experiment.h"
 #include "server/protocol/refusals.h"
-#include "server/simulation/experiment.h"
 
 #include <google/protobuf/stubs/logging.h>
 

@@ -1,7 +1,7 @@
 // Parameter descriptions: what a folder of the core says about each number it can be given.
 //
 // A folder writes its parameters once, as a list of REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
-// simulation/parameters.h). The struct with its defaults and the descriptions are both expanded from that list, so
+// parameters/parameters.h). The struct with its defaults and the descriptions are both expanded from that list, so
 // adding a parameter is adding a line; validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md
 // follow from it.
 #pragma once

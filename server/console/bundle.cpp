@@ -1,6 +1,6 @@
 #include "server/console/bundle.h"
 
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/storage/rerun.h"
 
 #include <openssl/evp.h>
@@ -38,8 +38,8 @@ Result<void> write_file(const fs::path& path, Write&& write) {
 std::string experiment_text(const storage::RunIdentity& identity) {
     // A fork's own parameters are those of the generation that it begins with, not of its schedule's first.
     const std::string parameters =
-        to_experiment_text(identity.parameters, simulation::Written::Everything,
-                           identity.forked_from ? simulation::Schedule{} : identity.schedule);
+        to_experiment_text(identity.parameters, parameters::Written::Everything,
+                           identity.forked_from ? parameters::Schedule{} : identity.schedule);
     return "{\n  \"seed\": " + std::to_string(identity.seed.value) + "," + parameters.substr(1);
 }
 

@@ -8,7 +8,7 @@
 namespace evod::console {
 
 int check(const std::string& path) {
-    const base::Result<simulation::Experiment> experiment = load_experiment(path);
+    const base::Result<parameters::Experiment> experiment = load_experiment(path);
     if (!experiment) {
         std::cerr << "evod check: " << base::to_text(experiment.error()) << '\n';
         return 1;
@@ -18,7 +18,7 @@ int check(const std::string& path) {
         std::cout << "\n" << experiment->description;
     }
     const std::string changes =
-        simulation::to_experiment_text(experiment->parameters, simulation::Written::Differences, experiment->schedule);
+        parameters::to_experiment_text(experiment->parameters, parameters::Written::Differences, experiment->schedule);
     if (changes == "{}\n") {
         std::cout << "\nEvery parameter has its default.\n";
     } else {

@@ -40,7 +40,7 @@ base::Result<Plan> plan_of(const CompareOptions& options) {
     if (!options.controls && options.experiments.size() < 2) {
         return refusal(base::RefusalCode::InvalidArgument, "give --controls, or two experiments or more");
     }
-    std::vector<simulation::Experiment> experiments;
+    std::vector<parameters::Experiment> experiments;
     std::vector<std::string> names;
     for (const std::string& path : options.experiments) {
         const auto loaded = load_experiment(path);
@@ -141,7 +141,7 @@ std::string picture_of(const Plan& plan, std::span<const std::vector<Course>> co
             curve.points.push_back({i + 1.0, mean_of(means), interval.low, interval.high});
         }
     }
-    const bool lives = plan.arms[0].parameters.fitness == simulation::FitnessFunction::Life;
+    const bool lives = plan.arms[0].parameters.fitness == parameters::FitnessFunction::Life;
     return curves_picture({.title = plan.arms[0].name + (plan.controls.empty() ? " and others" : " and its controls"),
                            .subtitle = "mean fitness of " + std::to_string(courses[0].size()) +
                                        " runs with the same seeds; bands: 95 % confidence interval of that mean",
@@ -193,7 +193,7 @@ void print_rises(const Plan& plan, std::span<const std::vector<Course>> courses,
             rises.push_back(rise_of(course));
             extinct += static_cast<std::size_t>(std::ranges::count(course, 0u, &GenerationFitness::alive_count));
         }
-        if (plan.arms[arm].parameters.fitness != simulation::FitnessFunction::Life) {
+        if (plan.arms[arm].parameters.fitness != parameters::FitnessFunction::Life) {
             extinct = 0;
         }
         std::string line =

@@ -35,7 +35,7 @@ std::optional<std::vector<std::vector<Course>>> run_arms(std::span<const Arm> ar
     EVOD_ASSERT(!arms.empty());
     const std::size_t generations = arms.front().parameters.generation_limit;
     for (const Arm& arm : arms) {
-        EVOD_ASSERT(simulation::validate(arm.parameters).empty());
+        EVOD_ASSERT(parameters::validate(arm.parameters).empty());
         EVOD_ASSERT(arm.parameters.generation_limit == generations);
     }
     std::vector<std::vector<Course>> courses(arms.size(), std::vector<Course>(wanted.replicates));

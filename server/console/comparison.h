@@ -10,8 +10,8 @@
 
 #include "server/base/random.h"
 #include "server/console/paired_test.h"
-#include "server/simulation/parameters.h"
-#include "server/simulation/schedule.h"
+#include "server/parameters/parameters.h"
+#include "server/parameters/schedule.h"
 
 #include <cstdint>
 #include <functional>
@@ -25,8 +25,8 @@ namespace evod::console {
 /// One of the worlds that are compared.
 struct Arm {
     std::string name;
-    simulation::Parameters parameters;  // valid; generation_limit is the only end they have
-    simulation::Schedule schedule = {}; // in which faults_of() finds nothing
+    parameters::Parameters parameters;  // valid; generation_limit is the only end they have
+    parameters::Schedule schedule = {}; // in which faults_of() finds nothing
 };
 
 /// A generation of a run, all its islands together.

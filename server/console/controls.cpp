@@ -9,7 +9,7 @@ namespace evod::console {
 namespace {
 
 using namespace evolution; // the enumerations of its parameters
-using simulation::Parameters;
+using parameters::Parameters;
 
 /// Leaves nothing to be decided by the fitness.
 Parameters with_random_selection(Parameters p) {
@@ -44,10 +44,10 @@ Parameters without_mutation(Parameters p) {
 }
 
 std::string why_poison_does_nothing(const Parameters& p) {
-    if (p.fitness != simulation::FitnessFunction::Life) {
+    if (p.fitness != parameters::FitnessFunction::Life) {
         return "the fitness is a function of the chromosome: nobody eats";
     }
-    if (simulation::island_plan(p).poison_count == 0) {
+    if (parameters::island_plan(p).poison_count == 0) {
         return "there is no poison";
     }
     return p.poison_harm == 0 ? "poison_harm is 0 already" : "";
@@ -87,14 +87,14 @@ NamesOfControl names_of(ControlKind kind) {
 
 } // namespace
 
-simulation::Schedule schedule_of(simulation::Schedule world, ControlKind kind) {
+parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind) {
     for (const std::string_view name : names_of(kind).made_by) {
         world.remove(name);
     }
     return world;
 }
 
-bool matters(const simulation::Schedule& world, ControlKind kind) {
+bool matters(const parameters::Schedule& world, ControlKind kind) {
     const auto is_scheduled = [&](std::string_view name) { return world.holds(name); };
     const auto [made_by, depends_on] = names_of(kind);
     return std::ranges::any_of(made_by, is_scheduled) || std::ranges::any_of(depends_on, is_scheduled);
@@ -136,7 +136,7 @@ Parameters of_fixed_length(Parameters world, std::uint32_t generations) {
     return world;
 }
 
-simulation::Schedule of_fixed_length(simulation::Schedule world) {
+parameters::Schedule of_fixed_length(parameters::Schedule world) {
     for (const char* name : {"generation_limit", "stop_at_target_fitness", "stagnation_limit", "stop_at_extinction"}) {
         world.remove(name);
     }
@@ -145,9 +145,9 @@ simulation::Schedule of_fixed_length(simulation::Schedule world) {
 
 std::string changes_between(const Parameters& world, const Parameters& other) {
     std::string text;
-    for (const simulation::ParameterDescription* description : simulation::parameters_that_differ(world, other)) {
+    for (const parameters::ParameterDescription* description : parameters::parameters_that_differ(world, other)) {
         text += (text.empty() ? "" : " ") + std::string{description->name} + "=" +
-                simulation::to_text(description->get(other));
+                parameters::to_text(description->get(other));
     }
     return text;
 }

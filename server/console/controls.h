@@ -3,8 +3,8 @@
 // Each is a plain set of parameters, so that a control can be run, recorded, replayed and verified like any world.
 #pragma once
 
-#include "server/simulation/parameters.h"
-#include "server/simulation/schedule.h"
+#include "server/parameters/parameters.h"
+#include "server/parameters/schedule.h"
 
 #include <string>
 #include <vector>
@@ -23,26 +23,26 @@ constexpr ControlKind all_controls[] = {ControlKind::RandomSelection, ControlKin
 struct Control {
     ControlKind kind;
     std::string name; // "random_selection"
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     std::string cannot_differ; // why the world is this control already; empty: it is not
 };
 
 /// world  valid.
-Control control_of(const simulation::Parameters& world, ControlKind kind);
+Control control_of(const parameters::Parameters& world, ControlKind kind);
 
 /// What is scheduled for the world, but for the parameters that make the control, which it has all along.
-simulation::Schedule schedule_of(simulation::Schedule world, ControlKind kind);
+parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind);
 /// Whether what is scheduled has a say in whether the control can differ from the world.
-bool matters(const simulation::Schedule& world, ControlKind kind);
+bool matters(const parameters::Schedule& world, ControlKind kind);
 
 /// The world with no end but that of `generations`: an end that depends on what happens would give the worlds that are
 /// compared different lengths. Who has died out breeds by the fitness it came to, as always.
-simulation::Parameters of_fixed_length(simulation::Parameters world, std::uint32_t generations);
+parameters::Parameters of_fixed_length(parameters::Parameters world, std::uint32_t generations);
 
 /// The same of what is scheduled for it.
-simulation::Schedule of_fixed_length(simulation::Schedule world);
+parameters::Schedule of_fixed_length(parameters::Schedule world);
 
 /// "selection=random elite_count=0": what is to be set to make `other` of `world`; empty if they are the same.
-std::string changes_between(const simulation::Parameters& world, const simulation::Parameters& other);
+std::string changes_between(const parameters::Parameters& world, const parameters::Parameters& other);
 
 } // namespace evod::console

@@ -17,12 +17,12 @@ base::Result<std::string> load_text(const std::string& path, const std::string& 
     return files::read_file(path, kind, file_bytes_max);
 }
 
-base::Result<simulation::Experiment> load_experiment(const std::string& path) {
+base::Result<parameters::Experiment> load_experiment(const std::string& path) {
     const base::Result<std::string> text = load_text(path, "an experiment file");
     if (!text) {
         return text.error();
     }
-    base::Result<simulation::Experiment> experiment = simulation::parse_experiment(*text);
+    base::Result<parameters::Experiment> experiment = parameters::parse_experiment(*text);
     if (!experiment) {
         base::Refusal named = experiment.error();
         named.message = path + ": " + named.message;
@@ -31,9 +31,9 @@ base::Result<simulation::Experiment> load_experiment(const std::string& path) {
     return experiment;
 }
 
-base::Result<simulation::Experiment> with_changes(simulation::Experiment experiment,
+base::Result<parameters::Experiment> with_changes(parameters::Experiment experiment,
                                                   const std::vector<std::string>& changes) {
-    std::vector<simulation::Assignment> assignments;
+    std::vector<parameters::Assignment> assignments;
     std::vector<base::Violation> violations;
     for (const std::string& change : changes) {
         const std::size_t equals = change.find('=');
@@ -42,19 +42,19 @@ base::Result<simulation::Experiment> with_changes(simulation::Experiment experim
             continue;
         }
         const std::string name = change.substr(0, equals), text = change.substr(equals + 1);
-        const simulation::ParameterDescription* description = simulation::find_parameter(name);
+        const parameters::ParameterDescription* description = parameters::find_parameter(name);
         if (description == nullptr) {
             assignments.push_back({name, text}); // assign() knows what to say of an unknown name
             continue;
         }
-        base::Result<simulation::ParameterValue> value = simulation::parse_value(*description, text);
+        base::Result<parameters::ParameterValue> value = parameters::parse_value(*description, text);
         if (value) {
             assignments.push_back({name, std::move(*value)});
         } else {
             violations.push_back({"--set " + name, description->allowed(), text});
         }
     }
-    base::Result<simulation::Parameters> changed = simulation::assign(experiment.parameters, assignments, "--set ");
+    base::Result<parameters::Parameters> changed = parameters::assign(experiment.parameters, assignments, "--set ");
     if (!changed) {
         const base::Refusal refused = changed.error();
         violations.insert(violations.end(), refused.violations.begin(), refused.violations.end());
@@ -65,13 +65,13 @@ base::Result<simulation::Experiment> with_changes(simulation::Experiment experim
                              .violations = std::move(violations)};
     }
     experiment.parameters = *changed;
-    for (const simulation::Assignment& assignment : assignments) {
+    for (const parameters::Assignment& assignment : assignments) {
         experiment.schedule.remove(assignment.name);
     }
     return experiment;
 }
 
-base::Result<void> fit_schedule(simulation::Experiment& experiment) {
+base::Result<void> fit_schedule(parameters::Experiment& experiment) {
     experiment.schedule.begin_with(experiment.parameters);
     const auto faults = faults_of(experiment.schedule, experiment.parameters);
     if (faults.empty()) {
@@ -80,7 +80,7 @@ base::Result<void> fit_schedule(simulation::Experiment& experiment) {
     base::Refusal refused{.code = base::RefusalCode::InvalidArgument,
                           .message = "what is scheduled cannot hold with the parameters that were set",
                           .violations = {}};
-    for (const simulation::ScheduleFault& fault : faults) {
+    for (const parameters::ScheduleFault& fault : faults) {
         refused.violations.push_back({fault.violation.field + " at generation " + std::to_string(fault.generation),
                                       fault.violation.allowed, fault.violation.got});
     }

@@ -7,7 +7,7 @@
 namespace evod::console {
 namespace {
 
-using simulation::Parameters;
+using parameters::Parameters;
 
 struct Question {
     const char* name;
@@ -65,11 +65,11 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
         if (!question.matters(answers)) {
             continue;
         }
-        const simulation::ParameterDescription& description = *simulation::find_parameter(question.name);
+        const parameters::ParameterDescription& description = *parameters::find_parameter(question.name);
         while (true) {
             out << description.help << "\n  " << description.name << " (" << description.allowed()
                 << (description.unit.empty() ? "" : "; ") << description.unit << ") ["
-                << simulation::to_text(description.get(answers)) << "]: " << std::flush;
+                << parameters::to_text(description.get(answers)) << "]: " << std::flush;
             std::string line;
             if (!std::getline(in, line)) {
                 out << '\n';
@@ -80,9 +80,9 @@ base::Result<Parameters> interview(const Parameters& proposed, std::istream& in,
             if (line.empty()) {
                 break;
             }
-            const auto value = simulation::parse_value(description, line);
+            const auto value = parameters::parse_value(description, line);
             const base::Result<Parameters> changed =
-                value ? simulation::assign(answers, {{{std::string{description.name}, *value}}}) : value.error();
+                value ? parameters::assign(answers, {{{std::string{description.name}, *value}}}) : value.error();
             if (changed) {
                 answers = *changed;
                 break;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include <iosfwd>
 
@@ -13,7 +13,7 @@ namespace evod::console {
 ///
 /// proposed  what each question proposes; valid.
 /// returns   a valid set; refused if the input ends before the last answer.
-base::Result<simulation::Parameters> interview(const simulation::Parameters& proposed, std::istream& in,
+base::Result<parameters::Parameters> interview(const parameters::Parameters& proposed, std::istream& in,
                                                std::ostream& out);
 
 } // namespace evod::console

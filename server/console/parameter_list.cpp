@@ -1,7 +1,7 @@
 #include "server/console/parameter_list.h"
 
 #include "proto/command_line/command.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include <iostream>
 
@@ -33,8 +33,8 @@ std::string parameter_list() {
         "breeding\n"
         "goes by acts first in the breeding after it; until the first of them, the default holds.\n\n"
         "| name | default | allowed | unit | holds from | meaning |\n|---|---|---|---|---|---|\n";
-    for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
-        text += "| `" + std::string{description.name} + "` | " + simulation::to_text(description.default_value()) +
+    for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+        text += "| `" + std::string{description.name} + "` | " + parameters::to_text(description.default_value()) +
                 " | " + description.allowed() + " | " + std::string{description.unit} + " | " +
                 effect_text(description.effect) + " | " + std::string{description.help} + " |\n";
     }

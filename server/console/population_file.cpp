@@ -19,7 +19,7 @@ constexpr std::size_t population_bytes_max = std::size_t{1} << 30; // a million 
 } // namespace
 
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
-                                                          const simulation::Parameters& parameters) {
+                                                          const parameters::Parameters& parameters) {
     if (path.empty()) {
         return simulation::FirstPopulation{};
     }

@@ -10,6 +10,6 @@ namespace evod::console {
 
 /// Reads a file for a world with these parameters; nullptr for an empty path. The refusal's message names the file.
 base::Result<simulation::FirstPopulation> load_population(const std::string& path,
-                                                          const simulation::Parameters& parameters);
+                                                          const parameters::Parameters& parameters);
 
 } // namespace evod::console

@@ -34,8 +34,8 @@ struct Cost {
     std::uint64_t organism_ticks = 0; // organisms alive at the start of each tick, summed
 };
 
-base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
-    simulation::Experiment experiment;
+base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
+    parameters::Experiment experiment;
     if (!options.experiment.empty()) {
         const auto loaded = load_experiment(options.experiment);
         if (!loaded) {
@@ -50,14 +50,14 @@ base::Result<simulation::Experiment> experiment_of(const RunOptions& options) {
     experiment = *std::move(changed);
     if (options.ask) {
         // What is answered takes the place of what is scheduled; Enter leaves it.
-        const simulation::Parameters proposed = experiment.parameters;
+        const parameters::Parameters proposed = experiment.parameters;
         const auto answers = interview(proposed, std::cin, std::cout);
         if (!answers) {
             return answers.error();
         }
         experiment.parameters = *answers;
-        for (const simulation::ParameterDescription* description :
-             simulation::parameters_that_differ(experiment.parameters, proposed)) {
+        for (const parameters::ParameterDescription* description :
+             parameters::parameters_that_differ(experiment.parameters, proposed)) {
             experiment.schedule.remove(description->name);
         }
     }

@@ -31,7 +31,7 @@ namespace {
 
 using base::Refusal;
 using base::Result;
-using simulation::Parameters;
+using parameters::Parameters;
 using Clock = std::chrono::steady_clock;
 
 /// What a generation of a run costs, in organism-ticks, were nobody to die.
@@ -196,8 +196,8 @@ class Runs {
             world.take_events();
             for (const simulation::GenerationStatistics& statistics : world.history().back()) {
                 table.number(cell).number(replicate).number(world.seed().value);
-                for (const simulation::ParameterValue& value : sweep_.cells[cell]) {
-                    table.text(simulation::to_text(value));
+                for (const parameters::ParameterValue& value : sweep_.cells[cell]) {
+                    table.text(parameters::to_text(value));
                 }
                 tables::write_row(table, statistics);
                 ++end.rows;
@@ -249,14 +249,14 @@ void print_cells(const SweepOptions& options, const Sweep& sweep) {
         std::printf("%u\t%s\n", replicate, seed_text(sweep, replicate).c_str());
     }
     std::string heading = "\ncell";
-    for (const simulation::ParameterDescription* parameter : sweep.swept) {
+    for (const parameters::ParameterDescription* parameter : sweep.swept) {
         heading += "\t" + std::string{parameter->name};
     }
     std::puts(heading.c_str());
     for (std::size_t cell = 0; cell < sweep.cells.size(); ++cell) {
         std::string row = std::to_string(cell);
-        for (const simulation::ParameterValue& value : sweep.cells[cell]) {
-            row += "\t" + simulation::to_text(value);
+        for (const parameters::ParameterValue& value : sweep.cells[cell]) {
+            row += "\t" + parameters::to_text(value);
         }
         std::puts(row.c_str());
     }

@@ -3,7 +3,7 @@
 #include "server/base/elementary.h"
 #include "server/base/overloaded.h"
 #include "server/console/experiment_file.h"
-#include "server/simulation/json_text.h"
+#include "server/parameters/json_text.h"
 
 #include <boost/json.hpp>
 
@@ -21,11 +21,11 @@ namespace {
 
 namespace json = boost::json;
 using base::Violation;
-using simulation::CountParameter;
-using simulation::ParameterDescription;
-using simulation::Parameters;
-using simulation::ParameterValue;
-using simulation::RealParameter;
+using parameters::CountParameter;
+using parameters::ParameterDescription;
+using parameters::Parameters;
+using parameters::ParameterValue;
+using parameters::RealParameter;
 
 struct Member;
 /// A value of JSON with its place in the text, which Boost.JSON does not tell.
@@ -146,8 +146,8 @@ void set(const ParameterDescription& description, const ParameterValue& value, P
                              real.set(parameters, count != nullptr ? *count : std::get<double>(value));
                          },
                          [&](const CountParameter& count) { count.set(parameters, std::get<std::uint32_t>(value)); },
-                         [&](const simulation::FlagParameter& flag) { flag.set(parameters, std::get<bool>(value)); },
-                         [&](const simulation::ChoiceParameter& choice) {
+                         [&](const parameters::FlagParameter& flag) { flag.set(parameters, std::get<bool>(value)); },
+                         [&](const parameters::ChoiceParameter& choice) {
                              const auto name = std::ranges::find(choice.names, std::get<std::string>(value));
                              choice.set(parameters, static_cast<std::size_t>(name - choice.names.begin()));
                          }},
@@ -315,7 +315,7 @@ class Reading {
             const Node& node = experiment_->value;
             if (node.is_object()) {
                 // Behind as many line breaks as come before it, so that lines are those of the sweep file.
-                take_experiment(simulation::parse_experiment(std::string(node.line - 1, '\n') + std::string{node.text}),
+                take_experiment(parameters::parse_experiment(std::string(node.line - 1, '\n') + std::string{node.text}),
                                 "experiment.");
             } else if (node.is_string()) {
                 const std::string path = Places::decoded(node.text);
@@ -338,7 +338,7 @@ class Reading {
         }
     }
 
-    void take_experiment(const base::Result<simulation::Experiment>& experiment, const std::string& prefix) {
+    void take_experiment(const base::Result<parameters::Experiment>& experiment, const std::string& prefix) {
         if (experiment) {
             sweep_.parameters = experiment->parameters;
             sweep_.schedule = experiment->schedule;
@@ -376,7 +376,7 @@ class Reading {
             refuse(field, node, "a number, true, false or a text");
             return false;
         }
-        auto fault = simulation::fault_of({parameter, *value});
+        auto fault = parameters::fault_of({parameter, *value});
         if (!fault) {
             return true;
         }
@@ -385,9 +385,9 @@ class Reading {
     }
 
     const ParameterDescription* parameter_named(const Member& member, const std::string& field) {
-        const ParameterDescription* parameter = simulation::find_parameter(member.name);
+        const ParameterDescription* parameter = parameters::find_parameter(member.name);
         if (parameter == nullptr) {
-            const auto fault = simulation::fault_of({member.name, 0u});
+            const auto fault = parameters::fault_of({member.name, 0u});
             refuse(with_line(field, member.line), fault->allowed, fault->got);
         }
         return parameter;
@@ -639,7 +639,7 @@ class Reading {
         std::string name = "cell " + std::to_string(cell);
         for (std::size_t i = 0; i < sweep_.swept.size(); ++i) {
             name += (i == 0 ? " (" : ", ") + std::string{sweep_.swept[i]->name} + " " +
-                    simulation::to_text(sweep_.cells[cell][i]);
+                    parameters::to_text(sweep_.cells[cell][i]);
         }
         return name + (sweep_.swept.empty() ? ": " : "): ");
     }
@@ -652,7 +652,7 @@ class Reading {
         for (std::size_t cell = 0; cell < sweep_.cells.size(); ++cell) {
             const Parameters parameters = sweep_.parameters_of(cell);
             endless += !ends(parameters);
-            const auto faults = simulation::validate(parameters);
+            const auto faults = parameters::validate(parameters);
             for (const Violation& fault : faults) {
                 refuse(name_of(cell) + fault.field, fault.allowed, fault.got);
             }
@@ -697,14 +697,14 @@ Parameters Sweep::parameters_of(std::size_t cell) const {
     return of_cell;
 }
 
-simulation::Schedule Sweep::schedule_of(std::size_t cell) const {
-    simulation::Schedule of_cell = schedule;
+parameters::Schedule Sweep::schedule_of(std::size_t cell) const {
+    parameters::Schedule of_cell = schedule;
     of_cell.begin_with(parameters_of(cell));
     return of_cell;
 }
 
 base::Result<Sweep> parse_sweep(std::string_view text, const LoadExperiment& load) {
-    if (const auto json = simulation::parse_json(text); !json) {
+    if (const auto json = parameters::parse_json(text); !json) {
         return json.error();
     }
     const Node document = Places{text}.value();

@@ -8,7 +8,7 @@
 
 #include "server/base/random.h"
 #include "server/base/result.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
 #include <cstdint>
 #include <functional>
@@ -22,21 +22,21 @@ struct Sweep {
     static constexpr std::size_t runs_max = 100'000;
 
     std::string text;                  // of the file
-    simulation::Parameters parameters; // of the experiment
-    simulation::Schedule schedule;     // of the experiment, but for what is swept
+    parameters::Parameters parameters; // of the experiment
+    parameters::Schedule schedule;     // of the experiment, but for what is swept
     base::Seed seed{1};
     std::uint32_t replicates = 1;
-    std::vector<const simulation::ParameterDescription*> swept; // in the order in which the file names them
-    std::vector<std::vector<simulation::ParameterValue>> cells; // shape (cells, swept)
+    std::vector<const parameters::ParameterDescription*> swept; // in the order in which the file names them
+    std::vector<std::vector<parameters::ParameterValue>> cells; // shape (cells, swept)
 
     std::size_t run_count() const { return cells.size() * replicates; }
     /// Valid, and with a criterion that ends the run.
-    simulation::Parameters parameters_of(std::size_t cell) const;
+    parameters::Parameters parameters_of(std::size_t cell) const;
     /// In which faults_of() finds nothing.
-    simulation::Schedule schedule_of(std::size_t cell) const;
+    parameters::Schedule schedule_of(std::size_t cell) const;
 };
 
-using LoadExperiment = std::function<base::Result<simulation::Experiment>(const std::string& path)>;
+using LoadExperiment = std::function<base::Result<parameters::Experiment>(const std::string& path)>;
 
 /// Reads the text of a sweep file. Violations name the field with its line, "grid.mutation_chance[2] (line 4)", and of
 /// values that do not go together the cell; no more than violations_max are told.

@@ -36,7 +36,7 @@ struct Fact {
 
 /// All that decides what the runs come to, and nothing that does not.
 std::vector<Fact> facts_of(const Sweep& sweep) {
-    std::string parameters = to_experiment_text(sweep.parameters, simulation::Written::Differences, sweep.schedule);
+    std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
     std::erase(parameters, '\n');
     std::string text;
     for (std::size_t i = 0; i < sweep.text.size(); ++i) {
@@ -174,7 +174,7 @@ std::string to_text(const RunEnd& end) {
 
 std::vector<std::string> sweep_columns(const Sweep& sweep) {
     std::vector<std::string> columns{"cell", "replicate", "seed"};
-    for (const simulation::ParameterDescription* parameter : sweep.swept) {
+    for (const parameters::ParameterDescription* parameter : sweep.swept) {
         columns.emplace_back(parameter->name);
     }
     const std::vector<std::string> statistics = tables::statistics_columns();

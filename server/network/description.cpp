@@ -29,7 +29,7 @@ v1::Description make_description() {
     std::set<std::string> added;
     add(*v1::ClientMessage::descriptor()->file(), set, added);
     description.set_file_descriptor_set(set.SerializeAsString());
-    for (const auto& parameter : simulation::parameter_registry()) {
+    for (const auto& parameter : parameters::parameter_registry()) {
         *description.add_parameters() = protocol::to_proto(parameter);
     }
     return description;

@@ -58,7 +58,7 @@ constexpr LimitRow table[] = {
      "pictures a second of a subscription", "lowered to it, and the answer says so"},
     {Limit::Tiles, "tiles_max", codec::tiles_max, "tiles of an island", "tiles are larger"},
     {Limit::Worlds, "worlds_max", simulation::worlds_max, "worlds", "refused, `RESOURCE_EXHAUSTED`"},
-    {Limit::PlannedChanges, "planned_changes_max", simulation::planned_changes_max, "changes planned in a world",
+    {Limit::PlannedChanges, "planned_changes_max", parameters::planned_changes_max, "changes planned in a world",
      "refused, `RESOURCE_EXHAUSTED`"},
     {Limit::Pasts, "replays_max", runtime::TimeTravel::replays_max, "worlds of a session that show the past",
      "refused, `RESOURCE_EXHAUSTED`; so too beyond 64 of all sessions"},

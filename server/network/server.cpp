@@ -26,11 +26,11 @@ namespace evod::network {
 namespace {
 
 /// "population_size (50, not 60), selection (roulette, not tournament)".
-std::string differences_of(const simulation::Parameters& there, const simulation::Parameters& wanted) {
+std::string differences_of(const parameters::Parameters& there, const parameters::Parameters& wanted) {
     std::string text;
-    for (const simulation::ParameterDescription* parameter : simulation::parameters_that_differ(there, wanted)) {
+    for (const parameters::ParameterDescription* parameter : parameters::parameters_that_differ(there, wanted)) {
         text += (text.empty() ? "" : ", ") + std::string{parameter->name} + " (" +
-                simulation::to_text(parameter->get(there)) + ", not " + simulation::to_text(parameter->get(wanted)) +
+                parameters::to_text(parameter->get(there)) + ", not " + parameters::to_text(parameter->get(wanted)) +
                 ")";
     }
     return text;
@@ -224,8 +224,8 @@ void Server::begin_first_world() {
         v1::CreateWorld& create = *request.mutable_create_world();
         create.set_name(world.name);
         create.set_seed(world.seed.value);
-        for (const simulation::ParameterDescription* parameter :
-             simulation::parameters_that_differ(world.parameters, {})) {
+        for (const parameters::ParameterDescription* parameter :
+             parameters::parameters_that_differ(world.parameters, {})) {
             v1::ParameterAssignment& assignment = *create.add_parameters();
             assignment.set_name(std::string{parameter->name});
             *assignment.mutable_value() = protocol::to_proto(parameter->get(world.parameters));

@@ -99,12 +99,12 @@ evolution::WantedRows wanted_rows(const v1::GetBreeding& request) {
             .count_max = breeding_rows_max};
 }
 
-v1::Breeding to_proto(const evolution::BreedingRecord& record, const simulation::Parameters& parameters) {
+v1::Breeding to_proto(const evolution::BreedingRecord& record, const parameters::Parameters& parameters) {
     v1::Breeding to;
     for (const std::string_view name : genetic_parameters) {
         v1::ParameterAssignment& assignment = *to.add_parameters();
         assignment.set_name(std::string{name});
-        *assignment.mutable_value() = to_proto(simulation::find_parameter(name)->get(parameters));
+        *assignment.mutable_value() = to_proto(parameters::find_parameter(name)->get(parameters));
     }
     to.set_contender_count(record.contender_count);
     to.set_pick_count(record.pick_count);

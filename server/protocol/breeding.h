@@ -3,7 +3,7 @@
 
 #include "evod/v1/commands.pb.h"
 #include "server/evolution/breeding_record.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 namespace evod::protocol {
 
@@ -13,6 +13,6 @@ constexpr std::uint32_t breeding_rows_max = 1000;
 evolution::WantedRows wanted_rows(const v1::GetBreeding& request);
 
 /// parameters  as they held.
-v1::Breeding to_proto(const evolution::BreedingRecord& record, const simulation::Parameters& parameters);
+v1::Breeding to_proto(const evolution::BreedingRecord& record, const parameters::Parameters& parameters);
 
 } // namespace evod::protocol

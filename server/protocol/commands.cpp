@@ -24,7 +24,7 @@ constexpr const char* least_1 = "at least 1";
 /// A repeated name is wrong anyway, so nobody needs more assignments than there are parameters. Without this bound, the
 /// longest request would keep the simulation waiting.
 bool too_many(int assignments, std::string field, Violations& violations) {
-    const std::size_t most = simulation::parameter_registry().size();
+    const std::size_t most = parameters::parameter_registry().size();
     if (static_cast<std::size_t>(assignments) <= most) {
         return false;
     }
@@ -46,7 +46,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
         Violations missing;
         const auto assignments = to_assignments(request.parameters(), "create_world.", missing);
         if (missing.empty()) {
-            auto parameters = simulation::assign({}, assignments, "create_world.");
+            auto parameters = parameters::assign({}, assignments, "create_world.");
             if (parameters) {
                 command.parameters = *parameters;
             } else {
@@ -152,9 +152,9 @@ simulation::Command command_of(const v1::SetParameters& request, const Draws&, V
         violations.push_back(
             {"set_parameters.at_tick", "nothing beside at_generation", std::to_string(request.at_tick())});
     } else if (request.has_at_generation()) {
-        command.at = simulation::PlannedMoment{.generation = request.at_generation(), .tick = {}};
+        command.at = parameters::PlannedMoment{.generation = request.at_generation(), .tick = {}};
     } else if (request.has_at_tick()) {
-        command.at = simulation::PlannedMoment{.generation = {}, .tick = request.at_tick()};
+        command.at = parameters::PlannedMoment{.generation = {}, .tick = request.at_tick()};
     }
     return command;
 }

@@ -59,7 +59,7 @@ v1::Event to_proto(const simulation::Event& event, const simulation::Laboratory&
                        if (const auto entry = laboratory.find(event.world)) {
                            for (const std::string& name : changed.names) {
                                *to.add_changed() =
-                                   state_of(*simulation::find_parameter(name), (*entry)->world.parameters());
+                                   state_of(*parameters::find_parameter(name), (*entry)->world.parameters());
                            }
                        }
                    },
@@ -120,7 +120,7 @@ std::optional<v1::Event> event_of(const simulation::Command& command, const simu
                        *to.mutable_by() = actor_of(by);
                        to.set_revision(applied.parameters->revision);
                        for (const auto& assignment : set.assignments) {
-                           if (const auto* description = simulation::find_parameter(assignment.name)) {
+                           if (const auto* description = parameters::find_parameter(assignment.name)) {
                                *to.add_changed() = state_of(*description, *applied.parameters);
                            }
                        }

@@ -22,7 +22,7 @@ v1::ParameterEffect to_proto(base::Effect effect) {
     return v1::PARAMETER_EFFECT_UNSPECIFIED;
 }
 
-simulation::ParameterValue to_value(const v1::ParameterValue& value) {
+parameters::ParameterValue to_value(const v1::ParameterValue& value) {
     switch (value.kind_case()) {
     case v1::ParameterValue::kReal:
         return value.real();
@@ -39,7 +39,7 @@ simulation::ParameterValue to_value(const v1::ParameterValue& value) {
 
 } // namespace
 
-v1::ParameterValue to_proto(const simulation::ParameterValue& value) {
+v1::ParameterValue to_proto(const parameters::ParameterValue& value) {
     v1::ParameterValue to;
     if (const auto* real = std::get_if<double>(&value)) {
         to.set_real(*real);
@@ -53,22 +53,22 @@ v1::ParameterValue to_proto(const simulation::ParameterValue& value) {
     return to;
 }
 
-v1::ParameterDescription to_proto(const simulation::ParameterDescription& description) {
+v1::ParameterDescription to_proto(const parameters::ParameterDescription& description) {
     v1::ParameterDescription to;
     to.set_name(std::string{description.name});
     to.set_unit(std::string{description.unit});
     to.set_help(std::string{description.help});
     to.set_effect(to_proto(description.effect));
     *to.mutable_default_value() = to_proto(description.default_value());
-    if (const auto* real = std::get_if<simulation::RealParameter>(&description.kind)) {
+    if (const auto* real = std::get_if<parameters::RealParameter>(&description.kind)) {
         to.set_kind(v1::PARAMETER_KIND_REAL);
         to.set_min(real->range.min);
         to.set_max(real->range.max);
-    } else if (const auto* count = std::get_if<simulation::CountParameter>(&description.kind)) {
+    } else if (const auto* count = std::get_if<parameters::CountParameter>(&description.kind)) {
         to.set_kind(v1::PARAMETER_KIND_COUNT);
         to.set_min(count->range.min);
         to.set_max(count->range.max);
-    } else if (const auto* choice = std::get_if<simulation::ChoiceParameter>(&description.kind)) {
+    } else if (const auto* choice = std::get_if<parameters::ChoiceParameter>(&description.kind)) {
         to.set_kind(v1::PARAMETER_KIND_CHOICE);
         for (const std::string_view name : choice->names) {
             to.add_choices(std::string{name});
@@ -79,7 +79,7 @@ v1::ParameterDescription to_proto(const simulation::ParameterDescription& descri
     return to;
 }
 
-v1::ParameterState state_of(const simulation::ParameterDescription& description, const simulation::ParameterSet& set) {
+v1::ParameterState state_of(const parameters::ParameterDescription& description, const parameters::ParameterSet& set) {
     v1::ParameterState to;
     const auto active = description.get(set.active), requested = description.get(set.requested);
     to.set_name(std::string{description.name});
@@ -90,21 +90,21 @@ v1::ParameterState state_of(const simulation::ParameterDescription& description,
     return to;
 }
 
-v1::ParameterSet to_proto(const simulation::ParameterSet& set) {
+v1::ParameterSet to_proto(const parameters::ParameterSet& set) {
     v1::ParameterSet to;
-    for (const auto& description : simulation::parameter_registry()) {
+    for (const auto& description : parameters::parameter_registry()) {
         *to.add_parameters() = state_of(description, set);
     }
     to.set_revision(set.revision);
     return to;
 }
 
-google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const simulation::Schedule& schedule,
+google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const parameters::Schedule& schedule,
                                                                 std::uint64_t after_generation) {
     google::protobuf::RepeatedPtrField<v1::ScheduledValue> values;
     const auto& changes = schedule.changes();
     for (auto change = changes.upper_bound(after_generation); change != changes.end(); ++change) {
-        for (const simulation::Assignment& assignment : change->second) {
+        for (const parameters::Assignment& assignment : change->second) {
             v1::ScheduledValue& to = *values.Add();
             to.set_name(assignment.name);
             to.set_generation(change->first);
@@ -114,7 +114,7 @@ google::protobuf::RepeatedPtrField<v1::ScheduledValue> to_proto(const simulation
     return values;
 }
 
-v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
+v1::PlannedChange to_proto(const parameters::PlannedChange& change) {
     v1::PlannedChange to;
     to.set_id(change.id);
     if (change.at.generation) {
@@ -122,7 +122,7 @@ v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
     } else {
         to.set_tick(*change.at.tick);
     }
-    for (const simulation::Assignment& assignment : change.assignments) {
+    for (const parameters::Assignment& assignment : change.assignments) {
         v1::ParameterAssignment& assigned = *to.add_parameters();
         assigned.set_name(assignment.name);
         *assigned.mutable_value() = to_proto(assignment.value);
@@ -131,15 +131,15 @@ v1::PlannedChange to_proto(const simulation::PlannedChange& change) {
     return to;
 }
 
-std::vector<simulation::Assignment>
+std::vector<parameters::Assignment>
 to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>& assignments,
                std::string_view field_prefix, std::vector<base::Violation>& violations) {
-    std::vector<simulation::Assignment> made;
+    std::vector<parameters::Assignment> made;
     made.reserve(static_cast<std::size_t>(assignments.size()));
     bool complete = true;
     for (const v1::ParameterAssignment& assignment : assignments) {
         if (assignment.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
-            const auto* description = simulation::find_parameter(assignment.name());
+            const auto* description = parameters::find_parameter(assignment.name());
             violations.push_back({std::string{field_prefix} + assignment.name(),
                                   description ? description->allowed() : "the name of a parameter, and a value",
                                   "no value"});
@@ -150,8 +150,8 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
     }
     if (!complete) {
         // The request is refused whatever the world says, so the rest is judged on its own.
-        for (const simulation::Assignment& assignment : made) {
-            if (auto fault = simulation::fault_of(assignment, field_prefix)) {
+        for (const parameters::Assignment& assignment : made) {
+            if (auto fault = parameters::fault_of(assignment, field_prefix)) {
                 violations.push_back(*std::move(fault));
             }
         }
@@ -159,11 +159,11 @@ to_assignments(const google::protobuf::RepeatedPtrField<v1::ParameterAssignment>
     return made;
 }
 
-simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,
-                                 const simulation::Parameters& parameters, std::string_view field_prefix,
+parameters::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::ScheduledValue>& values,
+                                 const parameters::Parameters& parameters, std::string_view field_prefix,
                                  std::vector<base::Violation>& violations) {
-    simulation::Schedule schedule;
-    constexpr std::size_t most = simulation::Schedule::values_max;
+    parameters::Schedule schedule;
+    constexpr std::size_t most = parameters::Schedule::values_max;
     if (static_cast<std::size_t>(values.size()) > most) {
         violations.push_back({std::string{field_prefix} + "schedule", "at most " + std::to_string(most) + " values",
                               std::to_string(values.size())});
@@ -173,9 +173,9 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
         return std::string{field_prefix} + name + " at generation " + std::to_string(generation);
     };
     const auto fault_of = [&](const v1::ScheduledValue& value) -> std::optional<base::Violation> {
-        const auto* description = simulation::find_parameter(value.name());
+        const auto* description = parameters::find_parameter(value.name());
         if (description == nullptr) {
-            return simulation::fault_of({value.name(), simulation::ParameterValue{0u}});
+            return parameters::fault_of({value.name(), parameters::ParameterValue{0u}});
         }
         if (!can_be_scheduled(*description)) {
             return base::Violation{{}, "one value, as it can only change when a world is reset", "a scheduled one"};
@@ -186,7 +186,7 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
         if (value.value().kind_case() == v1::ParameterValue::KIND_NOT_SET) {
             return base::Violation{{}, description->allowed(), "no value"};
         }
-        return simulation::fault_of({value.name(), to_value(value.value())});
+        return parameters::fault_of({value.name(), to_value(value.value())});
     };
     std::set<std::pair<std::uint64_t, std::string_view>> seen;
     const std::size_t before = violations.size();
@@ -206,7 +206,7 @@ simulation::Schedule to_schedule(const google::protobuf::RepeatedPtrField<v1::Sc
         return schedule;
     }
     schedule.begin_with(parameters);
-    for (simulation::ScheduleFault& wrong : faults_of(schedule, parameters)) {
+    for (parameters::ScheduleFault& wrong : faults_of(schedule, parameters)) {
         wrong.violation.field = field(wrong.violation.field, wrong.generation);
         violations.push_back(std::move(wrong.violation));
     }

@@ -73,7 +73,7 @@ base::Result<v1::ParameterSet> get_parameters(const simulation::Laboratory& labo
     }
     const simulation::World& world = (*entry)->world;
     v1::ParameterSet set = to_proto(world.parameters());
-    for (const simulation::PlannedChange& change : world.planned()) {
+    for (const parameters::PlannedChange& change : world.planned()) {
         *set.add_planned() = to_proto(change);
     }
     *set.mutable_schedule() = to_proto(world.schedule(), world.moment().generation);
@@ -229,7 +229,7 @@ base::Result<v1::Motion> get_motion(const simulation::Laboratory& laboratory, co
         return found.error();
     }
     const auto& [world, island] = *found;
-    const simulation::Parameters& parameters = world.parameters().active;
+    const parameters::Parameters& parameters = world.parameters().active;
     const auto report = island.motion_report(parameters);
     v1::Motion motion;
     motion.set_tick(world.moment().tick);

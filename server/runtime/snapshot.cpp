@@ -24,7 +24,7 @@ void copy_organisms(const simulation::Island& island, OrganismsSnapshot& to) {
     to.alive_count = island.alive_count();
 }
 
-void copy(const simulation::Island& island, const simulation::Parameters& parameters, IslandSnapshot& to) {
+void copy(const simulation::Island& island, const parameters::Parameters& parameters, IslandSnapshot& to) {
     to.island = island.index();
     to.width_px = physics::to_px(island.area().width);
     to.height_px = physics::to_px(island.area().height);

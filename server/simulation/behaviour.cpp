@@ -8,7 +8,7 @@ namespace evod::simulation {
 namespace {
 
 ChoiceRules choice_rules(const BehaviourRules& rules, const base::RandomKey& key, std::uint32_t tick) {
-    return {.always_flee = rules.flee_rule == FleeRule::Always,
+    return {.always_flee = rules.flee_rule == parameters::FleeRule::Always,
             .lookahead_s = rules.lookahead_s,
             .certain_impulse = rules.certain_impulse,
             .force_per_unit = rules.force_per_unit,

@@ -12,11 +12,11 @@
 #pragma once
 
 #include "server/base/random.h"
+#include "server/parameters/parameters.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
 #include "server/simulation/organism_kernels.h"
-#include "server/simulation/parameters.h"
 #include "server/simulation/sight.h"
 
 #include <array>
@@ -25,7 +25,7 @@
 namespace evod::simulation {
 
 struct BehaviourRules {
-    FleeRule flee_rule;
+    parameters::FleeRule flee_rule;
     float lookahead_s;
     float certain_impulse; // gene value from which fleeing is certain; the chance is impulse over this
     float force_per_unit;  // kg px/s² per gene unit

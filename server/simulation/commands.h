@@ -4,9 +4,9 @@
 #pragma once
 
 #include "server/base/random.h"
+#include "server/parameters/parameters.h"
+#include "server/parameters/schedule.h"
 #include "server/simulation/first_population.h"
-#include "server/simulation/parameters.h"
-#include "server/simulation/schedule.h"
 
 #include <optional>
 #include <string>
@@ -32,11 +32,11 @@ constexpr double speed_min = 0.001, speed_max = 10'000;
 
 struct CreateWorld {
     std::string name; // 1 to 64 of a-z A-Z 0-9 _ -
-    Parameters parameters;
+    parameters::Parameters parameters;
     base::Seed seed;
     RunId run_id;
     FirstPopulation first_population = {}; // that a world with these parameters can have
-    Schedule schedule = {};                // in which faults_of() finds nothing; begins with the parameters
+    parameters::Schedule schedule = {};    // in which faults_of() finds nothing; begins with the parameters
 };
 struct DeleteWorld {
     std::string world;
@@ -70,11 +70,11 @@ struct SetSpeed {
 };
 struct SetParameters {
     std::string world;
-    std::vector<Assignment> assignments;
+    std::vector<parameters::Assignment> assignments;
     bool dry_run = false;
     std::optional<std::uint64_t> expected_revision;
-    std::optional<PlannedMoment> at = std::nullopt; // nothing: at once
-    std::string by = {};                            // who plans it, as others are told
+    std::optional<parameters::PlannedMoment> at = std::nullopt; // nothing: at once
+    std::string by = {};                                        // who plans it, as others are told
 };
 /// Takes back what was planned.
 struct CancelChange {

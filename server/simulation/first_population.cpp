@@ -21,7 +21,7 @@ bool same(const FirstPopulation& a, const FirstPopulation& b) {
     });
 }
 
-std::vector<base::Violation> faults_of(const FirstPopulation& population, const Parameters& parameters,
+std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field) {
     std::vector<base::Violation> faults;
     if (!population) {
@@ -47,10 +47,10 @@ std::vector<base::Violation> faults_of(const FirstPopulation& population, const 
                 }
                 const std::string named{evolution::gene_names[static_cast<std::size_t>(gene)]};
                 faults.push_back({name + ".organism[" + std::to_string(organism) + "]." + named,
-                                  to_text(ParameterValue{double{bounds.min[gene]}}) + " to " +
-                                      to_text(ParameterValue{double{bounds.max[gene]}}) + " (" + named + "_min, " +
-                                      named + "_max)",
-                                  to_text(ParameterValue{double{value}})});
+                                  parameters::to_text(parameters::ParameterValue{double{bounds.min[gene]}}) + " to " +
+                                      parameters::to_text(parameters::ParameterValue{double{bounds.max[gene]}}) + " (" +
+                                      named + "_min, " + named + "_max)",
+                                  parameters::to_text(parameters::ParameterValue{double{value}})});
             }
         }
     }

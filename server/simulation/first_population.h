@@ -3,7 +3,7 @@
 
 #include "server/base/result.h"
 #include "server/evolution/chromosome.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include <memory>
 #include <string>
@@ -22,7 +22,7 @@ bool same(const FirstPopulation& a, const FirstPopulation& b);
 /// field  of the population as the sender spells it: "create_world.population"; a gene is
 ///        "create_world.population[0].organism[17].body_size".
 /// returns  empty if nothing does; at most faults_max of all that are wrong.
-std::vector<base::Violation> faults_of(const FirstPopulation& population, const Parameters& parameters,
+std::vector<base::Violation> faults_of(const FirstPopulation& population, const parameters::Parameters& parameters,
                                        const std::string& field);
 constexpr std::size_t faults_max = 20;
 

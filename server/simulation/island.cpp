@@ -19,7 +19,7 @@ constexpr std::size_t organisms_per_block = 1024;
 /// The most health that meals lead to: from here on a meal's, at most 10,000, is lost in the rounding of a float.
 constexpr float health_reachable = 0x1p38f;
 
-physics::StepParameters step_parameters(const Parameters& p) {
+physics::StepParameters step_parameters(const parameters::Parameters& p) {
     constexpr physics::Integrator integrators[] = {
         physics::Integrator::SymplecticEuler, physics::Integrator::ExplicitEuler, physics::Integrator::BackwardEuler};
     return {.integration = physics::integration(integrators[static_cast<std::size_t>(p.integrator)], p.tick_s,
@@ -28,7 +28,7 @@ physics::StepParameters step_parameters(const Parameters& p) {
             .max_speed_px_s = static_cast<float>(p.max_speed_px_s)};
 }
 
-ItemRules item_rules(const Parameters& p) {
+ItemRules item_rules(const parameters::Parameters& p) {
     // A little less, so that 23 sixtieths are 23 ticks of a sixtieth however they are rounded.
     const double ticks = std::ceil(p.respawn_s / p.tick_s - 1e-6);
     return {.placement = base::Purpose::FoodPlacement,
@@ -40,7 +40,7 @@ ItemRules item_rules(const Parameters& p) {
             .respawn_ticks = static_cast<std::uint32_t>(std::clamp(ticks, 1.0, 1e9))};
 }
 
-BehaviourRules behaviour_rules(const Parameters& p) {
+BehaviourRules behaviour_rules(const parameters::Parameters& p) {
     return {.flee_rule = p.flee_rule,
             .lookahead_s = static_cast<float>(p.steering_lookahead_s),
             .certain_impulse = static_cast<float>(p.flee_certain_impulse),
@@ -49,8 +49,8 @@ BehaviourRules behaviour_rules(const Parameters& p) {
 
 } // namespace
 
-void Island::begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred,
-                              base::Executor& executor) {
+void Island::begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                              evolution::NextGeneration bred, base::Executor& executor) {
     born_ = std::move(bred);
     behaviour_key_ = base::RandomKey{seed_, base::Purpose::Behaviour, index_, generation};
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
@@ -80,13 +80,13 @@ void Island::begin_generation(const Parameters& parameters, std::uint64_t genera
         born_hash_ += hash;
     }
     hash_ = born_hash_;
-    if (parameters.fitness == FitnessFunction::Life) {
+    if (parameters.fitness == parameters::FitnessFunction::Life) {
         place(parameters, generation, executor);
     }
 }
 
-void Island::place(const Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
-    const IslandPlan plan = island_plan(parameters);
+void Island::place(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor) {
+    const parameters::IslandPlan plan = parameters::island_plan(parameters);
     area_ = {physics::to_units(plan.width_px), physics::to_units(plan.height_px)};
     step_parameters_ = step_parameters(parameters);
 
@@ -141,7 +141,7 @@ void Island::place(const Parameters& parameters, std::uint64_t generation, base:
     sight_.begin(bodies_, living_, food_, poison_);
 }
 
-void Island::advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
+void Island::advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
     if (stepper_.near().worn(bodies_, boxes_)) {
         renew_near_pairs(executor);
     }
@@ -257,7 +257,8 @@ void Island::move(std::size_t block) {
     blocks_[block].dying.assign(dying_indices, dying_indices + dying.count);
 }
 
-base::StateHash Island::feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) {
+base::StateHash Island::feed_and_bury(const parameters::Parameters& parameters, std::uint32_t tick,
+                                      base::Executor& executor) {
     // What happens to organisms, block by block; what happens to the items' grid, one after another.
     constexpr std::size_t events_worth_cutting = 128;
     std::size_t events = food_feeding_.award() + poison_feeding_.award();
@@ -301,7 +302,7 @@ base::StateHash Island::feed_and_bury(const Parameters& parameters, std::uint32_
     return organisms;
 }
 
-void Island::feed_and_bury_in_block(const Parameters& parameters, std::uint32_t tick, std::size_t index) {
+void Island::feed_and_bury_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index) {
     Block& block = blocks_[index];
     block.food_hash_change = block.poison_hash_change = {};
     block.food_eaten = block.poison_eaten = block.starved = block.poisoned = 0;
@@ -537,10 +538,11 @@ void Island::restore(const IslandState& state, std::uint32_t tick, base::Executo
     hash_ = born_hash_ + food_.hash() + poison_.hash() + organisms + hash_of_boxes();
 }
 
-std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const {
+std::vector<double> Island::fitness(const parameters::Parameters& parameters, std::uint32_t tick,
+                                    base::Executor& executor) const {
     const auto organisms = static_cast<std::size_t>(born_.genes.cols());
     std::vector<double> fitness(organisms);
-    if (parameters.fitness == FitnessFunction::Life) {
+    if (parameters.fitness == parameters::FitnessFunction::Life) {
         executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
             for (std::size_t id = range.begin; id < range.end; ++id) {
                 fitness[id] = body_of_[id] == no_body
@@ -550,7 +552,7 @@ std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t 
         });
         return fitness;
     }
-    const auto function = parameters.fitness == FitnessFunction::GeneSum ? gene_sum : rastrigin;
+    const auto function = parameters.fitness == parameters::FitnessFunction::GeneSum ? gene_sum : rastrigin;
     executor.parallel_for(organisms, organisms_per_block, [&](base::Range range) {
         for (std::size_t id = range.begin; id < range.end; ++id) {
             fitness[id] = function(born_.genes.col(static_cast<Eigen::Index>(id)));
@@ -559,7 +561,8 @@ std::vector<double> Island::fitness(const Parameters& parameters, std::uint32_t 
     return fitness;
 }
 
-std::vector<Intention> Island::intentions(const Parameters& parameters, std::uint32_t tick, base::Range ids) const {
+std::vector<Intention> Island::intentions(const parameters::Parameters& parameters, std::uint32_t tick,
+                                          base::Range ids) const {
     std::vector<std::uint32_t> who;
     for (std::size_t id = ids.begin; id < ids.end; ++id) {
         if (const auto body = body_of(static_cast<std::uint32_t>(id))) {
@@ -575,7 +578,7 @@ std::vector<Intention> Island::intentions(const Parameters& parameters, std::uin
     return intentions;
 }
 
-physics::MotionReport Island::motion_report(const Parameters& parameters) const {
+physics::MotionReport Island::motion_report(const parameters::Parameters& parameters) const {
     if (!has_bodies()) {
         return {};
     }

@@ -18,6 +18,7 @@
 #include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
 #include "server/evolution/next_generation.h"
+#include "server/parameters/parameters.h"
 #include "server/physics/bodies.h"
 #include "server/physics/motion_report.h"
 #include "server/physics/step.h"
@@ -25,7 +26,6 @@
 #include "server/simulation/feeding.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
-#include "server/simulation/parameters.h"
 #include "server/simulation/placement.h"
 #include "server/simulation/sight.h"
 #include "server/simulation/statistics.h"
@@ -42,11 +42,11 @@ class Island {
     Island(base::Seed seed, std::uint32_t index) : seed_{seed}, index_{index} {}
 
     /// Replaces everything: fresh organisms grown from `bred`, food, poison, obstacles and crates.
-    void begin_generation(const Parameters& parameters, std::uint64_t generation, evolution::NextGeneration bred,
-                          base::Executor& executor);
+    void begin_generation(const parameters::Parameters& parameters, std::uint64_t generation,
+                          evolution::NextGeneration bred, base::Executor& executor);
 
     /// tick  of the generation, 1 for its first.
-    void advance_tick(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    void advance_tick(const parameters::Parameters& parameters, std::uint32_t tick, base::Executor& executor);
 
     IslandShape shape() const;
     IslandState state(base::Executor& executor) const;
@@ -57,11 +57,13 @@ class Island {
 
     /// Fitness of every organism by id, at the end of tick `tick` of the generation: seconds lived + health at the end,
     /// or the function of the chromosome.
-    std::vector<double> fitness(const Parameters& parameters, std::uint32_t tick, base::Executor& executor) const;
+    std::vector<double> fitness(const parameters::Parameters& parameters, std::uint32_t tick,
+                                base::Executor& executor) const;
 
     /// What organisms [ids.begin, ids.end) would do in `tick` of the generation, if nothing reappeared before it; None
     /// for the dead and where there are no bodies.
-    std::vector<Intention> intentions(const Parameters& parameters, std::uint32_t tick, base::Range ids) const;
+    std::vector<Intention> intentions(const parameters::Parameters& parameters, std::uint32_t tick,
+                                      base::Range ids) const;
 
     /// The index in bodies() of a living organism; nullopt if it is dead.
     std::optional<std::size_t> body_of(std::uint32_t id) const;
@@ -70,7 +72,7 @@ class Island {
     static constexpr std::uint32_t no_body = ~0U;
 
     /// How the living and the crates move and overlap; all zeros where there are no bodies.
-    physics::MotionReport motion_report(const Parameters& parameters) const;
+    physics::MotionReport motion_report(const parameters::Parameters& parameters) const;
 
     std::uint32_t index() const { return index_; }
     base::Seed seed() const { return seed_; }
@@ -96,13 +98,14 @@ class Island {
     LiveStatistics live_counts() const;
 
   private:
-    void place(const Parameters& parameters, std::uint64_t generation, base::Executor& executor);
+    void place(const parameters::Parameters& parameters, std::uint64_t generation, base::Executor& executor);
     void renew_near_pairs(base::Executor& executor);
     void reorder(base::Executor& executor);
     void act(const BehaviourRules& rules, std::uint32_t tick, std::size_t block);
     void move(std::size_t block);
     /// Returns the hash of the living.
-    base::StateHash feed_and_bury(const Parameters& parameters, std::uint32_t tick, base::Executor& executor);
+    base::StateHash feed_and_bury(const parameters::Parameters& parameters, std::uint32_t tick,
+                                  base::Executor& executor);
     base::StateHash hash_of_boxes() const;
     bool has_bodies() const { return body_of_.size() == fate_.cause.size(); }
     OrganismColumns columns() { return organism_columns(bodies_, living_, sight_, food_, poison_); }
@@ -117,7 +120,7 @@ class Island {
     template <class OfFood, class OfPoison>
     void for_each_kind(base::Executor& executor, OfFood&& of_food, OfPoison&& of_poison);
     void resize_blocks(std::size_t count);
-    void feed_and_bury_in_block(const Parameters& parameters, std::uint32_t tick, std::size_t index);
+    void feed_and_bury_in_block(const parameters::Parameters& parameters, std::uint32_t tick, std::size_t index);
     template <class Change>
     void change_health(Block& block, std::uint32_t body, Change&& change);
     bool is_dying(std::uint32_t body) const;

@@ -56,9 +56,9 @@ std::optional<Refusal> refusal_if_recorded(const Entry& entry, const C&) {
                    "this world shows what has been, and that cannot be changed: fork it", base::Reason::WorldIsReplay);
 }
 
-std::string ids_of(const std::vector<PlannedChange>& planned) {
+std::string ids_of(const std::vector<parameters::PlannedChange>& planned) {
     std::string ids;
-    for (const PlannedChange& change : planned) {
+    for (const parameters::PlannedChange& change : planned) {
         ids += (ids.empty() ? "" : ", ") + std::to_string(change.id);
     }
     return ids.empty() ? "none: nothing is planned" : ids;
@@ -67,19 +67,19 @@ std::string ids_of(const std::vector<PlannedChange>& planned) {
 /// Why it cannot be planned; nothing if it can.
 std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& command) {
     std::vector<base::Violation> violations;
-    const PlannedMoment& at = *command.at;
+    const parameters::PlannedMoment& at = *command.at;
     const Moment& now = world.moment();
     if (!world.is_to_come(at)) {
         violations.push_back({at.generation ? "set_parameters.at_generation" : "set_parameters.at_tick",
                               "at least " + std::to_string(1 + (at.generation ? now.generation : now.tick)),
                               std::to_string(at.generation ? *at.generation : *at.tick)});
     }
-    for (const Assignment& assignment : command.assignments) {
-        if (const auto* description = find_parameter(assignment.name);
-            description != nullptr && !can_be_scheduled(*description)) {
+    for (const parameters::Assignment& assignment : command.assignments) {
+        if (const auto* description = parameters::find_parameter(assignment.name);
+            description != nullptr && !parameters::can_be_scheduled(*description)) {
             violations.push_back({"set_parameters." + assignment.name,
                                   "to be set at once, for the next reset: while the world runs it cannot change",
-                                  to_text(assignment.value)});
+                                  parameters::to_text(assignment.value)});
         }
     }
     if (!violations.empty()) {
@@ -87,9 +87,9 @@ std::optional<Refusal> refusal_of_plan(const World& world, const SetParameters& 
                        .message = "this cannot be planned",
                        .violations = std::move(violations)};
     }
-    if (world.planned().size() >= planned_changes_max) {
+    if (world.planned().size() >= parameters::planned_changes_max) {
         return refusal(RefusalCode::ResourceExhausted,
-                       "there are " + std::to_string(planned_changes_max) +
+                       "there are " + std::to_string(parameters::planned_changes_max) +
                            " planned changes already: cancel one first",
                        base::Reason::PlannedChangesMax);
     }
@@ -269,7 +269,7 @@ Result<Applied> Laboratory::carry_out(const DeleteWorld& command) {
 }
 
 Result<Applied> Laboratory::carry_out(Entry& entry, const ResetWorld& command) {
-    const Result<Parameters> beginning = entry.world.beginning();
+    const Result<parameters::Parameters> beginning = entry.world.beginning();
     if (!beginning) {
         return Refusal{.code = RefusalCode::FailedPrecondition,
                        .message = "the run cannot begin with what its schedule has in generation 1 and the parameters "
@@ -382,13 +382,15 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
         }
     }
     const bool at_generation = command.at && command.at->generation;
-    const Result<Parameters> requested = (at_generation ? request_at_generation : request_of)(
-        world.parameters(), command.assignments, "set_parameters.");
+    const Result<parameters::Parameters> requested =
+        (at_generation ? parameters::request_at_generation
+                       : parameters::request_of)(world.parameters(), command.assignments, "set_parameters.");
     if (!requested) {
         return requested.error();
     }
     if (command.at) {
-        PlannedChange change{.id = 0, .at = *command.at, .assignments = command.assignments, .by = command.by};
+        parameters::PlannedChange change{
+            .id = 0, .at = *command.at, .assignments = command.assignments, .by = command.by};
         if (!command.dry_run) {
             change.id = world.plan(change);
         }
@@ -397,7 +399,7 @@ Result<Applied> Laboratory::carry_out(Entry& entry, const SetParameters& command
         return planned;
     }
     Applied applied = applied_now(entry);
-    applied.parameters = after_request(world.parameters(), *requested);
+    applied.parameters = parameters::after_request(world.parameters(), *requested);
     if (!command.dry_run) {
         world.request_parameters(*requested);
     }

@@ -82,10 +82,10 @@ struct Entry {
 /// The answer to a command.
 struct Applied {
     std::string world;
-    std::uint64_t tick = 0;                 // from which the change holds
-    std::optional<ParameterSet> parameters; // SetParameters: the complete set, or what it would be
+    std::uint64_t tick = 0;                             // from which the change holds
+    std::optional<parameters::ParameterSet> parameters; // SetParameters: the complete set, or what it would be
     // SetParameters: what waits now, or with id 0 what would; CancelChange: what waits no more.
-    std::optional<PlannedChange> planned = std::nullopt;
+    std::optional<parameters::PlannedChange> planned = std::nullopt;
 };
 
 class Laboratory {

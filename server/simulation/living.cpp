@@ -19,7 +19,7 @@ void for_each_column(Living& living, F&& visit) {
 }
 
 /// Health lost in a tick: the rate times 1 + the costs of the genes, never below 0.
-float loss_per_tick(const evolution::Chromosome& genes, const Parameters& p) {
+float loss_per_tick(const evolution::Chromosome& genes, const parameters::Parameters& p) {
     const auto share = [&](evolution::Gene gene) { return static_cast<double>(genes(gene)) / 100; };
     const auto square = [](double x) { return x * x; };
     const double factor = 1 + p.normal_speed_cost * (share(evolution::NormalSpeed) - 1) +
@@ -43,7 +43,7 @@ void Living::resize(std::size_t size) {
     });
 }
 
-void Living::put(std::size_t body, const evolution::Chromosome& genes, const Parameters& p) {
+void Living::put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& p) {
     health[body] = genes(evolution::BaseHealth);
     loss_per_tick[body] = simulation::loss_per_tick(genes, p);
     normal_speed[body] = genes(evolution::NormalSpeed);
@@ -56,12 +56,12 @@ void Living::reorder(const physics::Reordering& reordering) {
     for_each_column(*this, [&](auto& column, float filling) { reordering.apply(column, filling); });
 }
 
-float health_cap(const evolution::Chromosome& genes, const Parameters& p) {
+float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& p) {
     return p.health_cap_per_size > 0 ? static_cast<float>(p.health_cap_per_size) * genes(evolution::BodySize)
                                      : std::numeric_limits<float>::infinity();
 }
 
-BodyShape body_shape(float body_size_gene, const Parameters& p) {
+BodyShape body_shape(float body_size_gene, const parameters::Parameters& p) {
     return {body_size_gene * static_cast<float>(p.radius_per_unit_px),
             body_size_gene * static_cast<float>(p.mass_per_unit_kg)};
 }

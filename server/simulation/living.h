@@ -4,8 +4,8 @@
 #include "server/base/column.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/chromosome.h"
+#include "server/parameters/parameters.h"
 #include "server/physics/bodies.h"
-#include "server/simulation/parameters.h"
 
 #include <cstdint>
 #include <vector>
@@ -25,19 +25,19 @@ struct Living {
     void clear();
     /// As physics::Circles::resize and put.
     void resize(std::size_t size);
-    void put(std::size_t body, const evolution::Chromosome& genes, const Parameters& parameters);
+    void put(std::size_t body, const evolution::Chromosome& genes, const parameters::Parameters& parameters);
     /// Those that are left, as physics::Circles::reorder.
     void reorder(const physics::Reordering& reordering);
 };
 
 /// Health that a meal cannot bring an organism above; infinite for none.
-float health_cap(const evolution::Chromosome& genes, const Parameters& parameters);
+float health_cap(const evolution::Chromosome& genes, const parameters::Parameters& parameters);
 
 /// Radius and mass of the body grown from a chromosome, px and kg.
 struct BodyShape {
     float radius_px, mass_kg;
 };
-BodyShape body_shape(float body_size_gene, const Parameters& parameters);
+BodyShape body_shape(float body_size_gene, const parameters::Parameters& parameters);
 
 /// What organisms are called in the state hash.
 constexpr std::uint32_t organism_hash_kind = 1;

@@ -122,7 +122,7 @@ double median(std::span<const double> values) {
 
 } // namespace
 
-GenerationStatistics generation_statistics(const Island& island, const Parameters& parameters,
+GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
                                            std::span<const double> fitness, base::Executor& executor) {
     GenerationStatistics s;
     s.island = island.index();

@@ -13,6 +13,10 @@
 #include <span>
 #include <string>
 
+namespace evod::parameters {
+struct Parameters;
+}
+
 namespace evod::simulation {
 
 struct GeneStatistics {
@@ -75,10 +79,9 @@ void for_each_number(Statistics&& s, Visit&& visit) {
 }
 
 class Island;
-struct Parameters;
 
 /// What the generation that has just ended came to. fitness: shape (organisms), by id.
-GenerationStatistics generation_statistics(const Island& island, const Parameters& parameters,
+GenerationStatistics generation_statistics(const Island& island, const parameters::Parameters& parameters,
                                            std::span<const double> fitness, base::Executor& executor);
 
 struct LiveStatistics {

@@ -12,10 +12,13 @@
 #include <utility>
 
 namespace evod::simulation {
-World::World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule)
-    : World{ParameterSet{parameters, parameters, 1}, seed, std::move(first_population), std::move(schedule)} {}
+World::World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population,
+             parameters::Schedule schedule)
+    : World{parameters::ParameterSet{parameters, parameters, 1}, seed, std::move(first_population),
+            std::move(schedule)} {}
 
-World::World(ParameterSet parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule)
+World::World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
+             parameters::Schedule schedule)
     : seed_{seed}
     , parameters_{std::move(parameters)}
     , first_population_{std::move(first_population)}
@@ -24,7 +27,8 @@ World::World(ParameterSet parameters, base::Seed seed, FirstPopulation first_pop
 }
 
 World::World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
-             base::Executor& executor, FirstPopulation first_population, Founders founders, Schedule schedule)
+             base::Executor& executor, FirstPopulation first_population, Founders founders,
+             parameters::Schedule schedule)
     : seed_{seed}
     , parameters_{opening.parameters}
     , first_population_{std::move(first_population)}
@@ -69,18 +73,18 @@ void World::become_fork() {
     }
 }
 
-base::Result<Parameters> World::beginning() const {
-    return assign(parameters_.requested, schedule_.at(1));
+base::Result<parameters::Parameters> World::beginning() const {
+    return parameters::assign(parameters_.requested, schedule_.at(1));
 }
 
 void World::reset(base::Seed seed) {
-    const Parameters first = beginning().value();
-    World fresh{ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_};
+    const parameters::Parameters first = beginning().value();
+    World fresh{parameters::ParameterSet{first, first, parameters_.revision}, seed, first_population_, schedule_};
     *this = std::move(fresh);
 }
 
 void World::begin_run() {
-    const Parameters& p = parameters_.active;
+    const parameters::Parameters& p = parameters_.active;
     moment_ = {};
     progress_ = {};
     generation_over_ = false;
@@ -141,8 +145,8 @@ std::span<const std::uint32_t> World::founders(const Island& island) const {
     return founders_.empty() ? std::span<const std::uint32_t>{} : founders_[island.index()];
 }
 
-void World::request_parameters(const Parameters& requested) {
-    parameters_ = after_request(parameters_, requested);
+void World::request_parameters(const parameters::Parameters& requested) {
+    parameters_ = parameters::after_request(parameters_, requested);
 }
 
 evolution::Outcome World::outcome() const {
@@ -153,9 +157,9 @@ std::vector<Intention> World::intentions(const Island& island, base::Range ids) 
     if (generation_over_) {
         return std::vector<Intention>(ids.end - ids.begin);
     }
-    std::optional<Parameters> first; // as they are once the generation's first tick is taken
+    std::optional<parameters::Parameters> first; // as they are once the generation's first tick is taken
     if (moment_.generation_tick == 0) {
-        first = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+        first = parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
     return island.intentions(first ? *first : parameters_.active,
                              static_cast<std::uint32_t>(moment_.generation_tick) + 1, ids);
@@ -169,64 +173,67 @@ std::uint64_t World::alive_count() const {
     return alive;
 }
 
-std::uint64_t World::plan(PlannedChange change) {
+std::uint64_t World::plan(parameters::PlannedChange change) {
     EVOD_ASSERT(is_to_come(change.at));
     return plan_anew(std::move(change));
 }
 
-std::uint64_t World::plan_anew(PlannedChange change) {
+std::uint64_t World::plan_anew(parameters::PlannedChange change) {
     change.id = ++planned_count_;
     planned_.push_back(std::move(change));
     return planned_count_;
 }
 
-std::optional<PlannedChange> World::cancel(std::uint64_t id) {
-    const auto found = std::ranges::find(planned_, id, &PlannedChange::id);
+std::optional<parameters::PlannedChange> World::cancel(std::uint64_t id) {
+    const auto found = std::ranges::find(planned_, id, &parameters::PlannedChange::id);
     if (found == planned_.end()) {
         return std::nullopt;
     }
-    PlannedChange cancelled = std::move(*found);
+    parameters::PlannedChange cancelled = std::move(*found);
     planned_.erase(found);
     return cancelled;
 }
 
-bool World::is_to_come(const PlannedMoment& moment) const {
+bool World::is_to_come(const parameters::PlannedMoment& moment) const {
     return moment.generation ? *moment.generation > moment_.generation : *moment.tick > moment_.tick;
 }
 
 void World::forget_what_was_due() {
-    std::erase_if(planned_, [&](const PlannedChange& change) { return !is_to_come(change.at); });
+    std::erase_if(planned_, [&](const parameters::PlannedChange& change) { return !is_to_come(change.at); });
 }
 
 void World::make_planned_for(std::uint64_t generation) {
     if (const auto scheduled = schedule_.at(generation); !scheduled.empty()) {
-        make_planned(scheduled, request_at_generation(parameters_, scheduled), 0, {});
+        make_planned(scheduled, parameters::request_at_generation(parameters_, scheduled), 0, {});
     }
-    const auto is_due = [&](const PlannedChange& change) { return change.at.generation == generation; };
-    for (const PlannedChange& change : planned_) {
+    const auto is_due = [&](const parameters::PlannedChange& change) { return change.at.generation == generation; };
+    for (const parameters::PlannedChange& change : planned_) {
         if (is_due(change)) {
-            make_planned(change.assignments, request_at_generation(parameters_, change.assignments), change.id,
-                         change.by);
+            make_planned(change.assignments, parameters::request_at_generation(parameters_, change.assignments),
+                         change.id, change.by);
         }
     }
     std::erase_if(planned_, is_due);
 }
 
 void World::make_planned_now() {
-    const auto is_due = [&](const PlannedChange& change) { return change.at.tick == moment_.tick; };
-    for (const PlannedChange& change : planned_) {
+    const auto is_due = [&](const parameters::PlannedChange& change) { return change.at.tick == moment_.tick; };
+    for (const parameters::PlannedChange& change : planned_) {
         if (is_due(change)) {
-            make_planned(change.assignments, request_of(parameters_, change.assignments), change.id, change.by);
-            parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+            make_planned(change.assignments, parameters::request_of(parameters_, change.assignments), change.id,
+                         change.by);
+            parameters_.active =
+                parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
         }
     }
     std::erase_if(planned_, is_due);
 }
 
-void World::make_planned(std::span<const Assignment> changes, const base::Result<Parameters>& requested,
-                         std::uint64_t id, const std::string& by) {
+void World::make_planned(std::span<const parameters::Assignment> changes,
+                         const base::Result<parameters::Parameters>& requested, std::uint64_t id,
+                         const std::string& by) {
     std::vector<std::string> names;
-    for (const Assignment& change : changes) {
+    for (const parameters::Assignment& change : changes) {
         names.push_back(change.name);
     }
     if (!requested) {
@@ -245,8 +252,8 @@ void World::turn_over(base::Executor& executor) {
         return;
     }
     make_planned_for(moment_.generation + 1);
-    parameters_.active = breeding_with(parameters_.active, parameters_.requested);
-    const Parameters& p = parameters_.active;
+    parameters_.active = parameters::breeding_with(parameters_.active, parameters_.requested);
+    const parameters::Parameters& p = parameters_.active;
     const auto key_of = [&](std::size_t island) -> evolution::BreedingKey {
         return {.seed = seed_, .island = static_cast<std::uint32_t>(island), .generation = moment_.generation};
     };
@@ -272,7 +279,7 @@ void World::turn_over(base::Executor& executor) {
 }
 
 std::vector<const evolution::GeneMatrix*> World::parents(std::vector<evolution::GeneMatrix>& migrated) {
-    const Parameters& p = parameters_.active;
+    const parameters::Parameters& p = parameters_.active;
     std::vector<const evolution::GeneMatrix*> genes;
     for (const Island& island : islands_) {
         genes.push_back(&island.born().genes);
@@ -321,9 +328,10 @@ void World::advance_tick(base::Executor& executor) {
     EVOD_ASSERT(outcome() == evolution::Outcome::Running);
     turn_over(executor);
     if (moment_.generation_tick == 0) {
-        parameters_.active = taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
+        parameters_.active =
+            parameters::taking_effect(parameters_.active, parameters_.requested, base::Effect::NextTick);
     }
-    const Parameters& p = parameters_.active;
+    const parameters::Parameters& p = parameters_.active;
     ++moment_.tick;
     ++moment_.generation_tick;
     moment_.simulated_s += p.tick_s;
@@ -360,7 +368,7 @@ void World::advance_tick(base::Executor& executor) {
 }
 
 bool World::ends(std::uint64_t generation_tick, std::uint64_t alive) const {
-    const Parameters& p = parameters_.active;
+    const parameters::Parameters& p = parameters_.active;
     if (generation_tick == 0) {
         return false;
     }
@@ -377,7 +385,7 @@ void World::find_fitness(base::Executor& executor) {
 }
 
 void World::end_generation(base::Executor& executor) {
-    const Parameters& p = parameters_.active;
+    const parameters::Parameters& p = parameters_.active;
     find_fitness(executor);
     std::vector<GenerationStatistics> statistics;
     for (std::size_t i = 0; i < islands_.size(); ++i) {
@@ -434,16 +442,17 @@ base::Result<void> World::restore(const WorldState& state, base::Executor& execu
                              .violations = {}};
     };
     const Moment& moment = state.moment;
-    const ParameterSet& set = state.parameters;
+    const parameters::ParameterSet& set = state.parameters;
     if (moment.generation != moment_.generation || moment.tick < moment_.tick ||
         moment.tick - moment_.tick != moment.generation_tick || !std::isfinite(moment.simulated_s) ||
         moment.simulated_s < moment_.simulated_s) {
         return wrong("its moment");
     }
     // What takes effect with a generation is as it was when this one began.
-    if (!(taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
-        !validate(set.active).empty() ||
-        !validate(taking_effect(set.active, set.requested, base::Effect::NextGeneration)).empty()) {
+    if (!(parameters::taking_effect(parameters_.active, set.active, base::Effect::NextTick) == set.active) ||
+        !parameters::validate(set.active).empty() ||
+        !parameters::validate(parameters::taking_effect(set.active, set.requested, base::Effect::NextGeneration))
+             .empty()) {
         return wrong("its parameters");
     }
     if (state.islands.size() != islands_.size()) {

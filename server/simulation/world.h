@@ -17,11 +17,11 @@
 #include "server/base/result.h"
 #include "server/base/state_hash.h"
 #include "server/evolution/termination.h"
+#include "server/parameters/parameters.h"
+#include "server/parameters/schedule.h"
 #include "server/simulation/commands.h"
 #include "server/simulation/events.h"
 #include "server/simulation/island.h"
-#include "server/simulation/parameters.h"
-#include "server/simulation/schedule.h"
 #include "server/simulation/statistics.h"
 #include "server/simulation/world_state.h"
 
@@ -36,7 +36,7 @@ namespace evod::simulation {
 /// What held when a generation began, before its first tick.
 struct Opening {
     Moment moment; // generation_tick 0
-    ParameterSet parameters;
+    parameters::ParameterSet parameters;
     evolution::Progress progress; // of the generations before it
 };
 
@@ -79,7 +79,8 @@ class World {
     /// parameters        valid.
     /// first_population  that a world with these parameters can have; nullptr: it is drawn.
     /// schedule          whose generation 1 is in the parameters.
-    World(const Parameters& parameters, base::Seed seed, FirstPopulation first_population = {}, Schedule schedule = {});
+    World(const parameters::Parameters& parameters, base::Seed seed, FirstPopulation first_population = {},
+          parameters::Schedule schedule = {});
 
     /// At the beginning of a generation of a run, from where it goes on as that run did.
     ///
@@ -89,7 +90,7 @@ class World {
     /// founders          of who was born; those of the first generation are known anyway.
     World(base::Seed seed, const Opening& opening, std::vector<evolution::NextGeneration> born, History history,
           base::Executor& executor, FirstPopulation first_population = {}, Founders founders = {},
-          Schedule schedule = {});
+          parameters::Schedule schedule = {});
 
     /// Another world, as this one was at the first moment of its generation; with what was asked of it since, if this
     /// is still that moment.
@@ -106,7 +107,7 @@ class World {
 
     /// With what the run begins if it is reset: the parameters last asked for, those that are scheduled as they are in
     /// generation 1. Refused if they do not go together.
-    base::Result<Parameters> beginning() const;
+    base::Result<parameters::Parameters> beginning() const;
     /// Begins the run again with its beginning(), its schedule, and the same first population if one was given, which a
     /// world with those parameters can have. Throws std::bad_alloc, having changed nothing, where memory does not
     /// suffice for the world beside the one that it replaces.
@@ -123,23 +124,23 @@ class World {
     const Moment& moment() const { return moment_; }
     base::Seed seed() const { return seed_; }
     base::StateHash hash() const { return hash_; }
-    const ParameterSet& parameters() const { return parameters_; }
+    const parameters::ParameterSet& parameters() const { return parameters_; }
     const FirstPopulation& first_population() const { return first_population_; }
-    const Schedule& schedule() const { return schedule_; }
+    const parameters::Schedule& schedule() const { return schedule_; }
     /// In order of their ids.
-    const std::vector<PlannedChange>& planned() const { return planned_; }
+    const std::vector<parameters::PlannedChange>& planned() const { return planned_; }
     /// Has it made at its moment, which is_to_come(); what is due at the same moment is made in order of ids, after
     /// what is scheduled. Gives it an id, and returns that.
-    std::uint64_t plan(PlannedChange change);
+    std::uint64_t plan(parameters::PlannedChange change);
     /// What waited under that id does so no more; nothing if there is none.
-    std::optional<PlannedChange> cancel(std::uint64_t id);
-    bool is_to_come(const PlannedMoment& moment) const;
+    std::optional<parameters::PlannedChange> cancel(std::uint64_t id);
+    bool is_to_come(const parameters::PlannedMoment& moment) const;
     /// Of a world that was brought to a later moment than where things were planned: plans them again under the same
     /// ids, and forgets those that were due by now, which have been made there.
-    std::uint64_t plan_anew(PlannedChange change);
+    std::uint64_t plan_anew(parameters::PlannedChange change);
     void forget_what_was_due();
     /// Takes a set that assign() has made from parameters().requested; each parameter holds from when its effect says.
-    void request_parameters(const Parameters& requested);
+    void request_parameters(const parameters::Parameters& requested);
 
     bool generation_over() const { return generation_over_; }
     /// The criterion that holds now that a generation is over, by the parameters that hold now; else Running.
@@ -154,7 +155,7 @@ class World {
     /// Of one island.
     std::span<const std::uint32_t> founders(const Island& island) const;
     /// false while the fitness is a function of the chromosome alone: the islands hold no bodies.
-    bool has_bodies() const { return parameters_.active.fitness == FitnessFunction::Life; }
+    bool has_bodies() const { return parameters_.active.fitness == parameters::FitnessFunction::Life; }
     /// What organisms [ids.begin, ids.end) of an island are about to do, from what lies there now; None for the dead,
     /// for all where the generation is over, and where there are no bodies.
     std::vector<Intention> intentions(const Island& island, base::Range ids) const;
@@ -171,7 +172,8 @@ class World {
     std::vector<EventKind> take_events() { return std::exchange(events_, {}); }
 
   private:
-    World(ParameterSet parameters, base::Seed seed, FirstPopulation first_population, Schedule schedule);
+    World(parameters::ParameterSet parameters, base::Seed seed, FirstPopulation first_population,
+          parameters::Schedule schedule);
     void begin_run();
     void make_islands();
     /// What is planned for the generation that is about to be bred.
@@ -181,8 +183,8 @@ class World {
     /// Has all of it asked for, or tells why not.
     ///
     /// id, by  as in ParametersChanged.
-    void make_planned(std::span<const Assignment> changes, const base::Result<Parameters>& requested, std::uint64_t id,
-                      const std::string& by);
+    void make_planned(std::span<const parameters::Assignment> changes,
+                      const base::Result<parameters::Parameters>& requested, std::uint64_t id, const std::string& by);
     void begin_generation(std::vector<evolution::NextGeneration> bred, base::Executor& executor);
     /// Whether a generation is over after `generation_tick`, with so many alive.
     bool ends(std::uint64_t generation_tick, std::uint64_t alive) const;
@@ -197,11 +199,11 @@ class World {
     void update_hash();
 
     base::Seed seed_;
-    ParameterSet parameters_;
+    parameters::ParameterSet parameters_;
     FirstPopulation first_population_;
-    Schedule schedule_;
-    std::vector<PlannedChange> planned_; // in order of ids
-    std::uint64_t planned_count_ = 0;    // of this run, so far
+    parameters::Schedule schedule_;
+    std::vector<parameters::PlannedChange> planned_; // in order of ids
+    std::uint64_t planned_count_ = 0;                // of this run, so far
     Moment moment_;
     bool generation_over_ = false;
     base::StateHash hash_;

@@ -8,10 +8,10 @@
 #pragma once
 
 #include "server/base/column.h"
+#include "server/parameters/parameters.h"
 #include "server/physics/bodies.h"
 #include "server/simulation/items.h"
 #include "server/simulation/living.h"
-#include "server/simulation/parameters.h"
 #include "server/simulation/statistics.h"
 
 #include <cstdint>
@@ -69,7 +69,7 @@ struct IslandState {
 
 struct WorldState {
     Moment moment;
-    ParameterSet parameters;
+    parameters::ParameterSet parameters;
     std::vector<IslandState> islands;
     std::vector<GenerationStatistics> ended; // once the generation is over: one per island
 };

@@ -40,7 +40,7 @@ Result<std::uint64_t> generation_of(RunFile& file, const WantedBreeding& wanted)
 }
 
 /// Lets those migrate who did, and tells who came to the island.
-std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const simulation::Parameters& parameters,
+std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const parameters::Parameters& parameters,
                                         base::Seed seed, std::uint32_t island) {
     const std::uint64_t generation = parents.ended->generation;
     if (!evolution::migration_due(generation, parameters)) {

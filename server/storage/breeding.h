@@ -22,7 +22,7 @@ struct WantedBreeding {
 struct Bred {
     std::uint64_t generation = 0; // of the parents
     std::uint32_t island = 0;
-    simulation::Parameters parameters; // as they held
+    parameters::Parameters parameters; // as they held
     evolution::BreedingRecord record;
 };
 

@@ -19,7 +19,7 @@ using base::Result;
 /// What a family tree needs of a generation.
 struct Births {
     std::uint64_t generation = 0;
-    simulation::Parameters parameters; // by which it was bred
+    parameters::Parameters parameters; // by which it was bred
     struct Island {
         std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
         std::vector<evolution::Parents> parents;

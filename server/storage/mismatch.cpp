@@ -87,14 +87,14 @@ Found compare_organisms(const char* name, const std::string& of_island, std::spa
     return compare_each(std::string{name} + " of organism", of_island, stored, simulated);
 }
 
-Found compare(const std::string& which, const simulation::Parameters& stored, const simulation::Parameters& simulated) {
-    const auto differing = simulation::parameters_that_differ(stored, simulated);
+Found compare(const std::string& which, const parameters::Parameters& stored, const parameters::Parameters& simulated) {
+    const auto differing = parameters::parameters_that_differ(stored, simulated);
     if (differing.empty()) {
         return std::nullopt;
     }
-    const simulation::ParameterDescription& parameter = *differing.front();
+    const parameters::ParameterDescription& parameter = *differing.front();
     return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which,
-                    simulation::to_text(parameter.get(stored)), simulation::to_text(parameter.get(simulated))};
+                    parameters::to_text(parameter.get(stored)), parameters::to_text(parameter.get(simulated))};
 }
 
 /// Where nobody knows the stored one, as in files of before there were any, there is nothing to compare.
@@ -325,7 +325,7 @@ Found compare(const base::StateHash& stored, const base::StateHash& simulated) {
     return compare("the state hash", stored, simulated);
 }
 
-Found compare_requested(const simulation::Parameters& stored, const simulation::Parameters& simulated) {
+Found compare_requested(const parameters::Parameters& stored, const parameters::Parameters& simulated) {
     return compare("as it was asked for", stored, simulated);
 }
 

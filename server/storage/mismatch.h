@@ -28,7 +28,7 @@ std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatisti
 std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
 std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
 /// Of parameters that were asked for.
-std::optional<Mismatch> compare_requested(const simulation::Parameters& stored,
-                                          const simulation::Parameters& simulated);
+std::optional<Mismatch> compare_requested(const parameters::Parameters& stored,
+                                          const parameters::Parameters& simulated);
 
 } // namespace evod::storage

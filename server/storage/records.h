@@ -21,7 +21,7 @@ struct RunIdentity {
     std::string name; // of the world
     simulation::RunId run_id;
     base::Seed seed;
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     std::string evod_version = EVOD_VERSION;
     std::string build = build_text(); // of that evod; empty where the file does not tell
     std::uint32_t model_version = simulation::model_version;
@@ -32,7 +32,7 @@ struct RunIdentity {
     std::optional<simulation::RunId> forked_from = std::nullopt;
     std::uint64_t inherited_generations = 0; // right before its first, of which it has its origin's statistics
     simulation::FirstPopulation first_population = {}; // that it was given, or its origin; nullptr: drawn
-    simulation::Schedule schedule = {};                // that it was created with, or its origin
+    parameters::Schedule schedule = {};                // that it was created with, or its origin
 };
 
 /// Who asked for a command, and how.
@@ -102,7 +102,7 @@ Checkpoint checkpoint_of(const simulation::World& world, std::uint64_t journal_e
 /// The same as it is stored.
 struct StoredCheckpoint {
     simulation::Moment moment;
-    simulation::ParameterSet parameters;
+    parameters::ParameterSet parameters;
     base::StateHash hash;
     std::uint64_t journal_entries = 0;
     std::string state; // the rest, packed (checkpoint.h)

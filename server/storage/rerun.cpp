@@ -251,7 +251,7 @@ Result<void> ComingChanges::extend(const std::string& path, std::span<const Para
         if (change.entry <= last_entry_) {
             continue;
         }
-        for (const simulation::Assignment& assignment : change.assignments) {
+        for (const parameters::Assignment& assignment : change.assignments) {
             if (fault_of(assignment)) {
                 return not_to_be_had(path, change);
             }
@@ -268,7 +268,7 @@ bool ComingChanges::make(const ParameterChange& change, simulation::World& world
         return world.cancel(*change.cancels).has_value();
     }
     if (change.at) {
-        const bool can_be = world.is_to_come(*change.at) && world.planned().size() < simulation::planned_changes_max;
+        const bool can_be = world.is_to_come(*change.at) && world.planned().size() < parameters::planned_changes_max;
         if (can_be) {
             (void)world.plan({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
         }

@@ -16,8 +16,8 @@ namespace evod::storage {
 struct ParameterChange {
     std::uint64_t entry = 0; // its number in the journal
     std::uint64_t tick = 0;  // after which it came
-    std::vector<simulation::Assignment> assignments;
-    std::optional<simulation::PlannedMoment> at = std::nullopt; // when it is to be made; nothing: there
+    std::vector<parameters::Assignment> assignments;
+    std::optional<parameters::PlannedMoment> at = std::nullopt; // when it is to be made; nothing: there
     std::string by = {};                                        // who plans it
     std::optional<std::uint64_t> cancels = std::nullopt;        // what is not to be made; nothing: it is a change
 };

@@ -1,7 +1,7 @@
 #include "server/storage/run_file.h"
 
 #include "server/files/regular_file.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/storage/checkpoint.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/write_ahead_log.h"
@@ -286,7 +286,7 @@ Result<void> expect_bytes(const std::string& path) {
 /// A fork may begin with anything; a run of its own, with what its schedule has in generation 1.
 bool begins_with_its_schedule(const RunIdentity& identity) {
     return identity.forked_from || std::ranges::all_of(identity.schedule.at(1), [&](const auto& scheduled) {
-               return simulation::find_parameter(scheduled.name)->get(identity.parameters) == scheduled.value;
+               return parameters::find_parameter(scheduled.name)->get(identity.parameters) == scheduled.value;
            });
 }
 
@@ -618,7 +618,7 @@ void RunFile::bring_up_to_format_3() {
 }
 
 void RunFile::bring_up_to_format_4() {
-    RowWriter{database_, "run", run_columns}.text("schedule").text(simulation::to_schedule_text({})).finish();
+    RowWriter{database_, "run", run_columns}.text("schedule").text(parameters::to_schedule_text({})).finish();
     database_.run(part_table);
     database_.run(account_table_ddl().c_str());
     RowWriter accounts{database_, account_table, account_columns};
@@ -636,7 +636,7 @@ void RunFile::write_identity(const RunIdentity& identity) {
     put("name", identity.name);
     put("run_id", to_text(identity.run_id));
     put("seed", std::to_string(identity.seed.value));
-    put("parameters", to_experiment_text(identity.parameters, simulation::Written::Everything));
+    put("parameters", to_experiment_text(identity.parameters, parameters::Written::Everything));
     put("evod_version", identity.evod_version);
     put("build", identity.build);
     put("model_version", std::to_string(identity.model_version));
@@ -719,13 +719,13 @@ Result<void> RunFile::read_identity() {
         } else if (key == "seed") {
             take(number_from<std::uint64_t>(value), identity_.seed.value);
         } else if (key == "parameters") {
-            const auto experiment = simulation::parse_experiment(value);
+            const auto experiment = parameters::parse_experiment(value);
             good = experiment.has_value();
             if (good) {
                 identity_.parameters = experiment->parameters;
             }
         } else if (key == "schedule") {
-            const auto schedule = simulation::parse_schedule(value);
+            const auto schedule = parameters::parse_schedule(value);
             good = schedule.has_value();
             if (good) {
                 identity_.schedule = *schedule;
@@ -993,7 +993,7 @@ std::uint64_t RunFile::generation_at(std::uint64_t tick) {
     return std::max(identity_.first_generation, static_cast<std::uint64_t>(database_.number(sql.c_str())));
 }
 
-Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
+Result<parameters::ParameterSet> RunFile::parameter_set(std::int64_t number) {
     // Most generations have those of the one before.
     if (read_parameters_ && read_parameters_number_ == number) {
         return *read_parameters_;
@@ -1004,10 +1004,10 @@ Result<simulation::ParameterSet> RunFile::parameter_set(std::int64_t number) {
         return bad();
     }
     (void)reader.integer();
-    simulation::ParameterSet set;
+    parameters::ParameterSet set;
     set.revision = reader.natural();
-    const auto active = simulation::parse_experiment(reader.text());
-    const auto requested = simulation::parse_experiment(reader.text());
+    const auto active = parameters::parse_experiment(reader.text());
+    const auto requested = parameters::parse_experiment(reader.text());
     if (!reader.sound() || !active || !requested) {
         return bad();
     }
@@ -1582,7 +1582,7 @@ void RunFile::write(const JournalEntry& entry) {
         .finish();
 }
 
-std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
+std::int64_t RunFile::number_of(const parameters::ParameterSet& parameters) {
     if (parameter_sets_ == 0) {
         parameter_sets_ = database_.number("SELECT max(number) FROM parameters");
     }
@@ -1590,7 +1590,7 @@ std::int64_t RunFile::number_of(const simulation::ParameterSet& parameters) {
         last_parameters_->active == parameters.active && last_parameters_->requested == parameters.requested) {
         return parameter_sets_;
     }
-    using simulation::Written;
+    using parameters::Written;
     writers()
         .parameters.integer(++parameter_sets_)
         .natural(parameters.revision)

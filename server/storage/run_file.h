@@ -217,8 +217,8 @@ class RunFile {
     /// Adds the generations of a table of statistics that follow the last, or `first`, and come before `end`.
     base::Result<void> read_history(const char* table, std::uint64_t first, std::uint64_t end,
                                     simulation::World::History& history);
-    base::Result<simulation::ParameterSet> parameter_set(std::int64_t number);
-    std::int64_t number_of(const simulation::ParameterSet& parameters);
+    base::Result<parameters::ParameterSet> parameter_set(std::int64_t number);
+    std::int64_t number_of(const parameters::ParameterSet& parameters);
     /// What the database says has gone wrong, with the path.
     base::Refusal failure() const;
     base::Refusal damaged(const std::string& what) const;
@@ -229,9 +229,9 @@ class RunFile {
     RunIdentity identity_;
     std::int64_t format_ = format_version; // of the file
     std::unique_ptr<Writers> writers_;
-    std::optional<simulation::ParameterSet> last_parameters_; // written, under parameter_sets_
+    std::optional<parameters::ParameterSet> last_parameters_; // written, under parameter_sets_
     std::int64_t parameter_sets_ = 0;
-    std::optional<simulation::ParameterSet> read_parameters_; // last, under read_parameters_number_
+    std::optional<parameters::ParameterSet> read_parameters_; // last, under read_parameters_number_
     std::int64_t read_parameters_number_ = 0;
     bool marked_ = false; // there may be an end mark
     Thinning thinning_;

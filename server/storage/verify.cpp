@@ -37,7 +37,7 @@ using Stretch = std::vector<StoredGeneration>;
 /// Whether a generation can have begun so: the core relies on it. One that cannot is not what the generation before it
 /// gives, and is told as that.
 bool can_be_simulated(const StoredGeneration& generation) {
-    const simulation::Parameters& parameters = generation.opening.parameters.active;
+    const parameters::Parameters& parameters = generation.opening.parameters.active;
     const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
     return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
         return born.genes.cols() == parameters.population_size &&
@@ -125,7 +125,7 @@ class StretchCheck {
         } else {
             // What a fork began with, nothing in its file gives again but what was asked for.
             const StoredCheckpoint* within = beginning();
-            const simulation::ParameterSet& set = within ? within->parameters : first.opening.parameters;
+            const parameters::ParameterSet& set = within ? within->parameters : first.opening.parameters;
             (void)same(agrees_, compare_requested(set.requested, identity.parameters));
         }
         if (done_.difference) {

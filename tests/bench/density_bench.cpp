@@ -16,14 +16,14 @@
 namespace evod::bench {
 namespace {
 
-using simulation::Parameters;
+using parameters::Parameters;
 
 constexpr std::uint32_t organisms = 20'000;
 
 /// The benchmark world with its own size and items, not any more by its population.
 Parameters unscaled_world() {
     Parameters parameters = bench_world(organisms);
-    const simulation::IslandPlan plan = simulation::island_plan(parameters);
+    const parameters::IslandPlan plan = parameters::island_plan(parameters);
     parameters.scale_with_population = false;
     parameters.island_width_px = plan.width_px;
     parameters.island_height_px = plan.height_px;
@@ -87,7 +87,7 @@ Parameters many_islands() {
 void ticks(benchmark::State& state, Parameters (*world_of)(), int measured_ticks) {
     constexpr int warm_up_ticks = 60; // as in workload_bench
     const Parameters parameters = world_of();
-    if (!simulation::validate(parameters).empty()) {
+    if (!parameters::validate(parameters).empty()) {
         throw std::runtime_error{"density_bench: no valid world"};
     }
     base::InlineExecutor executor;

@@ -1,7 +1,7 @@
 // The experiments that benchmarks run: files of experiments/, at any population.
 #pragma once
 
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
 #include <cstdint>
 #include <fstream>
@@ -12,7 +12,7 @@
 namespace evod::bench {
 
 /// The parameters of experiments/NAME.json; throws if there is no such file.
-inline simulation::Parameters experiment(const std::string& name) {
+inline parameters::Parameters experiment(const std::string& name) {
     const std::string path = EVOD_EXPERIMENTS "/" + name + ".json";
     std::ifstream file{path};
     if (!file) {
@@ -20,12 +20,12 @@ inline simulation::Parameters experiment(const std::string& name) {
     }
     std::ostringstream text;
     text << file.rdbuf();
-    return simulation::parse_experiment(text.str()).value().parameters;
+    return parameters::parse_experiment(text.str()).value().parameters;
 }
 
 /// The benchmark world: 46,080 px², 2.5 food and 1.5 poison to each organism.
-inline simulation::Parameters bench_world(std::uint32_t organisms) {
-    simulation::Parameters parameters = experiment("bench");
+inline parameters::Parameters bench_world(std::uint32_t organisms) {
+    parameters::Parameters parameters = experiment("bench");
     parameters.population_size = organisms;
     return parameters;
 }

@@ -74,7 +74,7 @@ class Laps {
 class OpenIsland {
   public:
     /// At the start of its first generation.
-    OpenIsland(const Parameters& parameters, const Island& start)
+    OpenIsland(const parameters::Parameters& parameters, const Island& start)
         : parameters_{parameters}
         , area_{start.area()}
         , chromosomes_{start.born().genes}
@@ -255,7 +255,7 @@ class OpenIsland {
         --alive_count_;
     }
 
-    Parameters parameters_;
+    parameters::Parameters parameters_;
     physics::Area area_;
     evolution::GeneMatrix chromosomes_;
     base::StateHash born_hash_, hash_;
@@ -275,7 +275,7 @@ class OpenIsland {
 };
 
 /// Adds every phase of the measured ticks of a fresh world.
-void measure(const Parameters& parameters, base::Seed seed, Times& times) {
+void measure(const parameters::Parameters& parameters, base::Seed seed, Times& times) {
     base::InlineExecutor executor;
     std::optional<World> world{std::in_place, parameters, seed};
     OpenIsland open{parameters, world->islands()[0]};

@@ -26,8 +26,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// The default world, with so many organisms and items on the ground of `ground` organisms.
-simulation::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std::uint32_t poison, double ground) {
-    simulation::Parameters parameters = experiment("default");
+parameters::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std::uint32_t poison, double ground) {
+    parameters::Parameters parameters = experiment("default");
     const double longer = std::sqrt(ground / parameters.population_size);
     parameters.island_width_px *= longer;
     parameters.island_height_px *= longer;
@@ -39,7 +39,7 @@ simulation::Parameters world_of(std::uint32_t organisms, std::uint32_t food, std
 
 struct Kind {
     const char* name;
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     int ticks_between = 3;
     int spread = 1; // so many different numbers of ticks, from ticks_between on
 };
@@ -108,7 +108,7 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
 }
 
 const bool registered = [] {
-    const simulation::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
+    const parameters::Parameters half = world_of(10'000, 5'000, 8'000, 10'000);
     for (const Kind& kind : {Kind{"half move", half}, Kind{"a tenth moves", world_of(2'300, 8'000, 12'700, 10'000)},
                              Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300, 3}}) {
         for (const auto& [name, compression] :

@@ -1,7 +1,7 @@
 // How long it takes to turn a generation over at a million organisms: the statistics of the one that ended, breeding,
 // new bodies, places, items, first state hashes.
 #include "server/base/elementary.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/simulation/placement.h"
 #include "server/simulation/world.h"
 #include "tests/support/thread_executor.h"
@@ -21,11 +21,11 @@ enum World : std::int64_t { Bench, Crowded, Obstructed };
 
 /// The benchmark's world; one of bodies of equal size that cover 0.4 of their island; one with a thousand obstacles and
 /// as many crates.
-simulation::Parameters parameters_of(std::int64_t world, std::int64_t organisms) {
+parameters::Parameters parameters_of(std::int64_t world, std::int64_t organisms) {
     std::ifstream file{EVOD_EXPERIMENTS "/bench.json"};
     std::ostringstream text;
     text << file.rdbuf();
-    simulation::Parameters parameters = simulation::parse_experiment(text.str()).value().parameters;
+    parameters::Parameters parameters = parameters::parse_experiment(text.str()).value().parameters;
     parameters.population_size = static_cast<std::uint32_t>(organisms);
     if (world == Crowded) {
         const double radius = parameters.body_size_max * parameters.radius_per_unit_px;
@@ -50,7 +50,7 @@ double seconds(const std::function<void()>& work) {
 /// Generations of two ticks. The time is that of turn_over() and of what the last tick takes longer than the first.
 void turnover(benchmark::State& state) {
     support::ThreadExecutor executor{static_cast<std::size_t>(state.range(2))};
-    simulation::Parameters parameters = parameters_of(state.range(0), state.range(1));
+    parameters::Parameters parameters = parameters_of(state.range(0), state.range(1));
     parameters.generation_s = 2 * parameters.tick_s;
     simulation::World world{parameters, base::Seed{1}};
     double breeding_and_placing = 0, ending = 0;

@@ -35,7 +35,7 @@ struct Options {
 };
 
 Measured run_evod(const Options& options) {
-    simulation::Parameters parameters = bench_world(options.organisms);
+    parameters::Parameters parameters = bench_world(options.organisms);
     parameters.island_count = options.islands;
     const auto executor = runtime::make_executor(options.threads);
     return measure(
@@ -48,7 +48,7 @@ Measured run_evod(const Options& options) {
 
 template <class Engine>
 Measured run_engine(const Options& options) {
-    const simulation::Parameters parameters = bench_world(options.organisms);
+    const parameters::Parameters parameters = bench_world(options.organisms);
     const auto executor = runtime::make_executor(1);
     return measure(
         options.window,

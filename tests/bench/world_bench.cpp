@@ -10,7 +10,7 @@
 namespace evod {
 namespace {
 
-void advance(benchmark::State& state, const simulation::Parameters& parameters) {
+void advance(benchmark::State& state, const parameters::Parameters& parameters) {
     base::InlineExecutor executor;
     simulation::World world{parameters, base::Seed{1}};
     std::uint64_t organism_ticks = 0;

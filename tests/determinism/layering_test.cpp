@@ -37,35 +37,38 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/base", {}},
     {"server/physics", {"server/base"}},
     {"server/evolution", {"server/base"}},
-    {"server/simulation", {"server/evolution", "server/physics", "server/base"}},
-    {"server/protocol", {"server/simulation", "server/evolution", "server/base", "proto/codec", "proto/evod"}},
+    {"server/parameters", {"server/evolution", "server/base"}},
+    {"server/simulation", {"server/parameters", "server/evolution", "server/physics", "server/base"}},
+    {"server/protocol",
+     {"server/simulation", "server/parameters", "server/evolution", "server/base", "proto/codec", "proto/evod"}},
     {"server/files", {"server/base"}},
     {"server/access", {"server/files", "server/base", "proto/evod"}},
     {"server/log", {}},
     {"server/metrics", {"proto/evod"}},
     {"server/storage",
-     {"server/protocol", "server/metrics", "server/log", "server/files", "server/simulation", "server/evolution",
-      "server/base", "proto/codec", "proto/evod"}},
-    {"server/tables", {"server/storage", "server/simulation", "server/evolution", "server/base", "proto/evod"}},
+     {"server/protocol", "server/metrics", "server/log", "server/files", "server/simulation", "server/parameters",
+      "server/evolution", "server/base", "proto/codec", "proto/evod"}},
+    {"server/tables",
+     {"server/storage", "server/simulation", "server/parameters", "server/evolution", "server/base", "proto/evod"}},
     {"server/runtime",
      {"server/tables", "server/storage", "server/protocol", "server/metrics", "server/log", "server/simulation",
-      "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod",
+      "server/parameters", "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod",
       "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/console",
      {"server/access", "server/runtime", "server/tables", "server/storage", "server/protocol", "server/files",
-      "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/codec",
-      "proto/evod"}},
+      "server/simulation", "server/parameters", "server/evolution", "server/physics", "server/base",
+      "proto/command_line", "proto/codec", "proto/evod"}},
     {"server/streaming",
-     {"server/runtime", "server/protocol", "server/simulation", "server/physics", "server/base", "proto/codec",
-      "proto/evod"}},
+     {"server/runtime", "server/protocol", "server/simulation", "server/parameters", "server/physics", "server/base",
+      "proto/codec", "proto/evod"}},
     {"server/network",
      {"server/access", "server/streaming", "server/runtime", "server/tables", "server/storage", "server/protocol",
-      "server/metrics", "server/log", "server/simulation", "server/evolution", "server/base", "proto/codec",
-      "proto/evod"}},
+      "server/metrics", "server/log", "server/simulation", "server/parameters", "server/evolution", "server/base",
+      "proto/codec", "proto/evod"}},
     {"server", // main.cpp knows everyone
      {"server/network", "server/console", "server/access", "server/log", "server/runtime", "server/storage",
-      "server/protocol", "server/simulation", "server/evolution", "server/physics", "server/base", "proto/command_line",
-      "proto/codec", "proto/evod"}},
+      "server/protocol", "server/simulation", "server/parameters", "server/evolution", "server/physics", "server/base",
+      "proto/command_line", "proto/codec", "proto/evod"}},
     {"proto/command_line", {}},
     {"proto/codec", {"proto/evod"}},
     {"client/core", {"proto/command_line", "proto/codec", "proto/evod"}},
@@ -154,7 +157,7 @@ const std::vector<Source>& sources() {
 
 bool is_core(const Source& source) {
     return source.folder == "server/base" || source.folder == "server/physics" || source.folder == "server/evolution" ||
-           source.folder == "server/simulation";
+           source.folder == "server/parameters" || source.folder == "server/simulation";
 }
 
 TEST(Layering, FindsTheSources) {

@@ -1,7 +1,7 @@
 #include "tests/determinism/scenarios.h"
 
 #include "server/base/assert.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
 #include <ostream>
 
@@ -119,8 +119,8 @@ const std::vector<Scenario>& all() {
     return scenarios;
 }
 
-simulation::Parameters parameters_of(std::string_view experiment) {
-    auto parsed = simulation::parse_experiment(experiment);
+parameters::Parameters parameters_of(std::string_view experiment) {
+    auto parsed = parameters::parse_experiment(experiment);
     if (!parsed) {
         std::fputs(to_text(parsed.error()).c_str(), stderr);
     }
@@ -142,9 +142,9 @@ void Play::advance(base::Executor& executor) {
             continue;
         }
         // What the text names is what is assigned, whatever value it has by default.
-        std::vector<simulation::Assignment> assignments;
-        const simulation::Parameters values = parameters_of(change.parameters);
-        for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
+        std::vector<parameters::Assignment> assignments;
+        const parameters::Parameters values = parameters_of(change.parameters);
+        for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
             if (change.parameters.find("\"" + std::string{description.name} + "\":") != std::string_view::npos) {
                 assignments.push_back({std::string{description.name}, description.get(values)});
             }

@@ -31,7 +31,7 @@ void PrintTo(const Scenario& scenario, std::ostream* out); // for the names of t
 const std::vector<Scenario>& all();
 
 /// The parameters of a text as in an experiment file; the text must be right.
-simulation::Parameters parameters_of(std::string_view experiment);
+parameters::Parameters parameters_of(std::string_view experiment);
 
 /// A scenario under way, as the only world of a laboratory.
 class Play {

@@ -12,7 +12,7 @@ namespace {
 using namespace evod;
 
 simulation::World beginning() {
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     parameters.population_size = 3;
     parameters.island_count = 2;
     parameters.crate_count = 1;

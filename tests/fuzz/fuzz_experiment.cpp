@@ -1,10 +1,10 @@
 // Any text as an experiment file: valid parameters, which are written and read back the same, or a refusal.
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
 #include <cstdlib>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    using namespace evod::simulation;
+    using namespace evod::parameters;
     const auto experiment = parse_experiment({reinterpret_cast<const char*>(data), size});
     if (!experiment) {
         return 0;

@@ -20,12 +20,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (command) {
             // What the core is given must be right in itself.
             if (const auto* create = std::get_if<simulation::CreateWorld>(&*command)) {
-                if (!simulation::is_world_name(create->name) || !simulation::validate(create->parameters).empty()) {
+                if (!simulation::is_world_name(create->name) || !parameters::validate(create->parameters).empty()) {
                     std::abort();
                 }
             }
             if (const auto* set = std::get_if<simulation::SetParameters>(&*command)) {
-                (void)simulation::assign({}, set->assignments);
+                (void)parameters::assign({}, set->assignments);
             }
             return 0;
         }

@@ -6,7 +6,7 @@
 // An action is a byte for what (low half) and who (high half), the bytes it takes, and one for how it goes on.
 #include "server/log/log.h"
 #include "server/network/session.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 #include "tests/fuzz/script.h"
 #include "tests/fuzz/sound_picture.h"
 #include "tests/fuzz/watched_server.h"

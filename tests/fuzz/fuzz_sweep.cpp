@@ -6,9 +6,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod;
     const std::string_view text{reinterpret_cast<const char*>(data), size};
-    const console::LoadExperiment load = [](const std::string& path) -> base::Result<simulation::Experiment> {
+    const console::LoadExperiment load = [](const std::string& path) -> base::Result<parameters::Experiment> {
         if (path == "../default.json") {
-            return simulation::Experiment{};
+            return parameters::Experiment{};
         }
         return refusal(base::RefusalCode::NotFound, path + ": there is none");
     };
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         std::abort();
     }
     for (std::size_t cell = 0; cell < sweep->cells.size(); ++cell) {
-        const simulation::Parameters parameters = sweep->parameters_of(cell);
+        const parameters::Parameters parameters = sweep->parameters_of(cell);
         if (!validate(parameters).empty()) {
             std::abort();
         }

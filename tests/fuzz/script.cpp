@@ -1,6 +1,6 @@
 #include "tests/fuzz/script.h"
 
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include <google/protobuf/descriptor.h>
 
@@ -54,7 +54,7 @@ std::string text_for(const FieldDescriptor& field, Script& script) {
     if (field.containing_type()->name() != "ParameterAssignment") {
         return script.one_of(texts);
     }
-    const auto parameters = simulation::parameter_registry();
+    const auto parameters = parameters::parameter_registry();
     const std::size_t wanted = script.take() % (parameters.size() + 1);
     return wanted < parameters.size() ? std::string{parameters[wanted].name} : "none";
 }

@@ -55,7 +55,7 @@ constexpr Bound bounds[] = {{"population_size", 8},    {"island_count", 3},     
                             {"tournament_size", 8},    {"scale_with_population", 0}, {"island_width_px", 4000},
                             {"island_height_px", 4000}};
 
-bool beyond(const Bound& bound, const simulation::ParameterValue& value) {
+bool beyond(const Bound& bound, const parameters::ParameterValue& value) {
     return std::visit(
         [&](const auto& given) {
             if constexpr (std::is_arithmetic_v<std::decay_t<decltype(given)>>) {
@@ -70,10 +70,10 @@ bool beyond(const Bound& bound, const simulation::ParameterValue& value) {
 bool too_large(const simulation::Command& command) {
     return std::ranges::any_of(bounds, [&](const Bound& bound) {
         if (const auto* create = std::get_if<simulation::CreateWorld>(&command)) {
-            return beyond(bound, simulation::find_parameter(bound.parameter)->get(create->parameters));
+            return beyond(bound, parameters::find_parameter(bound.parameter)->get(create->parameters));
         }
         const auto* set = std::get_if<simulation::SetParameters>(&command);
-        return set != nullptr && std::ranges::any_of(set->assignments, [&](const simulation::Assignment& assignment) {
+        return set != nullptr && std::ranges::any_of(set->assignments, [&](const parameters::Assignment& assignment) {
                    return assignment.name == bound.parameter && beyond(bound, assignment.value);
                });
     });

@@ -8,7 +8,7 @@ namespace evod::bench {
 
 class EvodScene {
   public:
-    EvodScene(const simulation::Parameters& parameters, base::Seed seed) : world_{parameters, seed} {}
+    EvodScene(const parameters::Parameters& parameters, base::Seed seed) : world_{parameters, seed} {}
 
     std::uint64_t alive_count() const { return world_.alive_count(); }
     void advance_tick(base::Executor& executor) { world_.advance_tick(executor); }

@@ -9,7 +9,7 @@
 namespace evod::bench {
 namespace {
 
-Model model_of(const simulation::Parameters& p) {
+Model model_of(const parameters::Parameters& p) {
     return {.tick_s = p.tick_s,
             .damping = std::pow(p.damping, 60 * p.tick_s),
             .restitution = p.restitution,
@@ -35,8 +35,8 @@ std::tuple<double, double> row_and_column(const Vector& place) {
 } // namespace
 
 StartState start_state(const simulation::World& world) {
-    const simulation::Parameters& parameters = world.parameters().active;
-    EVOD_ASSERT(parameters.flee_rule == simulation::FleeRule::Nearer);
+    const parameters::Parameters& parameters = world.parameters().active;
+    EVOD_ASSERT(parameters.flee_rule == parameters::FleeRule::Nearer);
     EVOD_ASSERT(parameters.respawn && parameters.respawn_s == 0);
     EVOD_ASSERT(parameters.obstacle_count + parameters.crate_count == 0);
     const simulation::Island& island = world.islands()[0];

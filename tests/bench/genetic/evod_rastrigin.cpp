@@ -16,9 +16,9 @@
 namespace evod::bench {
 namespace {
 
-simulation::Parameters rastrigin_parameters(std::uint32_t population) {
-    simulation::Parameters p;
-    p.fitness = simulation::FitnessFunction::Rastrigin;
+parameters::Parameters rastrigin_parameters(std::uint32_t population) {
+    parameters::Parameters p;
+    p.fitness = parameters::FitnessFunction::Rastrigin;
     p.population_size = population;
     p.population_model = evolution::PopulationModel::Generational;
     p.elite_count = 1;

@@ -14,8 +14,8 @@
 namespace evod::console {
 namespace {
 
-simulation::Parameters small_world() {
-    simulation::Parameters world;
+parameters::Parameters small_world() {
+    parameters::Parameters world;
     world.population_size = 12;
     world.island_count = 2;
     world.generation_s = 2;

@@ -10,12 +10,12 @@
 namespace evod::console {
 namespace {
 
-using simulation::Parameters;
+using parameters::Parameters;
 
 std::string changes(const Parameters& world, ControlKind kind) {
     const Control control = control_of(world, kind);
     EXPECT_EQ(control.cannot_differ, "");
-    EXPECT_TRUE(simulation::validate(control.parameters).empty());
+    EXPECT_TRUE(parameters::validate(control.parameters).empty());
     return changes_between(world, control.parameters);
 }
 
@@ -43,10 +43,10 @@ TEST(Controls, RandomSelectionLeavesNothingToTheFitness) {
 }
 
 TEST(Controls, HaveTheWorldsScheduleButForWhatMakesThem) {
-    simulation::Schedule schedule;
+    parameters::Schedule schedule;
     schedule.add(30, {"mutation_chance", 0.05});
     schedule.add(40, {"food_count", 5u});
-    const auto count = [](const simulation::Schedule& s, std::uint64_t generation) { return s.at(generation).size(); };
+    const auto count = [](const parameters::Schedule& s, std::uint64_t generation) { return s.at(generation).size(); };
     EXPECT_EQ(schedule_of(schedule, ControlKind::ShuffledFitness), schedule);
     EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 30), 0u);
     EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 40), 1u);
@@ -69,11 +69,11 @@ TEST(Controls, EveryParameterThatMakesOneIsKnown) {
     world.rearranging = evolution::Rearranging::Swap;
     for (const ControlKind kind : all_controls) {
         const Control control = control_of(world, kind);
-        for (const simulation::ParameterDescription& description : simulation::parameter_registry()) {
+        for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
             if (description.get(control.parameters) == description.get(world)) {
                 continue;
             }
-            simulation::Schedule schedule;
+            parameters::Schedule schedule;
             schedule.add(2, {std::string{description.name}, description.get(world)});
             EXPECT_TRUE(matters(schedule, kind)) << control.name << " changes " << description.name;
             EXPECT_FALSE(schedule_of(schedule, kind).holds(description.name));
@@ -87,7 +87,7 @@ TEST(Controls, RandomSelectionBreedsTheSameWhateverTheFitness) {
     for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
                              evolution::PopulationModel::SteadyState}) {
         Parameters parameters;
-        parameters.fitness = simulation::FitnessFunction::GeneSum;
+        parameters.fitness = parameters::FitnessFunction::GeneSum;
         parameters.population_model = model;
         parameters.replaced_count = 10;
         parameters.elite_count = 4;
@@ -145,7 +145,7 @@ TEST(Controls, SayWhereTheWorldIsTheControlAlready) {
     EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "poison_harm is 0 already");
     world.poison_count = 0;
     EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "there is no poison");
-    world.fitness = simulation::FitnessFunction::Rastrigin;
+    world.fitness = parameters::FitnessFunction::Rastrigin;
     EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "the fitness is a function of the chromosome: nobody eats");
 }
 

@@ -11,12 +11,12 @@
 namespace evod::console {
 namespace {
 
-using simulation::ParameterValue;
+using parameters::ParameterValue;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-base::Result<simulation::Experiment> none(const std::string& path) {
+base::Result<parameters::Experiment> none(const std::string& path) {
     return refusal(base::RefusalCode::NotFound, path + ": cannot be read");
 }
 
@@ -38,7 +38,7 @@ std::vector<std::string> column(const Sweep& sweep, std::string_view name) {
     for (std::size_t i = 0; i < sweep.swept.size(); ++i) {
         if (sweep.swept[i]->name == name) {
             for (const auto& cell : sweep.cells) {
-                values.push_back(simulation::to_text(cell[i]));
+                values.push_back(parameters::to_text(cell[i]));
             }
         }
     }
@@ -55,12 +55,12 @@ TEST(SweepFile, AGridIsEveryCombinationTheLastParameterFirst) {
     EXPECT_THAT(column(sweep, "mutate_survivors"),
                 ElementsAre("true", "true", "false", "false", "true", "true", "false", "false"));
     EXPECT_EQ(column(sweep, "selection")[3], "roulette");
-    const simulation::Parameters last = sweep.parameters_of(7);
+    const parameters::Parameters last = sweep.parameters_of(7);
     EXPECT_EQ(last.selection, evolution::SelectionMethod::Tournament);
     EXPECT_FALSE(last.mutate_survivors);
     EXPECT_EQ(last.food_count, 7u);
     EXPECT_EQ(last.generation_limit, 3u);
-    EXPECT_EQ(last.population_size, simulation::Parameters{}.population_size);
+    EXPECT_EQ(last.population_size, parameters::Parameters{}.population_size);
 }
 
 TEST(SweepFile, ARangeHasBothItsEndsAndEvenSteps) {
@@ -101,7 +101,7 @@ TEST(SweepFile, AnExperimentsScheduleGivesWayToWhatIsSwept) {
         "mutation_step": {"10": 5}, "generation_limit": {"1": 9, "4": 12}},
         "grid": {"mutation_chance": [0.1, 0.3]}, "generations": 40})");
     ASSERT_EQ(sweep.cells.size(), 2u);
-    const simulation::Schedule schedule = sweep.schedule_of(1);
+    const parameters::Schedule schedule = sweep.schedule_of(1);
     EXPECT_FALSE(schedule.holds("mutation_chance"));
     EXPECT_FALSE(schedule.holds("generation_limit")) << "generations takes its place";
     ASSERT_EQ(schedule.at(10).size(), 1u);
@@ -161,9 +161,9 @@ TEST(SweepFile, AnExperimentIsLoadedByItsPath) {
     const auto sweep =
         parse_sweep(R"({"experiment": "a \u0022b\u0022.json", "list": [{}]})", [&](const std::string& path) {
             asked = path;
-            simulation::Experiment experiment;
+            parameters::Experiment experiment;
             experiment.parameters.stagnation_limit = 3;
-            return base::Result<simulation::Experiment>{experiment};
+            return base::Result<parameters::Experiment>{experiment};
         });
     ASSERT_TRUE(sweep) << to_text(sweep.error());
     EXPECT_EQ(asked, "a \"b\".json");

@@ -19,7 +19,7 @@ using testing::StartsWith;
 
 Sweep two_cells(const std::string& more = "") {
     const auto sweep = parse_sweep(R"({"grid": {"food_count": [1, 2]}, "replicates": 2, "generations": 1)" + more + "}",
-                                   [](const std::string&) { return simulation::Experiment{}; });
+                                   [](const std::string&) { return parameters::Experiment{}; });
     EXPECT_TRUE(sweep) << to_text(sweep.error());
     return *sweep;
 }

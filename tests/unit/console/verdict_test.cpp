@@ -62,7 +62,7 @@ TEST(Verdict, SaysIfNoDifferenceCouldBeShown) {
 
 TEST(Verdict, IsNoIfNothingIsSelected) {
     std::vector<Weighed> all = weighed(0, 1, 9, 1, 9, 1, 0, 1);
-    simulation::Parameters world;
+    parameters::Parameters world;
     world.selection = evolution::SelectionMethod::Random;
     for (const std::size_t i : {0, 3}) {
         all[i] = {control_of(world, all_controls[i]), {}};
@@ -91,7 +91,7 @@ TEST(Verdict, TellsWhatMutationAndPoisonAreWorth) {
     EXPECT_THAT(sentences(-40, 0.06)[2], HasSubstr("is not shown"));
 
     std::vector<Weighed> all = weighed(99, 1e-5, 0, 1, 0, 1, 99, 1e-5);
-    simulation::Parameters still;
+    parameters::Parameters still;
     still.mutation_chance = 0;
     still.poison_count = 0;
     for (const std::size_t i : {1, 2}) {

@@ -168,7 +168,7 @@ TEST(Conversions, ABreedingIsToldCompletely) {
                                                   {1, evolution::ChangeKind::Clamp, 2, 3}},
                                       .genes = genes});
     }
-    simulation::Parameters parameters;
+    parameters::Parameters parameters;
     parameters.rearranging = evolution::Rearranging::Scramble;
     const v1::Breeding told = to_proto(record, parameters);
     auto unset = unset_in(told);
@@ -243,7 +243,7 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
     const simulation::EventKind scheduled = simulation::ParametersChanged{0, "", {"mutation_chance"}, 7};
     EXPECT_EQ(to_proto(simulation::Event{"w", {1, 2}, 3, scheduled}, laboratory).parameters_changed().by().kind(),
               v1::ACTOR_KIND_SCHEDULE);
-    const simulation::PlannedChange change{
+    const parameters::PlannedChange change{
         .id = 4, .at = {.generation = 9, .tick = {}}, .assignments = {{"food_health", 1.0}}, .by = by};
     const simulation::Applied planned{.world = "w", .tick = 3, .parameters = {}, .planned = change};
     for (const simulation::Command& command :
@@ -263,7 +263,7 @@ TEST_F(Lived, EveryKindOfEventIsTold) {
             EXPECT_EQ(field.find('.'), std::string::npos) << field;
         }
     }
-    const simulation::Applied applied{.world = "w", .tick = 3, .parameters = simulation::ParameterSet{}};
+    const simulation::Applied applied{.world = "w", .tick = 3, .parameters = parameters::ParameterSet{}};
     const simulation::Command commands[] = {simulation::CreateWorld{}, simulation::DeleteWorld{},
                                             simulation::ResetWorld{}, simulation::Pause{},
                                             simulation::SetParameters{"w", {{"food_health", 1.0}}, false, {}}};
@@ -293,7 +293,7 @@ TEST(Conversions, EveryStateOfTheDiskIsTold) {
 }
 
 TEST(Conversions, EveryParameterComesBackAsItWent) {
-    for (const auto& description : simulation::parameter_registry()) {
+    for (const auto& description : parameters::parameter_registry()) {
         v1::SetParameters message;
         auto& assignment = *message.add_parameters();
         assignment.set_name(std::string{description.name});
@@ -304,7 +304,7 @@ TEST(Conversions, EveryParameterComesBackAsItWent) {
         ASSERT_EQ(made.size(), 1);
         EXPECT_EQ(made[0].name, description.name);
         EXPECT_EQ(made[0].value, description.default_value()) << description.name;
-        EXPECT_FALSE(simulation::fault_of(made[0])) << description.name;
+        EXPECT_FALSE(parameters::fault_of(made[0])) << description.name;
 
         const auto told = to_proto(description);
         EXPECT_NE(told.kind(), v1::PARAMETER_KIND_UNSPECIFIED);
@@ -314,19 +314,19 @@ TEST(Conversions, EveryParameterComesBackAsItWent) {
 }
 
 TEST(Conversions, ASetTellsWhatHoldsAndWhatWaits) {
-    simulation::ParameterSet set;
+    parameters::ParameterSet set;
     set.requested.population_size = 60;
     set.revision = 9;
     const auto told = to_proto(set);
     EXPECT_EQ(told.revision(), 9);
-    EXPECT_EQ(static_cast<std::size_t>(told.parameters_size()), simulation::parameter_registry().size());
+    EXPECT_EQ(static_cast<std::size_t>(told.parameters_size()), parameters::parameter_registry().size());
     for (const auto& state : told.parameters()) {
         EXPECT_EQ(state.has_pending(), state.name() == "population_size") << state.name();
     }
 }
 
 TEST(Conversions, AScheduleComesBackAsItWent) {
-    simulation::Schedule schedule;
+    parameters::Schedule schedule;
     schedule.add(3, {"mutation_chance", 0.05});
     schedule.add(3, {"population_size", 70u});
     schedule.add(9, {"selection", std::string{"tournament"}});

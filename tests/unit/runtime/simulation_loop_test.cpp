@@ -178,7 +178,7 @@ TEST_F(Loop, FullSpeedComesInSlices) {
 TEST_F(Loop, ASliceEndsWhenMailComes) {
     // The clock stands still, so nothing but mail ends the slice: it is sent by the events of the first generation.
     auto create_other = create("quick", 2);
-    create_other.parameters.fitness = simulation::FitnessFunction::GeneSum;
+    create_other.parameters.fitness = parameters::FitnessFunction::GeneSum;
     bool sent = false;
     SimulationLoop other{mailbox,
                          demand,
@@ -565,7 +565,7 @@ TEST_F(Loop, EventsComeAsTheyHappen) {
 // ---- determinism -----------------------------------------------------------------------------------------------
 
 /// What the worlds below are told, at which ticks.
-simulation::Assignment change_at(std::uint64_t tick) {
+parameters::Assignment change_at(std::uint64_t tick) {
     return {tick % 2 ? "food_health" : "mutation_chance", tick % 2 ? 20.0 + static_cast<double>(tick) / 10 : 0.5};
 }
 constexpr std::uint64_t changes[] = {7, 40, 41, 90};
@@ -587,7 +587,7 @@ base::StateHash hash_of_a_world_advanced_directly() {
             world.advance_tick(executor);
         }
         if (at != last_tick) {
-            world.request_parameters(*simulation::assign(world.parameters().requested, std::vector{change_at(at)}));
+            world.request_parameters(*parameters::assign(world.parameters().requested, std::vector{change_at(at)}));
         }
     }
     return world.hash();
@@ -823,7 +823,7 @@ class LoopWithADisk : public Loop {
         auto crowd = create("crowd", 2);
         crowd.parameters.population_size = 10'000;
         crowd.parameters.scale_with_population = true;
-        crowd.parameters.fitness = simulation::FitnessFunction::GeneSum;
+        crowd.parameters.fitness = parameters::FitnessFunction::GeneSum;
         send(crowd);
         send(simulation::SetSpeed{"crowd", {}});
     }

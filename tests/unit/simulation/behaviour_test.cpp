@@ -43,8 +43,11 @@ class OneOrganism : public testing::Test {
         genes << 50, 1e6f, 100, 100, 500, 500; // sees the whole island and flees without fail
         bodies.add({.id = 0, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
         living.resize(1);
-        living.put(0, genes, Parameters{});
-        rules = {.flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 2};
+        living.put(0, genes, parameters::Parameters{});
+        rules = {.flee_rule = parameters::FleeRule::Nearer,
+                 .lookahead_s = 0.3f,
+                 .certain_impulse = 200,
+                 .force_per_unit = 2};
     }
     void put_beside(const Items& items, double dx, double dy) { // item − organism
         bodies.x[0] = items.all()[0].x - to_units(dx);
@@ -124,7 +127,7 @@ TEST_F(OneOrganism, GoesForFoodThatIsNearerThanPoisonUnlessItFleesAlways) {
     ASSERT_GT(std::hypot(dx_to(poison), dy_to(poison)), 3);
     living.impulse[0] = 200;
     expect_along(choose(food, poison), 1, 2, 400);
-    rules.flee_rule = FleeRule::Always;
+    rules.flee_rule = parameters::FleeRule::Always;
     expect_along(choose(food, poison), -dx_to(poison), -dy_to(poison), 400);
     living.poison_radius[0] = 0; // not seen
     expect_along(choose(food, poison), 1, 2, 400);
@@ -137,7 +140,7 @@ TEST_F(OneOrganism, GoesForFoodThatIsJustAsFarAsPoison) {
     living.impulse[0] = 200;
     put_beside(food, 7, -3);
     expect_along(choose(food, twin), 7, -3, 400);
-    rules.flee_rule = FleeRule::Always;
+    rules.flee_rule = parameters::FleeRule::Always;
     expect_along(choose(food, twin), -7, 3, 400);
 }
 
@@ -166,7 +169,7 @@ TEST_F(OneOrganism, FleesWithChanceImpulseOverTheCertainOne) {
 TEST_F(OneOrganism, ThatDoesNotFleeSteersToFoodItSees) {
     living.impulse[0] = 0.001f; // almost never flees
     rules.lookahead_s = 0;
-    rules.flee_rule = FleeRule::Always;
+    rules.flee_rule = parameters::FleeRule::Always;
     put_beside(food, 6, 8);
     expect_along(choose(food, poison), 6, 8, 0.002f);
 }
@@ -213,7 +216,7 @@ TEST_F(OneOrganism, DrawsDependOnItsIdNotOnItsPlaceInMemory) {
         genes << 50, 100, 100, 100, 0, 0;
         bodies.add({.id = id, .x = to_units(50.0), .y = to_units(50.0), .radius = 10, .mass = 1});
         living.resize(id + 1);
-        living.put(id, genes, Parameters{});
+        living.put(id, genes, parameters::Parameters{});
     }
     choose(none, none, 9);
     const ChosenForces before = forces;

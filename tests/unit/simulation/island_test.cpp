@@ -39,7 +39,7 @@ class SmallIsland : public testing::Test {
     float health(std::uint32_t id) { return island.living().health[island.body_of(id).value()]; }
     std::vector<double> fitness() { return island.fitness(parameters, now, executor); }
 
-    Parameters parameters;
+    parameters::Parameters parameters;
     Island island{base::Seed{1}, 0};
     std::uint32_t now = 0;
     base::InlineExecutor executor;
@@ -126,7 +126,7 @@ TEST_F(SmallIsland, CutsHealthToTheCapAtAMealAndOnlyThen) {
 }
 
 TEST(LossPerTick, IsTheRateTimesThePricesOfTheGenes) {
-    Parameters p;
+    parameters::Parameters p;
     p.normal_speed_cost = 0.1;
     p.impulse_cost = 0.2;
     p.base_health_cost = 0.5;
@@ -275,7 +275,7 @@ TEST(Rastrigin, IsGreatestWhereEveryGeneIs150AndFollowsItsFormula) {
 }
 
 TEST_F(SmallIsland, OfAFunctionOfTheChromosomeHasNoBodies) {
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     begin({genes_of(1, 2, 3, 4, 5, 6), genes_of(10, 20, 30, 40, 50, 60)});
     EXPECT_EQ(island.bodies().size(), 0u);
     EXPECT_EQ(fitness(), (std::vector<double>{21, 210}));

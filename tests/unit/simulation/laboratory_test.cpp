@@ -39,7 +39,7 @@ class OneWorld : public testing::Test {
         EXPECT_FALSE(result.has_value());
         return result ? RefusalCode::Unimplemented : result.error().code;
     }
-    SetParameters set(std::vector<Assignment> assignments) {
+    SetParameters set(std::vector<parameters::Assignment> assignments) {
         return {.world = "w", .assignments = std::move(assignments), .dry_run = false, .expected_revision = {}};
     }
     template <class Kind>
@@ -51,7 +51,7 @@ class OneWorld : public testing::Test {
         return count;
     }
 
-    Parameters parameters;
+    parameters::Parameters parameters;
     Laboratory laboratory;
     base::InlineExecutor executor;
 };
@@ -266,7 +266,7 @@ TEST_F(OneWorld, AGivenFirstPopulationIsBegunWithAgainAsLongAsItCanBe) {
 }
 
 TEST_F(OneWorld, RefusesParametersWholeAndChangesNothing) {
-    const Parameters before = entry().world.parameters().requested;
+    const parameters::Parameters before = entry().world.parameters().requested;
     EXPECT_EQ(code_of(set({{"food_health", 30.0}, {"mutation_chance", 2.0}})), RefusalCode::InvalidArgument);
     SetParameters stale = set({{"food_health", 30.0}});
     stale.expected_revision = 5;
@@ -318,7 +318,7 @@ TEST_F(OneWorld, TellsOfEachGeneration) {
 
 TEST(Laboratory, CreatesUpToItsLimitAndDeletes) {
     Laboratory laboratory;
-    Parameters small;
+    parameters::Parameters small;
     small.population_size = 1;
     const auto create = [&](const std::string& name) {
         return laboratory.apply(CreateWorld{name, small, base::Seed{1}, {}});
@@ -372,7 +372,7 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         base::RandomStream random{base::RandomKey{base::Seed{seed}, base::Purpose::ScenarioTest, 0, 0}, 0};
         Laboratory laboratory;
-        Parameters p;
+        parameters::Parameters p;
         p.population_size = 12;
         p.generation_s = 0.2;
         p.island_count = 1 + random.below(2);
@@ -380,26 +380,26 @@ TEST(Laboratory, GoesOnWhateverAcceptedParametersItIsGivenAtWhateverTick) {
         ASSERT_TRUE(laboratory.apply(simulation::Run{"w", {}}).has_value());
         Entry& entry = *laboratory.entries().front();
         for (int tick = 0; tick < 200; ++tick) {
-            std::vector<Assignment> assignments;
+            std::vector<parameters::Assignment> assignments;
             for (std::uint32_t i = 0; i < random.below(4); ++i) {
-                const auto& description =
-                    parameter_registry()[random.below(static_cast<std::uint32_t>(parameter_registry().size()))];
+                const auto& description = parameters::parameter_registry()[random.below(
+                    static_cast<std::uint32_t>(parameters::parameter_registry().size()))];
                 if (description.name == "island_count" || description.name == "generation_s") {
                     continue; // costly only
                 }
-                ParameterValue value;
-                if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
+                parameters::ParameterValue value;
+                if (const auto* real = std::get_if<parameters::RealParameter>(&description.kind)) {
                     const double now = real->get(entry.world.parameters().requested);
                     const double any = random.uniform(real->range.min, real->range.max);
                     value = random.chance(0.1)
                                 ? any
                                 : std::clamp(now * random.uniform(0.5, 2), real->range.min, real->range.max);
-                } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
+                } else if (const auto* count = std::get_if<parameters::CountParameter>(&description.kind)) {
                     value = std::clamp(random.below(40), count->range.min, count->range.max);
-                } else if (std::holds_alternative<FlagParameter>(description.kind)) {
+                } else if (std::holds_alternative<parameters::FlagParameter>(description.kind)) {
                     value.emplace<bool>(random.chance(0.5));
                 } else {
-                    const auto names = std::get<ChoiceParameter>(description.kind).names;
+                    const auto names = std::get<parameters::ChoiceParameter>(description.kind).names;
                     value = std::string{names[random.below(static_cast<std::uint32_t>(names.size()))]};
                 }
                 assignments.push_back({std::string{description.name}, std::move(value)});

@@ -26,7 +26,7 @@ struct Meadow {
                                  .restitution = 0.8f,
                                  .max_speed_px_s = 600};
     BehaviourRules rules{
-        .flee_rule = FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 1};
+        .flee_rule = parameters::FleeRule::Nearer, .lookahead_s = 0.3f, .certain_impulse = 200, .force_per_unit = 1};
     base::RandomKey key{base::Seed{4}, base::Purpose::Behaviour, 0, 1};
     base::InlineExecutor executor;
     physics::Stepper stepper;
@@ -36,11 +36,11 @@ struct Meadow {
 
     /// At rest; the id is its number among those added.
     void add_organism(physics::Coordinate x, physics::Coordinate y, const evolution::Chromosome& genes) {
-        const BodyShape shape = body_shape(genes(evolution::BodySize), Parameters{});
+        const BodyShape shape = body_shape(genes(evolution::BodySize), parameters::Parameters{});
         const auto id = static_cast<std::uint32_t>(bodies.size());
         bodies.add({.id = id, .x = x, .y = y, .radius = shape.radius_px, .mass = shape.mass_kg});
         living.resize(bodies.size());
-        living.put(id, genes, Parameters{});
+        living.put(id, genes, parameters::Parameters{});
     }
 
     void put_items(const std::vector<Place>& foods, const std::vector<Place>& poisons, float radius_px, bool respawn) {

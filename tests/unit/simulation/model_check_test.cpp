@@ -41,7 +41,7 @@ struct Series {
 };
 
 History history_of(SelectionMethod selection, std::size_t generations, base::Seed seed) {
-    Parameters parameters;
+    parameters::Parameters parameters;
     parameters.selection = selection;
     World world{parameters, seed};
     base::InlineExecutor executor;

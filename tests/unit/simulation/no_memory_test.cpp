@@ -54,7 +54,7 @@ class NoMemory : public testing::Test {
     }
 
     base::InlineExecutor executor;
-    Parameters parameters;
+    parameters::Parameters parameters;
     Laboratory laboratory;
 };
 
@@ -68,7 +68,7 @@ TEST_F(NoMemory, ChangesNothingForANewWorld) {
 
 TEST_F(NoMemory, ChangesNothingForAReset) {
     const std::uint64_t revision = world().parameters().revision;
-    const Parameters requested = world().parameters().requested;
+    const parameters::Parameters requested = world().parameters().requested;
     expect_nothing_changes_until_done(ResetWorld{"w", base::Seed{9}, {3, 4}});
     EXPECT_EQ(world().hash(), (World{requested, {9}}.hash()));
     EXPECT_EQ(world().moment().tick, 0u);

@@ -1,7 +1,7 @@
-#include "server/simulation/schedule.h"
+#include "server/parameters/schedule.h"
 
 #include "server/base/inline_executor.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/simulation/laboratory.h"
 #include "server/simulation/world.h"
 #include "tests/support/thread_executor.h"
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 class ScheduleTest : public testing::Test {
   protected:
     /// A world of twelve organisms, with generations of twelve ticks, unless `more` says otherwise.
-    static Experiment read(const std::string& more) {
+    static parameters::Experiment read(const std::string& more) {
         std::string text = "{" + more;
         for (const auto& [name, value] :
              {std::pair{"population_size", "12"}, {"generation_s", "0.2"}, {"island_count", "2"}}) {
@@ -30,11 +30,11 @@ class ScheduleTest : public testing::Test {
                 text += ", \"" + std::string{name} + "\": " + value;
             }
         }
-        const auto experiment = parse_experiment(text + "}");
+        const auto experiment = parameters::parse_experiment(text + "}");
         EXPECT_TRUE(experiment) << to_text(experiment.error());
-        return experiment ? *experiment : Experiment{};
+        return experiment ? *experiment : parameters::Experiment{};
     }
-    static World make(const Experiment& experiment, std::uint64_t seed = 5) {
+    static World make(const parameters::Experiment& experiment, std::uint64_t seed = 5) {
         return {experiment.parameters, base::Seed{seed}, {}, experiment.schedule};
     }
     void advance_to(World& world, std::uint64_t generation, std::uint64_t generation_tick) {
@@ -47,8 +47,9 @@ class ScheduleTest : public testing::Test {
             world.advance_tick(executor);
         }
     }
-    void set(World& world, const std::string& name, ParameterValue value) {
-        const auto requested = request_of(world.parameters(), std::vector{Assignment{name, std::move(value)}});
+    void set(World& world, const std::string& name, parameters::ParameterValue value) {
+        const auto requested =
+            parameters::request_of(world.parameters(), std::vector{parameters::Assignment{name, std::move(value)}});
         ASSERT_TRUE(requested) << to_text(requested.error());
         world.request_parameters(*requested);
     }
@@ -113,7 +114,7 @@ TEST_F(ScheduleTest, ComesToTheSameAsCommandsAtThoseTicks) {
 }
 
 TEST_F(ScheduleTest, GivesTheSameOnAnyNumberOfThreads) {
-    const Experiment experiment =
+    const parameters::Experiment experiment =
         read(R"("mutation_chance": {"2": 0.5}, "population_size": {"1": 12, "2": 200, "4": 20},
         "body_size_max": {"3": 150}, "selection": {"4": "tournament"})");
     World alone = make(experiment), many = make(experiment);
@@ -143,7 +144,7 @@ TEST_F(ScheduleTest, WhatNoLongerFitsIsLeftOutAndTold) {
     set(world, "impulse_max", 150.0);
     world.take_events();
     advance_to(world, 3, 1);
-    const Parameters& held = world.parameters().active;
+    const parameters::Parameters& held = world.parameters().active;
     EXPECT_EQ(held.impulse_min, 20);
     EXPECT_EQ(held.mutation_step, 15) << "all of it or nothing";
     const auto dropped = events<ChangeDropped>(world);
@@ -186,7 +187,7 @@ TEST_F(ScheduleTest, AResetBeginsWithItAgain) {
 }
 
 TEST_F(ScheduleTest, AResetThatCannotBeginSoIsRefused) {
-    const Experiment experiment = read(R"("impulse_min": {"1": 100, "2": 20})");
+    const parameters::Experiment experiment = read(R"("impulse_min": {"1": 100, "2": 20})");
     Laboratory laboratory;
     ASSERT_TRUE(laboratory.apply(CreateWorld{.name = "w",
                                              .parameters = experiment.parameters,
@@ -220,7 +221,7 @@ class PlannedTest : public ScheduleTest {
   protected:
     PlannedTest() { create(laboratory, R"("mutation_chance": 0.4)"); }
     static void create(Laboratory& in, const std::string& more) {
-        const Experiment experiment = read(more);
+        const parameters::Experiment experiment = read(more);
         ASSERT_TRUE(in.apply(CreateWorld{.name = "w",
                                          .parameters = experiment.parameters,
                                          .seed = base::Seed{5},
@@ -229,7 +230,8 @@ class PlannedTest : public ScheduleTest {
     }
     static World& world_of(Laboratory& in) { return (*in.find("w"))->world; }
     World& world() { return world_of(laboratory); }
-    static SetParameters set(std::string name, ParameterValue value, std::optional<PlannedMoment> at = {}) {
+    static SetParameters set(std::string name, parameters::ParameterValue value,
+                             std::optional<parameters::PlannedMoment> at = {}) {
         return {.world = "w",
                 .assignments = {{std::move(name), std::move(value)}},
                 .dry_run = false,
@@ -237,8 +239,10 @@ class PlannedTest : public ScheduleTest {
                 .at = at,
                 .by = "somebody"};
     }
-    static PlannedMoment generation(std::uint64_t generation) { return {.generation = generation, .tick = {}}; }
-    static PlannedMoment tick(std::uint64_t tick) { return {.generation = {}, .tick = tick}; }
+    static parameters::PlannedMoment generation(std::uint64_t generation) {
+        return {.generation = generation, .tick = {}};
+    }
+    static parameters::PlannedMoment tick(std::uint64_t tick) { return {.generation = {}, .tick = tick}; }
     std::uint64_t plan(const SetParameters& command) {
         const auto applied = laboratory.apply(command);
         EXPECT_TRUE(applied) << to_text(applied.error());
@@ -279,7 +283,7 @@ TEST_F(PlannedTest, AtAGenerationItIsAsIfItWereScheduled) {
 
 TEST_F(PlannedTest, AtATickItIsAsIfTheCommandCameThere) {
     for (const std::uint64_t at : {1u, 11u, 12u, 13u, 30u}) { // a generation is over after 12
-        for (const auto& [name, value] : {std::pair<std::string, ParameterValue>{"food_health", 60.0},
+        for (const auto& [name, value] : {std::pair<std::string, parameters::ParameterValue>{"food_health", 60.0},
                                           {"mutation_chance", 0.0},
                                           {"population_size", 17u}}) {
             Laboratory planned, commanded;
@@ -338,7 +342,7 @@ TEST_F(PlannedTest, CanBeCancelledUntilItIsDue) {
     const auto cancelled = laboratory.apply(CancelChange{"w", second});
     ASSERT_TRUE(cancelled) << to_text(cancelled.error());
     EXPECT_EQ(cancelled->planned->id, second);
-    EXPECT_EQ(cancelled->planned->assignments[0].value, ParameterValue{2.0});
+    EXPECT_EQ(cancelled->planned->assignments[0].value, parameters::ParameterValue{2.0});
     const auto again = refused(CancelChange{"w", second});
     EXPECT_EQ(again.code, base::RefusalCode::NotFound);
     EXPECT_EQ(again.violations[0].allowed, std::to_string(first));
@@ -368,7 +372,7 @@ TEST_F(PlannedTest, WhatCannotBePlannedIsRefusedAndNothingWaits) {
     other.dry_run = true;
     EXPECT_EQ(plan(other), 0u) << "would be accepted";
     EXPECT_TRUE(world().planned().empty());
-    for (std::size_t i = 0; i < planned_changes_max; ++i) {
+    for (std::size_t i = 0; i < parameters::planned_changes_max; ++i) {
         plan(set("food_health", 1.0, tick(16 + i)));
     }
     EXPECT_EQ(refused(set("food_health", 1.0, tick(16))).code, base::RefusalCode::ResourceExhausted);

@@ -1,6 +1,6 @@
 // A tick allocates nothing once its working memory is warm.
 #include "server/base/inline_executor.h"
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/simulation/world.h"
 #include "tests/unit/simulation/counted_allocations.h"
 
@@ -12,7 +12,7 @@ namespace {
 class AWarmTick : public testing::TestWithParam<const char*> {};
 
 TEST_P(AWarmTick, AllocatesNothing) {
-    World world{parse_experiment(GetParam()).value().parameters, base::Seed{1}};
+    World world{parameters::parse_experiment(GetParam()).value().parameters, base::Seed{1}};
     base::InlineExecutor executor;
     // A generation, its turnover, and part of the next: everything has been as large as it gets.
     while (world.moment().generation < 2 || world.moment().generation_tick < 300) {

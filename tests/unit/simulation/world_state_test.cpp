@@ -20,17 +20,17 @@ namespace {
 
 using testing::HasSubstr;
 
-Parameters with(std::vector<Assignment> assignments) {
-    Parameters parameters;
+parameters::Parameters with(std::vector<parameters::Assignment> assignments) {
+    parameters::Parameters parameters;
     parameters.population_size = 60;
     parameters.generation_s = 8;
     parameters.food_count = 60;
     parameters.poison_count = 60;
-    return assign(parameters, assignments).value();
+    return parameters::assign(parameters, assignments).value();
 }
 
 /// Worlds that differ in what their state is made of.
-std::vector<Parameters> varied_worlds() {
+std::vector<parameters::Parameters> varied_worlds() {
     return {
         with({}),
         with({{"crate_count", 12u}, {"obstacle_count", 8u}, {"integrator", std::string{"explicit_euler"}}}),
@@ -69,12 +69,12 @@ class WorldStateTest : public testing::Test {
         return restored;
     }
     static void change_something(World& world, std::uint32_t choice) {
-        const std::vector<Assignment> changes[] = {
+        const std::vector<parameters::Assignment> changes[] = {
             {{"food_health", 5.0 + choice % 30}},
             {{"force_per_unit", 0.5 + choice % 3}},
             {{"population_size", 8 + choice % 9}, {"food_radius_min", 21.0}}, // for the next generation, and bounds
             {{"flee_rule", std::string{"always"}}}};
-        world.request_parameters(assign(world.parameters().requested, changes[choice / 64 % 4]).value());
+        world.request_parameters(parameters::assign(world.parameters().requested, changes[choice / 64 % 4]).value());
     }
 
     static std::vector<double> numbers(const std::vector<GenerationStatistics>& islands) {
@@ -93,7 +93,7 @@ class WorldStateTest : public testing::Test {
 TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
     std::mt19937 random{3};
     int over = 0, moments = 0;
-    for (const Parameters& parameters : varied_worlds()) {
+    for (const parameters::Parameters& parameters : varied_worlds()) {
         const bool large = parameters.population_size > 1000;
         const std::uint32_t ticks_max = large ? 150 : 700;
         for (int round = 0; round < (large ? 10 : 32); ++round) {
@@ -136,16 +136,17 @@ TEST_F(WorldStateTest, GoesOnAsTheWorldDidWhoseStateItWas) {
 }
 
 TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
-    Parameters parameters = with({{"generation_s", 1.0}, {"island_count", 2u}});
+    parameters::Parameters parameters = with({{"generation_s", 1.0}, {"island_count", 2u}});
     World world{parameters, base::Seed{2}};
     for (int tick = 0; tick < 120; ++tick) {
         world.advance_tick(executor);
     }
     ASSERT_TRUE(world.generation_over());
     // What the generation's statistics were made with is not what holds now.
-    world.request_parameters(assign(world.parameters().requested,
-                                    std::vector<Assignment>{{"base_health_min", 90.0}, {"base_health_max", 95.0}})
-                                 .value());
+    world.request_parameters(
+        parameters::assign(world.parameters().requested,
+                           std::vector<parameters::Assignment>{{"base_health_min", 90.0}, {"base_health_max", 95.0}})
+            .value());
     auto restored = again(world, world.state(executor), three_threads);
     ASSERT_TRUE(restored) << to_text(restored.error());
     EXPECT_TRUE(restored->generation_over());
@@ -158,7 +159,7 @@ TEST_F(WorldStateTest, ComesBackWhereAGenerationIsOver) {
 }
 
 TEST_F(WorldStateTest, WhatNoWorldCanBeInIsRefused) {
-    const Parameters parameters = with({{"crate_count", 3u}, {"respawn_s", 2.0}, {"poison_count", 200u}});
+    const parameters::Parameters parameters = with({{"crate_count", 3u}, {"respawn_s", 2.0}, {"poison_count", 200u}});
     World world{parameters, base::Seed{9}};
     for (int tick = 0; tick < 200; ++tick) {
         world.advance_tick(executor);

@@ -34,13 +34,13 @@ class WorldTest : public testing::Test {
             world.advance_tick(executor);
         } while (!world.generation_over());
     }
-    void request(World& world, std::vector<Assignment> assignments) {
-        const auto requested = assign(world.parameters().requested, assignments);
+    void request(World& world, std::vector<parameters::Assignment> assignments) {
+        const auto requested = parameters::assign(world.parameters().requested, assignments);
         ASSERT_TRUE(requested.has_value()) << to_text(requested.error());
         world.request_parameters(*requested);
     }
 
-    Parameters parameters;
+    parameters::Parameters parameters;
     base::InlineExecutor executor;
 };
 
@@ -183,7 +183,7 @@ TEST_F(WorldTest, LetsMigrantsGoOncePerEpochAndOnlyThen) {
 TEST_F(WorldTest, CarriesTheBestChromosomeRoundTheRing) {
     // Only the first island can have large genes; without migration no other would ever have any.
     parameters.island_count = 2;
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.migration = evolution::Topology::Ring;
     parameters.migration_epoch = 1;
     parameters.mutation_chance = 0;
@@ -208,7 +208,7 @@ TEST_F(WorldTest, AccountsForWhatItsGenesDidFromOneGenerationToTheNext) {
     // Of as many organisms that an island's are cut among threads; their number changes.
     parameters.island_count = 2;
     parameters.population_size = 20'000;
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.selection = evolution::SelectionMethod::Truncation;
     parameters.migration = evolution::Topology::Ring;
     parameters.migrant_count = 500;
@@ -286,7 +286,7 @@ TEST_F(WorldTest, BreedsByTheShuffledFitnessAndTellsTheTrueOne) {
 TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
     // All are survivors and nothing changes a chromosome, so everybody has that of a founder.
     parameters.island_count = 3;
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.migration = evolution::Topology::Ring;
     parameters.migration_epoch = 2;
     parameters.mutation_chance = 0;
@@ -333,7 +333,7 @@ TEST_F(WorldTest, KnowsTheFoundersOfItsFamiliesFromIslandToIsland) {
 TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
     parameters.population_size = 50;
     parameters.island_count = 2;
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.migration = evolution::Topology::Ring;
     parameters.migration_epoch = 3;
     parameters.mutation_chance = 0;
@@ -363,7 +363,7 @@ TEST_F(WorldTest, EveryFounderIsRightWhereNothingIsCrossed) {
 
 TEST_F(WorldTest, ChildrenHaveHalfTheirGenesOfTheirFounder) {
     parameters.population_size = 2'000;
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.mutation_chance = 0;
     for (const double chance : {0.0, 0.5, 1.0}) {
         parameters.crossover_chance = chance;
@@ -422,7 +422,7 @@ TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
     EXPECT_EQ(World::history_generations_kept_of(1), World::history_generations_kept);
     EXPECT_EQ(World::history_generations_kept_of(4096), 32u);
     EXPECT_EQ(World::history_generations_kept_of(10 * World::history_rows_kept), 1u);
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.population_size = 2;
     parameters.island_count = 2048;
     World world = make();
@@ -434,7 +434,7 @@ TEST_F(WorldTest, KeepsAsManyStatisticsAsMayBe) {
 }
 
 TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     World world = make();
     while (world.moment().generation < 1'005 || !world.generation_over()) {
         world.advance_tick(executor);
@@ -447,8 +447,8 @@ TEST_F(WorldTest, AForkForgetsWhatIsLongAgo) {
 }
 
 TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
-    const auto outcome_with = [&](std::vector<Assignment> assignments) {
-        World world{*assign(parameters, assignments), base::Seed{5}};
+    const auto outcome_with = [&](std::vector<parameters::Assignment> assignments) {
+        World world{*parameters::assign(parameters, assignments), base::Seed{5}};
         for (int generation = 0; generation < 50 && world.outcome() == evolution::Outcome::Running; ++generation) {
             run_generation(world);
         }
@@ -473,7 +473,7 @@ TEST_F(WorldTest, EndsByEachCriterionAndTellsWhich) {
 }
 
 TEST_F(WorldTest, OfAFunctionOfTheChromosomeTakesATickAGeneration) {
-    parameters.fitness = FitnessFunction::Rastrigin;
+    parameters.fitness = parameters::FitnessFunction::Rastrigin;
     World world = make();
     for (std::uint64_t tick = 1; tick <= 20; ++tick) {
         world.advance_tick(executor);
@@ -514,7 +514,7 @@ TEST_F(WorldTest, ReplacesEverythingAtUniformPlacesEachGeneration) {
 }
 
 TEST_F(WorldTest, GivesTheSameStatisticsOfManyOnAnyThreadCount) {
-    parameters.fitness = FitnessFunction::GeneSum;
+    parameters.fitness = parameters::FitnessFunction::GeneSum;
     parameters.population_size = 30'000;
     const auto statistics = [&](base::Executor& with) {
         World world = make();

@@ -446,7 +446,7 @@ TEST_F(CheckpointTest, ARunMayBeginWithOne) {
 }
 
 TEST_F(CheckpointTest, IsDueWhereSimulatingAgainWouldTakeLong) {
-    simulation::Parameters parameters = small_world();
+    parameters::Parameters parameters = small_world();
     parameters.generation_s = 1000;
     simulation::World world{parameters, {1}};
     world.advance_tick(executor);

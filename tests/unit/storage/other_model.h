@@ -12,7 +12,7 @@
 namespace evod::storage {
 
 /// Eight generations, of which 1, 4, 7 and the last are held.
-inline std::unique_ptr<RunFile> record_other_model(const std::string& path, const simulation::Parameters& parameters) {
+inline std::unique_ptr<RunFile> record_other_model(const std::string& path, const parameters::Parameters& parameters) {
     RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {7}, .parameters = parameters};
     identity.model_version = simulation::model_version + 1;
     auto file = *RunFile::create(path, identity, {.keep_every = 3});

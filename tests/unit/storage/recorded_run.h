@@ -48,8 +48,8 @@ inline void change(const std::string& path, const std::string& sql) {
 }
 
 /// A world that breeds soon and dies now and then: twelve organisms, generations of two seconds, two islands.
-inline simulation::Parameters small_world() {
-    simulation::Parameters parameters;
+inline parameters::Parameters small_world() {
+    parameters::Parameters parameters;
     parameters.population_size = 12;
     parameters.generation_s = 2;
     parameters.island_count = 2;
@@ -59,7 +59,7 @@ inline simulation::Parameters small_world() {
     return parameters;
 }
 
-inline v1::Request set_parameter(const std::string& name, simulation::ParameterValue value) {
+inline v1::Request set_parameter(const std::string& name, parameters::ParameterValue value) {
     v1::Request request;
     v1::ParameterAssignment& assignment = *request.mutable_set_parameters()->add_parameters();
     assignment.set_name(name);
@@ -71,9 +71,9 @@ class RecordedRun {
   public:
     /// folder, thread: outlive it.
     RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
-                simulation::FirstPopulation first_population = {}, const simulation::Schedule& schedule = {})
+                simulation::FirstPopulation first_population = {}, const parameters::Schedule& schedule = {})
         : recorder_{folder, thread} {
-        auto parameters = simulation::assign(small_world(), schedule.at(1));
+        auto parameters = parameters::assign(small_world(), schedule.at(1));
         EXPECT_TRUE(parameters) << to_text(parameters.error());
         EXPECT_TRUE(laboratory_.apply(
             simulation::CreateWorld{"w", *parameters, seed, {1, 2}, std::move(first_population), schedule}));

@@ -1,6 +1,6 @@
-#include "server/simulation/schedule.h"
+#include "server/parameters/schedule.h"
 
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 #include "server/storage/fork.h"
 #include "server/storage/rerun.h"
 #include "server/storage/verify.h"
@@ -13,7 +13,7 @@
 namespace evod::storage {
 namespace {
 
-using simulation::Schedule;
+using parameters::Schedule;
 using testing::HasSubstr;
 
 /// Generations of 120 ticks.
@@ -177,7 +177,7 @@ TEST_F(StoredScheduleTest, AnotherScheduleIsFound) {
     }
     Schedule other = schedule;
     other.remove("food_health");
-    rewritten(simulation::to_schedule_text(other)); // one that could be
+    rewritten(parameters::to_schedule_text(other)); // one that could be
     const auto file = RunFile::open(path, {});
     ASSERT_TRUE(file) << to_text(file.error());
     const auto verified = verify(**file, executor, [](const VerifyProgress&) {});
@@ -268,7 +268,7 @@ TEST_F(StoredScheduleTest, WhatWaitsIsKeptThroughAKillWhereverThatComes) {
             ASSERT_TRUE(again.parameters().active == run.world().parameters().active) << ticks;
             ASSERT_EQ(again.parameters().revision, run.world().parameters().revision);
         }
-        const simulation::Parameters& held = again.parameters().active;
+        const parameters::Parameters& held = again.parameters().active;
         EXPECT_EQ(held.mutation_step, 3);
         EXPECT_EQ(held.poison_harm, 1);
         EXPECT_EQ(held.food_count, 40u);

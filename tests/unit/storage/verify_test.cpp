@@ -198,8 +198,8 @@ TEST_F(VerifyTest, AFunctionOfTheChromosomeIsVerifiedTickByTick) {
     {
         StorageThread thread{{}};
         simulation::Laboratory laboratory;
-        simulation::Parameters parameters = small_world();
-        parameters.fitness = simulation::FitnessFunction::Rastrigin;
+        parameters::Parameters parameters = small_world();
+        parameters.fitness = parameters::FitnessFunction::Rastrigin;
         ASSERT_TRUE(laboratory.apply(simulation::CreateWorld{"w", parameters, {3}, {1, 2}}));
         Recorder recorder{data, thread};
         simulation::Entry& entry = **laboratory.find("w");
@@ -477,7 +477,7 @@ TEST_F(VerifyTest, WhatNoCommandCanBeIsNamed) {
         EXPECT_TRUE(result.has_error());
         return result ? base::Refusal{} : result.error();
     };
-    const auto request = [](const char* name, simulation::ParameterValue value) {
+    const auto request = [](const char* name, parameters::ParameterValue value) {
         v1::Request message = set_parameter(name, std::move(value));
         message.set_client_key("test");
         return message.SerializeAsString();

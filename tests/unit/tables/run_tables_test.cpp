@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class OtherModel : public testing::Test {
   protected:
-    void record(const simulation::Parameters& parameters) {
+    void record(const parameters::Parameters& parameters) {
         file = storage::record_other_model(folder.path() + "/w.evod", parameters);
     }
     base::Result<void> write(const WantedTable& wanted) {
@@ -57,7 +57,7 @@ class OtherModel : public testing::Test {
 };
 
 TEST_F(OtherModel, LineageLeavesOutWhatIsNotHeldAndWhatNobodyKnows) {
-    simulation::Parameters parameters = storage::small_world();
+    parameters::Parameters parameters = storage::small_world();
     parameters.migration = evolution::Topology::None;
     record(parameters);
     auto written = write({.table = RunTable::Lineage});
@@ -73,7 +73,7 @@ TEST_F(OtherModel, LineageLeavesOutWhatIsNotHeldAndWhatNobodyKnows) {
 }
 
 TEST_F(OtherModel, LineageDoesNotTellWhoBredWhereMigrantsMayHaveCome) {
-    simulation::Parameters parameters = storage::small_world();
+    parameters::Parameters parameters = storage::small_world();
     parameters.migration_epoch = 1;
     record(parameters);
     const auto written = write({.table = RunTable::Lineage});

@@ -15,17 +15,17 @@
 #include <variant>
 #include <vector>
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 enum class FitnessFunction { Life, GeneSum, Rastrigin };
 enum class FleeRule { Nearer, Always };
 enum class IntegratorChoice { SymplecticEuler, ExplicitEuler, BackwardEuler };
 
-} // namespace evod::simulation
+} // namespace evod::parameters
 
-EVOD_CHOICE_NAMES(evod::simulation::FitnessFunction, "life", "gene_sum", "rastrigin")
-EVOD_CHOICE_NAMES(evod::simulation::FleeRule, "nearer", "always")
-EVOD_CHOICE_NAMES(evod::simulation::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
+EVOD_CHOICE_NAMES(evod::parameters::FitnessFunction, "life", "gene_sum", "rastrigin")
+EVOD_CHOICE_NAMES(evod::parameters::FleeRule, "nearer", "always")
+EVOD_CHOICE_NAMES(evod::parameters::IntegratorChoice, "symplectic_euler", "explicit_euler", "backward_euler")
 
 // clang-format off
 #define EVOD_SIMULATION_PARAMETERS(REAL, COUNT, FLAG, CHOICE)                                                          \
@@ -68,7 +68,7 @@ EVOD_CHOICE_NAMES(evod::simulation::IntegratorChoice, "symplectic_euler", "expli
     REAL(health_cap_per_size, 0, 0, 1000, "health", NextGeneration, "At each meal health is cut to this times the gene body_size; 0 is no cap.")
 // clang-format on
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 /// Every parameter of a world. A set that validate() finds nothing wrong with is valid; the core is given no other.
 struct Parameters : evolution::Parameters {
@@ -168,4 +168,4 @@ Parameters taking_effect(const Parameters& active, const Parameters& requested, 
 
 bool operator==(const Parameters& a, const Parameters& b);
 
-} // namespace evod::simulation
+} // namespace evod::parameters

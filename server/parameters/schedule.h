@@ -7,7 +7,7 @@
 #pragma once
 
 #include "server/base/result.h"
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include <cstdint>
 #include <map>
@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 /// What is planned, generation by generation.
 class Schedule {
@@ -94,4 +94,4 @@ struct ScheduleFault {
 /// parameters  valid.
 std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters& parameters);
 
-} // namespace evod::simulation
+} // namespace evod::parameters

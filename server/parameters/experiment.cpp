@@ -1,6 +1,6 @@
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
-#include "server/simulation/json_text.h"
+#include "server/parameters/json_text.h"
 
 #include <boost/json.hpp>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-namespace evod::simulation {
+namespace evod::parameters {
 namespace {
 
 namespace json = boost::json;
@@ -418,4 +418,4 @@ std::string to_experiment_text(const Parameters& parameters, Written written, co
     return text + (text.size() > 1 ? "\n}\n" : "}\n");
 }
 
-} // namespace evod::simulation
+} // namespace evod::parameters

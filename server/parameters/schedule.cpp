@@ -1,9 +1,9 @@
-#include "server/simulation/schedule.h"
+#include "server/parameters/schedule.h"
 
 #include <algorithm>
 #include <set>
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 std::span<const Assignment> Schedule::at(std::uint64_t generation) const {
     const auto found = changes_.find(generation);
@@ -122,4 +122,4 @@ std::vector<ScheduleFault> faults_of(const Schedule& schedule, const Parameters&
     return faults;
 }
 
-} // namespace evod::simulation
+} // namespace evod::parameters

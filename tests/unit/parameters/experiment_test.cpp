@@ -1,4 +1,4 @@
-#include "server/simulation/experiment.h"
+#include "server/parameters/experiment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace evod::simulation {
+namespace evod::parameters {
 namespace {
 
 using testing::HasSubstr;
@@ -255,4 +255,4 @@ TEST(Experiment, GivesBackEveryBitOfANumber) {
 }
 
 } // namespace
-} // namespace evod::simulation
+} // namespace evod::parameters

@@ -7,14 +7,14 @@
 
 #include "server/base/random.h"
 #include "server/base/result.h"
-#include "server/simulation/parameters.h"
-#include "server/simulation/schedule.h"
+#include "server/parameters/parameters.h"
+#include "server/parameters/schedule.h"
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 struct Experiment {
     Parameters parameters; // of generation 1
@@ -39,4 +39,4 @@ std::string to_schedule_text(const Schedule& schedule);
 /// Takes nothing else than to_schedule_text() writes. Whether the values go together, the run's parameters decide.
 base::Result<Schedule> parse_schedule(std::string_view text);
 
-} // namespace evod::simulation
+} // namespace evod::parameters

@@ -1,4 +1,4 @@
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
 #include "server/base/elementary.h"
 #include "server/base/overloaded.h"
@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace evod::simulation {
+namespace evod::parameters {
 namespace {
 
 using base::Effect;
@@ -406,4 +406,4 @@ bool operator==(const Parameters& a, const Parameters& b) {
     return parameters_that_differ(a, b).empty();
 }
 
-} // namespace evod::simulation
+} // namespace evod::parameters

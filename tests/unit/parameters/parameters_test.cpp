@@ -1,11 +1,9 @@
-#include "server/simulation/parameters.h"
+#include "server/parameters/parameters.h"
 
-#include "server/base/inline_executor.h"
-#include "server/simulation/laboratory.h"
+#include "tests/unit/parameters/assignments.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -13,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace evod::simulation {
+namespace evod::parameters {
 namespace {
 
 using testing::Contains;
@@ -21,10 +19,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-std::vector<Assignment> one(std::string_view name, ParameterValue value) {
-    return {{std::string{name}, std::move(value)}};
-}
 
 bool accepted(std::string_view name, ParameterValue value) {
     return assign({}, one(name, std::move(value))).has_value();
@@ -39,47 +33,6 @@ std::vector<std::string> violations(const base::Result<Parameters>& result) {
         }
     }
     return texts;
-}
-
-/// Values other than the default that a parameter can have as far as its own range goes.
-std::vector<ParameterValue> other_values(const ParameterDescription& description) {
-    std::vector<ParameterValue> values;
-    if (const auto* real = std::get_if<RealParameter>(&description.kind)) {
-        const double now = std::get<double>(description.default_value());
-        for (const double value : {now * 0.9, now * 1.05, real->range.min, real->range.max}) {
-            if (value != now && value >= real->range.min && value <= real->range.max) {
-                values.emplace_back(value);
-            }
-        }
-    } else if (const auto* count = std::get_if<CountParameter>(&description.kind)) {
-        const std::uint32_t now = std::get<std::uint32_t>(description.default_value());
-        for (const std::uint32_t value : {now + 1, now - 1}) {
-            if (value >= count->range.min && value <= count->range.max) {
-                values.emplace_back(value);
-            }
-        }
-    } else if (std::holds_alternative<FlagParameter>(description.kind)) {
-        values.emplace_back(!std::get<bool>(description.default_value()));
-    } else {
-        for (const std::string_view name : std::get<ChoiceParameter>(description.kind).names) {
-            if (name != std::get<std::string>(description.default_value())) {
-                values.emplace_back(std::string{name});
-            }
-        }
-    }
-    return values;
-}
-
-/// One that `parameters` can have.
-Assignment other_value(const ParameterDescription& description, const Parameters& parameters) {
-    for (const ParameterValue& value : other_values(description)) {
-        const auto assignments = one(description.name, value);
-        if (assign(parameters, assignments)) {
-            return assignments.front();
-        }
-    }
-    ADD_FAILURE() << description.name << " has no value but its default";
-    return {};
 }
 
 TEST(ParameterRegistry, HasEachNameOnce) {
@@ -305,28 +258,6 @@ TEST(CrossFieldRules, KeepRoomForAnOrganismAmongManySmallCrates) {
     EXPECT_FALSE(result.has_value());
 }
 
-RC_GTEST_PROP(EverySetThatIsAccepted, HasRoomForEverythingInIt, ()) {
-    const auto count = [](std::uint32_t max) { return *rc::gen::resize(100, rc::gen::inRange(0u, max)); };
-    const auto real = [&](double min, double max) { return min + (max - min) * count(1001) / 1000.0; };
-    const double size = real(1, 200);
-    const auto parameters = assign({}, std::vector<Assignment>{{"population_size", 1 + count(80)},
-                                                               {"island_width_px", real(150, 1200)},
-                                                               {"island_height_px", real(150, 1200)},
-                                                               {"body_size_min", 1.0},
-                                                               {"body_size_max", size},
-                                                               {"initial_gene_min", size * 0.9},
-                                                               {"initial_gene_max", size},
-                                                               {"item_radius_px", real(0.5, 20)},
-                                                               {"obstacle_count", count(40)},
-                                                               {"obstacle_size_px", real(5, 60)},
-                                                               {"crate_count", count(40)},
-                                                               {"crate_size_px", real(5, 60)}});
-    RC_CLASSIFY(parameters.has_value());
-    if (parameters) {
-        World{*parameters, base::Seed{count(1000)}}; // aborts if it runs out of room
-    }
-}
-
 TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
     Parameters p;
     p.population_size = 200;
@@ -345,48 +276,5 @@ TEST(IslandPlan, GrowsWithThePopulationIfAskedTo) {
     EXPECT_THAT(validate(p), testing::Not(IsEmpty())) << "wider than an island can be";
 }
 
-// When a parameter takes effect.
-
-World small_world() {
-    Parameters p;
-    p.generation_s = 0.1;
-    return {p, base::Seed{1}};
-}
-
-TEST(EveryParameter, TakesEffectWhenTheRegistrySays) {
-    base::InlineExecutor executor;
-    for (const ParameterDescription& description : parameter_registry()) {
-        World world = small_world();
-        world.advance_tick(executor);
-        const Assignment assignment = other_value(description, world.parameters().requested);
-        const auto holds = [&] { return description.get(world.parameters().active) == assignment.value; };
-        world.request_parameters(*assign(world.parameters().requested, std::vector{assignment}));
-        EXPECT_EQ(description.get(world.parameters().requested), assignment.value);
-        EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
-        if (world.outcome() != evolution::Outcome::Running) {
-            continue;
-        }
-        while (!world.generation_over()) {
-            world.advance_tick(executor);
-        }
-        EXPECT_EQ(holds(), description.effect == base::Effect::NextTick) << description.name;
-        if (world.outcome() == evolution::Outcome::Running) {
-            world.advance_tick(executor); // the first tick of the next generation
-            EXPECT_EQ(holds(), description.effect != base::Effect::Reset) << description.name;
-        }
-        world.reset(base::Seed{1});
-        EXPECT_TRUE(holds()) << description.name;
-        EXPECT_TRUE(world.parameters().active == world.parameters().requested);
-    }
-}
-
-TEST(ParameterSet, CountsItsRevisions) {
-    World world = small_world();
-    EXPECT_EQ(world.parameters().revision, 1u);
-    world.request_parameters(*assign({}, one("food_health", 30.0)));
-    world.request_parameters(*assign({}, one("food_health", 31.0)));
-    EXPECT_EQ(world.parameters().revision, 3u);
-}
-
 } // namespace
-} // namespace evod::simulation
+} // namespace evod::parameters

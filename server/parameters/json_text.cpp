@@ -1,10 +1,10 @@
-#include "server/simulation/json_text.h"
+#include "server/parameters/json_text.h"
 
 #include <boost/json.hpp>
 
 #include <algorithm>
 
-namespace evod::simulation {
+namespace evod::parameters {
 
 namespace json = boost::json;
 
@@ -31,4 +31,4 @@ base::Result<json::value> parse_json(std::string_view text) {
     return parser.release();
 }
 
-} // namespace evod::simulation
+} // namespace evod::parameters
