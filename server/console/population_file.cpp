@@ -40,7 +40,7 @@ base::Result<simulation::FirstPopulation> load_population(const std::string& pat
     }
     const simulation::FirstPopulation population =
         std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(matrices));
-    if (auto faults = faults_of(population, parameters, "population"); !faults.empty()) {
+    if (auto faults = simulation::faults_of(population, parameters, "population"); !faults.empty()) {
         return base::Refusal{.code = RefusalCode::InvalidArgument,
                              .message = path + ": a world with these parameters cannot begin so",
                              .violations = std::move(faults)};

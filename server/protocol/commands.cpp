@@ -55,7 +55,7 @@ simulation::Command command_of(const v1::CreateWorld& request, const Draws& draw
         }
         if (missing.empty()) {
             command.first_population = first_population_of(request, missing);
-            const auto faults = faults_of(command.first_population, command.parameters, "create_world.population");
+            const auto faults = simulation::faults_of(command.first_population, command.parameters, "create_world.population");
             missing.insert(missing.end(), faults.begin(), faults.end());
             command.schedule = to_schedule(request.schedule(), command.parameters, "create_world.", missing);
         }

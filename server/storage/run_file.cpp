@@ -801,7 +801,7 @@ Result<void> RunFile::read_first_population() {
     identity_.first_population = std::make_shared<const std::vector<evolution::GeneMatrix>>(std::move(islands));
     // A fork does not begin with it.
     if (identity_.first_generation == 1 &&
-        !faults_of(identity_.first_population, identity_.parameters, "first_population").empty()) {
+        !simulation::faults_of(identity_.first_population, identity_.parameters, "first_population").empty()) {
         return damaged("its table first_population");
     }
     return {};
