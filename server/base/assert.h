@@ -1,4 +1,4 @@
-// EVOD_ASSERT: what the core relies on, checked in every build. A wrong simulation is worse than none.
+// EVOD_ASSERT: checks what the core relies on, in every build. A wrong simulation is worse than none.
 #pragma once
 
 #include <cstdio>

@@ -1,7 +1,8 @@
-// Column: one field of many entities, as a vector whose memory suits loops over all of them.
+// Column: one field of many entities, stored as a vector for loops over all of them.
 //
-// It begins at a cache line, so that a load of several fields never spans two; and a large one asks for large pages, of
-// which the processor remembers more at once: a tick of a million organisms takes some 6 % less time for both.
+// Its memory begins at a cache line, so that a vector load never spans two lines. A large column requests large pages,
+// which need fewer entries of the processor's address cache. Together they save about 6 % of a tick of a million
+// organisms.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
-// Commutative operations on memory that several pieces of a parallel loop write to: whichever comes first, the outcome
-// is the same. What they return is not, so no result may depend on it.
+// Commutative operations on memory that several pieces of a parallel loop write to: the final value does not depend on
+// the order of the writes. The returned values do depend on it, so no result may use them.
 //
-// `side_by_side` tells whether others may write at the same time; where not, the plain operation is several times
-// faster.
+// `side_by_side` is true if several threads may write at the same time. If it is false, the plain operation is used,
+// which is several times faster.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace evod::base {
 
-/// value += change; returns what it was before.
+/// value += change; returns the value before the addition.
 template <bool side_by_side, class T>
 T fetch_add(T& value, T change) {
     if constexpr (side_by_side) {
@@ -34,7 +34,7 @@ void fetch_min(T& value, T candidate) {
     }
 }
 
-/// value = what; all who write at the same time write the same.
+/// value = what; all threads that write at the same time write the same value.
 template <bool side_by_side, class T>
 void put(T& value, T what) {
     if constexpr (side_by_side) {
@@ -44,7 +44,7 @@ void put(T& value, T what) {
     }
 }
 
-/// What is there while others may write.
+/// Reads a value that other threads may write at the same time.
 template <class T>
 T look_at(T& value) {
     return std::atomic_ref{value}.load(std::memory_order_relaxed);

@@ -25,8 +25,8 @@ constexpr std::array<double, 24> inverse_factorials() {
 }
 constexpr auto inverse_factorial = inverse_factorials();
 
-/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4: with 18 or 19 the
-/// first term left out is below 1e-19.
+/// The series of sine (`last` odd) or cosine (`last` even) up to the power `last`, for |x| <= π/4. With 18 or 19 the
+/// first omitted term is below 1e-19.
 template <class Real>
 constexpr Real series(Real x, int last) {
     const Real square = x * x;
@@ -40,7 +40,7 @@ constexpr Real series(Real x, int last) {
 
 struct Octant {
     unsigned quarter; // nearest multiple of a quarter turn, mod 4
-    double angle;     // what is left, in −π/4 … π/4
+    double angle;     // the remainder, in −π/4 … π/4
 };
 
 Octant reduce(double turns) {
@@ -86,7 +86,7 @@ double exp(double x) {
     if (x > 700) {
         return std::numeric_limits<double>::max();
     }
-    // ln 2 in two parts, the first with 21 zero bits at its end, so that k · ln2_high is exact.
+    // ln 2 in two parts, the first with 21 trailing zero bits, so that k · ln2_high is exact.
     constexpr double ln2_high = 0x1.62e42feep-1;
     constexpr double ln2_low = 0x1.a39ef35793c76p-33;
     const double k = std::floor(x / ln2 + 0.5);
@@ -126,7 +126,7 @@ double pow(double x, double y) {
 }
 
 Direction direction(unsigned word) {
-    // The nearest quarter turn, then a signed rest of at most an eighth of a turn with 29 bits.
+    // The nearest quarter turn, then a signed remainder of at most an eighth of a turn with 29 bits.
     const unsigned quarter = (word + 0x2000'0000u) >> 30;
     const auto rest = static_cast<std::int32_t>(word - (quarter << 30));
     const float angle = static_cast<float>(rest) * static_cast<float>(2 * pi / 4294967296.0);

@@ -1,7 +1,8 @@
-// Elementary functions whose last bit is ours: sin, cos, exp, log and pow from + − × ÷ and rounding alone.
+// Elementary functions that give the same bits on every processor: sin, cos, exp, log and pow from + − × ÷ and rounding
+// alone.
 //
-// The C library picks other code on processors with fused multiply-add, with other last bits, so nothing that feeds
-// the state may call it. √ is exact in hardware and is used as it is.
+// On processors with fused multiply-add the C library runs different code, which gives different last bits. Nothing
+// that feeds the state may therefore call it. √ is exact in hardware and is used directly.
 // Source  Taylor series after the usual range reductions (Muller 2016, Elementary Functions, ch. 11).
 #pragma once
 

@@ -1,8 +1,8 @@
-// Executor: where the core sends work that may run side by side. The core is handed one and never makes one.
+// Executor: runs the pieces of a parallel loop for the core. The core receives an executor and never creates one.
 //
-// Threads      parallel_for returns after every piece has run; pieces touch only what they were given.
-// Determinism  which thread runs which piece is unknown, so no result may depend on it. Reductions are done by the
-//              caller, in index order, over one partial result per fixed-size block.
+// Threads      parallel_for returns after every piece has run; a piece touches only the data it was given.
+// Determinism  which thread runs which piece is unknown, so no result may depend on it. The caller reduces in index
+//              order, over one partial result per block of fixed size.
 #pragma once
 
 #include <cstddef>
@@ -55,7 +55,8 @@ class Executor {
         }
     }
 
-    /// Threads that may work at once, >= 1. For choosing whether to cut, never for how: results must not depend on it.
+    /// Threads that may work at once, >= 1. Use it to decide whether to cut a loop, never how: results must not depend
+    /// on it.
     virtual std::size_t thread_count() const = 0;
 
   protected:

@@ -1,4 +1,4 @@
-// The hash of many entities at once, for kernels (lanes.h): lane for lane what hash_of() of state_hash.h gives for one.
+// The hash of many entities at once, for kernels (lanes.h). Each lane gives the result of hash_of() in state_hash.h.
 #pragma once
 
 #include "server/base/lanes.h"
@@ -25,7 +25,7 @@ struct HashSums {
         Hash odd =
             hash_of(multiply_low_halves(odd_lanes(a), odd_lanes(b)), multiply_low_halves(odd_lanes(c), odd_lanes(d)),
                     multiply_low_halves(odd_lanes(e), odd_lanes(last)), odd_pairs(a, b), odd_pairs(c, d));
-        if (bits_of(lanes_used) != (1u << lanes) - 1) { // seldom
+        if (bits_of(lanes_used) != (1u << lanes) - 1) { // rare: only in the last step of a block
             const auto used = (Words)lanes_used;
             even = {even.low & even_pairs(used, used), even.high & even_pairs(used, used)};
             odd = {odd.low & odd_pairs(used, used), odd.high & odd_pairs(used, used)};

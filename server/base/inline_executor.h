@@ -1,5 +1,4 @@
-// InlineExecutor: runs every piece on the calling thread, in index order; where one thread is all there is, and in
-// tests.
+// InlineExecutor: runs every piece on the calling thread, in index order. For programs with one thread, and for tests.
 #pragma once
 
 #include "server/base/executor.h"

@@ -1,16 +1,16 @@
-// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels: files that are compiled once for every
-// processor and once for those with AVX2.
+// Lanes: the compiler's vector types, EVOD_LANES numbers wide, for kernels. A kernel is a file that is compiled twice:
+// once for every processor and once for processors with AVX2.
 //
-// Everything here is in an unnamed namespace, and kernels include no other inline code: a function that both copies of
-// a kernel had in common would be kept once by the linker, perhaps as the copy that not every processor can run.
-// Determinism  a lane computes what a loop over single numbers would, so the width changes no bit: + − × ÷ √, rounding
-//              and whole numbers only.
+// Everything here is in an unnamed namespace, and kernels include no other inline code. The linker keeps one copy of a
+// function that both copies of a kernel share, and that copy might contain instructions that some processors lack.
+// Determinism  a lane computes what a loop over single numbers would compute, so the width changes no bit: + − × ÷ √,
+//              rounding and integers only.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #if defined(__x86_64__)
-#include <immintrin.h> // always inlined: what the vector types have no operator for
+#include <immintrin.h> // always inlined; for operations that the vector types have no operator for
 #endif
 
 /// The name of this copy of a kernel.
@@ -45,8 +45,8 @@ inline void store(T* to, Vector vector) {
     __builtin_memcpy(to, &vector, sizeof vector);
 }
 
-/// Asks for what columns hold a little further on than index i. Hardware follows fewer columns at once than kernels go
-/// over: without this, a tick of 1,000,000 organisms takes a sixth longer.
+/// Prefetches what the columns hold some way after index i. The hardware prefetcher follows fewer columns at once than
+/// kernels read: without this, a tick of 1,000,000 organisms takes a sixth longer.
 template <class... Columns>
 inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
     constexpr std::size_t ahead = 512, per_cache_line = 16, into_second_level = 2;
@@ -55,7 +55,7 @@ inline void prefetch_ahead(std::size_t i, const Columns*... columns) {
     }
 }
 
-/// All lanes the same.
+/// A vector with the value in every lane.
 inline Floats all_lanes(float value) {
     return value - Floats{};
 }
@@ -90,7 +90,7 @@ inline Floats square_root(Floats v) {
 #endif
 }
 
-/// The nearest whole number, halves to even.
+/// The nearest integer, halves to even.
 inline Integers round_to_integers(Floats v) {
 #if defined(__x86_64__) && EVOD_LANES == 8
     return (Integers)_mm256_cvtps_epi32((__m256)v);
@@ -131,19 +131,21 @@ inline Longs multiply_low_halves(Longs a, Longs b) {
 #endif
 }
 
-/// The even and the odd 32-bit lanes, as the lower halves of 64-bit lanes; what the upper halves hold is undefined.
+/// The even and the odd 32-bit lanes, as the lower halves of 64-bit lanes. The contents of the upper halves are
+/// undefined.
 inline Longs even_lanes(Words v) {
     return (Longs)v;
 }
 inline Longs odd_lanes(Words v) {
     return (Longs)v >> 32;
 }
-/// The other way: lower halves to the even and odd lanes.
+/// The inverse: lower halves to the even and odd lanes.
 inline Words interleave(Longs even, Longs odd) {
     return (Words)((even & 0xffff'ffffu) | odd << 32);
 }
 
-/// Lane 2i of a and of b side by side, as one 64-bit lane, a's the lower; the same of lanes 2i + 1.
+/// Lane 2i of a and of b side by side, as one 64-bit lane, with a's lane in the lower half. odd_pairs() does the same
+/// with lanes 2i + 1.
 inline Longs even_pairs(Words a, Words b) {
 #if EVOD_LANES == 8
     return (Longs)__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);

@@ -8,6 +8,6 @@ struct Overloaded : F... {
     using F::operator()...;
 };
 template <class... F>
-Overloaded(F...) -> Overloaded<F...>; // clang 14 does not find it by itself
+Overloaded(F...) -> Overloaded<F...>; // clang 14 does not deduce it by itself
 
 } // namespace evod::base

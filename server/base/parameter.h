@@ -1,9 +1,9 @@
-// Parameter descriptions: what a folder of the core says about each number it can be given.
+// Parameter descriptions: name, range, unit, default and help text of every number that a folder of the core takes.
 //
-// A folder writes its parameters once, as a list of REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
-// parameters/parameters.h). The struct with its defaults and the descriptions are both expanded from that list, so
-// adding a parameter is adding a line; validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md
-// follow from it.
+// A folder lists its parameters once, as REAL, COUNT, FLAG and CHOICE lines (evolution/parameters.h,
+// parameters/parameters.h). The struct with its defaults and the descriptions are both expanded from that list.
+// Validation, JSON files, the protocol, evoctl's help and docs/PARAMETERS.md follow from it, so a new parameter needs
+// one new line.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 
 namespace evod::base {
 
-/// When a changed value begins to hold.
+/// When a changed value takes effect.
 enum class Effect {
-    NextTick,       // from the tick at which the command is applied; for breeding: the next one
+    NextTick,       // from the tick at which the command is applied; for breeding: the next breeding
     NextGeneration, // from the first tick of the next generation
     Reset,          // when the world is reset or created
 };
@@ -30,13 +30,13 @@ struct CountRange {
     std::uint32_t min, max; // both allowed
 };
 
-/// Specialised by EVOD_CHOICE for every enumeration a CHOICE parameter can hold.
+/// Specialised by EVOD_CHOICE_NAMES for every enumeration that a CHOICE parameter can hold.
 template <class Enumeration>
 struct ChoiceNames;
 
 } // namespace evod::base
 
-/// Gives the enumerators of an enumeration, in order, the names that users write. At global scope.
+/// Assigns to the enumerators of an enumeration, in order, the names that users write. For use at global scope.
 #define EVOD_CHOICE_NAMES(Type, ...)                                                                                   \
     template <>                                                                                                        \
     struct evod::base::ChoiceNames<Type> {                                                                             \

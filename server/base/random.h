@@ -1,7 +1,7 @@
-// Randomness without a state: every draw is a pure function of (seed, purpose, island, generation, entity, tick, draw).
+// Stateless randomness: every draw is a pure function of (seed, purpose, island, generation, entity, tick, draw).
 //
-// Determinism  nothing to save, no order of draws between streams, nothing that depends on threads. A draw added to one
-//              purpose shifts nothing in another.
+// Determinism  there is no generator state to save, no order between streams, and no dependence on threads. A new draw
+//              for one purpose does not change the draws of another.
 // Source       Philox4x32-10, and Philox2x32-10 for pair(): Salmon, Moraes, Dror & Shaw 2011, "Parallel random numbers:
 //              as easy as 1, 2, 3"; the implementation is Random123's.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace evod::base {
 
-/// What a stream is for. Numbers are part of a run's identity: never reuse or renumber one.
+/// What a stream is for. The numbers are part of a run's identity: never reuse or renumber one.
 enum class Purpose : std::uint32_t {
     InitialChromosome = 1,
     OrganismPlacement = 2,
@@ -33,11 +33,11 @@ enum class Purpose : std::uint32_t {
     Mutation = 14,
     SurvivorMutation = 15,
     Migration = 16,
-    Shuffle = 17,   // of many; its seed is drawn, so island and generation are 0
-    Replicate = 18, // seeds of the runs of a sweep, by replicate; island and generation are 0
+    Shuffle = 17,   // of many items; its seed is drawn, so island and generation are 0
+    Replicate = 18, // seeds of the runs of a parameter sweep, by replicate; island and generation are 0
     FitnessShuffle = 19,
     SignFlip = 20,       // of a permutation test; island and generation are 0
-    LatinHypercube = 21, // cells of a sweep, by parameter; island and generation are 0
+    LatinHypercube = 21, // cells of a parameter sweep, by parameter; island and generation are 0
     ScenarioTest = 1000, // tests and demonstrations
 };
 
@@ -47,7 +47,7 @@ struct Seed {
     friend bool operator==(const Seed&, const Seed&) = default;
 };
 
-/// The part of a draw's identity that many entities share. Made once per (purpose, island, generation).
+/// The part of a draw's identity that many entities share. Built once per (purpose, island, generation).
 class RandomKey {
   public:
     RandomKey(Seed seed, Purpose purpose, std::uint32_t island, std::uint64_t generation);
@@ -55,11 +55,11 @@ class RandomKey {
     /// Four uniform 32-bit words.
     std::array<std::uint32_t, 4> words(std::uint32_t entity, std::uint64_t tick, std::uint32_t block) const;
 
-    /// Two uniform 32-bit words, for what is drawn for every organism in every tick: Philox2x32-10, which takes half
-    /// the time. Its key is half of ours; the other half goes into the counter, by exclusive or with the tick. No
-    /// words() of a purpose that uses pair().
+    /// Two uniform 32-bit words from Philox2x32-10, which takes half the time of words(). For draws of every organism
+    /// in every tick. The low half of this key is the generator's key; the high half is combined with the tick by
+    /// exclusive or. A purpose that uses pair() must not use words().
     std::array<std::uint32_t, 2> pair(std::uint32_t entity, std::uint32_t tick) const;
-    // What pair() hands to the generator, for kernels that draw for many entities.
+    // The inputs of the generator in pair(), for kernels that draw for many entities.
     std::uint32_t pair_key() const { return low_; }
     std::uint32_t pair_counter(std::uint32_t tick) const { return high_ ^ tick; }
 
@@ -67,12 +67,12 @@ class RandomKey {
     std::uint32_t low_, high_;
 };
 
-/// A uniform number in [0, 1) from one word: 24 bits, exact in float.
+/// A uniform number in [0, 1) from one word: 24 bits, exact as a float.
 inline float unit_float(std::uint32_t word) {
     return static_cast<float>(word >> 8) * 0x1p-24f;
 }
 
-/// A sequence of draws of one entity at one tick, for code that needs an unknown number of them.
+/// A sequence of draws of one entity at one tick, for code that needs an unknown number of draws.
 class RandomStream {
   public:
     /// At most 2^34 words can be drawn from a stream.
@@ -107,11 +107,11 @@ class RandomStream {
         }
         return static_cast<std::uint32_t>(product >> 32);
     }
-    /// True with probability p; two words whatever p is.
+    /// True with probability p; takes two words for every p.
     bool chance(double p) { return uniform() < p; }
     /// Standard normal (Box & Muller 1958, cosine branch); four words.
     double gaussian();
-    /// Every order of `items` equally likely (Fisher & Yates; Durstenfeld 1964).
+    /// Shuffles so that every order of `items` is equally likely (Fisher & Yates; Durstenfeld 1964).
     template <class T>
     void shuffle(std::span<T> items) {
         for (std::size_t left = items.size(); left > 1; --left) {

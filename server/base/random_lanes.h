@@ -1,4 +1,4 @@
-// Draws for many entities at once, for kernels (lanes.h): lane for lane what random.h and elementary.h give for one.
+// Draws for many entities at once, for kernels (lanes.h). Each lane gives the result of random.h and elementary.h.
 #pragma once
 
 #include "server/base/lanes.h"
@@ -15,7 +15,7 @@ inline WordPairs philox_pairs(Words entity, std::uint32_t counter, std::uint32_t
     struct Counter {
         Longs first, second;
     };
-    // Even and odd lanes apart, each as the lower half of a product's width; upper halves may hold anything.
+    // Even and odd lanes separately, each in the lower half of a 64-bit lane. The upper halves may hold anything.
     Counter even{even_lanes(entity), Longs{} + counter}, odd{odd_lanes(entity), Longs{} + counter};
     const Longs multiplier = Longs{} + 0xd256d193u;
     const auto round = [&](Counter& words, std::uint32_t round_key) {
@@ -44,7 +44,7 @@ inline Directions directions(Words words) {
     const Floats angle =
         to_floats((Integers)(words - (quarter << 30))) * static_cast<float>(2 * 3.14159265358979323846 / 4294967296.0);
     const Floats square = angle * angle;
-    // The coefficients are 1/n!, as direction() has them.
+    // The coefficients are 1/n!, as in direction().
     Floats sine = all_lanes(static_cast<float>(1.0 / 362880));
     sine = sine * square - static_cast<float>(1.0 / 5040);
     sine = sine * square + static_cast<float>(1.0 / 120);

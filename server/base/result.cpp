@@ -34,8 +34,8 @@ const char* name_of(RefusalCode code) {
 
 namespace {
 
-/// What a file or an argument holds must not steer the terminal that it is shown on: control characters but the end of
-/// a line become '?'.
+/// Text from a file or an argument must not control the terminal that shows it: control characters except line breaks
+/// become '?'.
 std::string visible(std::string utf8) {
     for (std::size_t i = 0; i < utf8.size(); ++i) {
         const auto byte = static_cast<unsigned char>(utf8[i]);

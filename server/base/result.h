@@ -1,4 +1,4 @@
-// Result<T>: a value, or a Refusal that says what was wrong with every field. Used where outside input is translated.
+// Result<T>: a value, or a Refusal that names every wrong field. Used where outside input is translated.
 #pragma once
 
 #include <boost/system/result.hpp>
@@ -9,7 +9,7 @@
 
 namespace evod::base {
 
-/// Why a request was refused; the numbers are those of google.rpc.Code.
+/// Why a request was refused. The numbers are those of google.rpc.Code.
 enum class RefusalCode {
     InvalidArgument = 3,
     NotFound = 5,
@@ -24,7 +24,7 @@ enum class RefusalCode {
     Unauthenticated = 16,
 };
 
-/// Which documented situation it was, for programs; the numbers are those of evod.v1.Reason.
+/// Which documented situation occurred, for programs. The numbers are those of evod.v1.Reason.
 enum class Reason {
     Unspecified = 0,
     FieldInvalid = 10,
@@ -80,7 +80,7 @@ enum class Reason {
     SessionsMax = 91,
 };
 
-/// The code as users read it: "INVALID_ARGUMENT".
+/// The code as users see it: "INVALID_ARGUMENT".
 const char* name_of(RefusalCode code);
 
 /// One field that is wrong.
@@ -90,7 +90,7 @@ struct Violation {
     std::string got;     // "1.5"
 };
 
-/// A typed "no": nothing has changed.
+/// A typed "no". A refused request has changed nothing.
 struct Refusal {
     RefusalCode code = RefusalCode::InvalidArgument;
     std::string message; // one sentence
@@ -103,10 +103,10 @@ inline Refusal refusal(RefusalCode code, std::string message, Reason reason = Re
     return {.code = code, .message = std::move(message), .violations = {}, .reason = reason};
 }
 
-/// The refusal as one text: the message, then a line per violation.
+/// The refusal as text: the message, then one line per violation.
 std::string to_text(const Refusal& refusal);
 
-/// "field: got X, allowed Y", one violation on one line.
+/// "field: got X, allowed Y" on one line.
 std::string to_text(const Violation& violation);
 
 [[noreturn]] void throw_exception_from_error(const Refusal& refusal, const boost::source_location& where);

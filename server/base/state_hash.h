@@ -1,9 +1,10 @@
-// State hash: one 128-bit number for the whole state of a world, the same however the work was cut.
+// State hash: one 128-bit number for the whole state of a world, independent of how the work was divided.
 //
-// Each entity is mixed to two 64-bit words from its identity and its fields; the hash is the sum of the words, so it
-// does not depend on the order of entities, on threads or on memory layout, and can be updated when one of them
-// changes. Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators"
-// (SplitMix64).
+// Each entity is mixed into two 64-bit words from its identity and its fields. The hash is the sum of these words. It
+// therefore does not depend on the order of entities, on threads or on memory layout, and it can be updated when one
+// entity changes.
+//
+// Source  the finaliser of Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators" (SplitMix64).
 #pragma once
 
 #include <bit>
@@ -32,10 +33,10 @@ struct StateHash {
 /// 32 lower-case hexadecimal digits, high word first.
 std::string to_text(const StateHash& hash);
 
-/// The same 16 bytes, the most significant first.
+/// The same 128 bits as 16 bytes, most significant first.
 std::string to_bytes(const StateHash& hash);
 
-/// Collects one entity's identity and fields. `kind` keeps entities of different kinds with equal ids apart.
+/// Collects one entity's identity and fields. `kind` distinguishes entities of different kinds with equal ids.
 class EntityHash {
   public:
     EntityHash(std::uint32_t kind, std::uint64_t id) : state_{mix((id + 1) * 0x9e3779b97f4a7c15u + kind)} {}
@@ -61,18 +62,18 @@ class EntityHash {
     std::uint64_t state_;
 };
 
-/// What hash_of() takes: an entity that is hashed in every tick.
+/// The input of hash_of(): an entity that is hashed in every tick.
 struct HashedWords {
     std::uint32_t kind, id;
     std::uint32_t a, b, c, d, e;
 };
 
-/// As EntityHash, for what is hashed in every tick: six multiplications of 32-bit words, of which a kernel does several
-/// at once (hash_lanes.h).
+/// Like EntityHash, but for entities that are hashed in every tick: six multiplications of 32-bit words, which a kernel
+/// computes for several entities at once (hash_lanes.h).
 ///
-/// The fields are multiplied in pairs, each with a key that follows from the identity; each pair also goes into the
-/// other sum as it is, so that nothing is lost where a factor is 0. Source  the pairwise products are those of NH
-/// (Black, Halevi, Krawczyk, Krovetz & Rogaway 1999, "UMAC").
+/// The fields are multiplied in pairs, each with a key derived from the identity. Each pair is also added unchanged to
+/// the other sum, so that no field is lost when its factor is 0.
+/// Source  the pairwise products are those of NH (Black, Halevi, Krawczyk, Krovetz & Rogaway 1999, "UMAC").
 inline StateHash hash_of(const HashedWords& words) {
     const auto product = [](std::uint64_t a, std::uint64_t b) { return (a & 0xffff'ffff) * (b & 0xffff'ffff); };
     const std::uint32_t key = (words.id + words.kind * 0x85ebca6bu) * 0x9e3779b1u;
@@ -81,7 +82,7 @@ inline StateHash hash_of(const HashedWords& words) {
     const std::uint64_t fifth = product(words.e ^ key, key ^ 0xd3a2646cu);
     std::uint64_t low = product(a, b) + (c | std::uint64_t{d} << 32) + fifth;
     std::uint64_t high = product(c, d) + (a | std::uint64_t{b} << 32) + (fifth >> 32 | fifth << 32);
-    // Each step can be undone, so entities that differ here still differ at the end.
+    // Each step is invertible, so entities that differ here still differ at the end.
     low += product(high, high >> 32);
     high ^= low >> 32 | low << 32;
     high += product(low, low >> 32);

@@ -1,4 +1,4 @@
-// Within memory: work that needs much memory at once, and is refused where there is not enough.
+// Within memory: runs work that needs much memory at once, and refuses it if there is not enough.
 #pragma once
 
 #include "server/base/result.h"
@@ -7,9 +7,9 @@
 
 namespace evod::base {
 
-/// What `work` returns, a Result; refused as ResourceExhausted if memory does not suffice for it.
+/// Returns the Result of `work`, or ResourceExhausted if memory does not suffice.
 ///
-/// work  changes nothing that outlives it before it has all the memory it needs.
+/// work  must allocate all its memory before it changes anything that outlives it.
 template <class Work>
 auto within_memory(Work&& work) -> decltype(work()) {
     try {

@@ -1,8 +1,8 @@
-// Breeding, step by step: who is chosen, and what becomes of the genes of each. next_generation() takes the steps for
-// everyone; a breeding record takes them again for those it tells of.
+// The steps of breeding: which organisms are chosen, and how the genes of each are made. next_generation() performs the
+// steps for all organisms; a breeding record repeats them for the organisms it contains.
 //
-// Threads      none of its own; after it is made, a Descent may be asked by several.
-// Determinism  every draw is keyed, so a step comes to the same whoever takes it, and in whatever order.
+// Threads      none of its own; after its construction, several threads may call a Descent.
+// Determinism  every draw is keyed, so a step has the same result regardless of the caller and of the order of steps.
 #pragma once
 
 #include "server/evolution/crossover.h"
@@ -18,36 +18,36 @@
 
 namespace evod::evolution {
 
-/// Who stays and who mates.
+/// The organisms that survive and the pairs that mate.
 struct Choice {
     Places places;
-    std::vector<std::uint32_t> picks; // of the selection, in the order in which they were made
-    std::vector<Parents> pairs;       // for two children each; the last may have room for only one
+    std::vector<std::uint32_t> picks; // the selection's picks, in the order in which they were made
+    std::vector<Parents> pairs;       // two children each; the last pair may have room for only one
 
-    /// Shape (places.survivors): who is kept in each place.
+    /// Shape (places.survivors): the organism that is kept in each place.
     std::span<const std::uint32_t> survivors() const { return picks_survive ? picks : others; }
     bool picks_survive = false;
-    std::vector<std::uint32_t> others; // the survivors, if they are not just the picks
+    std::vector<std::uint32_t> others; // the survivors, if they differ from the picks
 };
 
-/// How many picks the selection makes, and from whom. wanted 0: it is not asked.
+/// The number of picks that the selection makes, and its pool. If wanted is 0, no selection takes place.
 Picks picks_for(const Places& places, std::uint32_t present, const Parameters& parameters);
 
-/// What select() is given.
+/// The key that select() receives.
 base::RandomKey selection_key(const BreedingKey& key);
 
 Choice choose(Ranking& ranking, const Parameters& parameters, std::uint32_t wanted, const BreedingKey& key,
               base::Executor& executor);
 
-/// From which parent a child has each gene.
+/// Which parent each gene of a child comes from.
 struct Inheritance {
     Parents parents;          // first: the parent that gave more of the genes
     GeneMask from_second = 0; // the genes that parents.second gave; at most half of them
 };
 
-/// Orders the parents of one child of a pair by how many genes each gave it; on a tie the pair's first stays first.
+/// Orders the parents of one child by how many genes each gave it; on a tie the pair's first parent stays first.
 ///
-/// mask  the genes that the child takes from pair.second; bits beyond the genes do not count.
+/// mask  the genes that the child takes from pair.second; bits beyond the genes are ignored.
 inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
     mask &= all_genes;
     if (2 * static_cast<unsigned>(std::popcount(mask)) <= gene_count) {
@@ -56,7 +56,7 @@ inline Inheritance inheritance_of(const Parents& pair, GeneMask mask) {
     return {{pair.second, pair.first}, ~mask & all_genes};
 }
 
-/// Does to a chromosome what happens to it, and tells nobody.
+/// Applies the mutations to a chromosome without recording them.
 struct Untold {
     static void rearrange(const RearrangingMutation& by, Genes genes, base::RandomStream& random) {
         by.apply(genes, random);
@@ -67,10 +67,10 @@ struct Untold {
     static unsigned clamp(Genes genes, const GeneBounds& bounds) { return evolution::clamp(genes, bounds); }
 };
 
-/// What becomes of the genes of those that stay and those that mate.
+/// Makes the genes of survivors and of children.
 class Descent {
   public:
-    /// present  the parents' generation; outlives this.
+    /// present  the parents' generation; must outlive this object.
     Descent(const GeneMatrix& present, const Parameters& parameters, const BreedingKey& key)
         : present_{present}
         , survivor_key_{key.seed, base::Purpose::SurvivorMutation, key.island, key.generation}
@@ -82,9 +82,9 @@ class Descent {
         , mutation_{parameters}
         , bounds_{gene_bounds(parameters)} {}
 
-    // by  does what happens to the chromosome: Untold, or one that tells of it.
+    // by  applies the mutations: WithoutRecord, or a class that also records them.
 
-    /// One that stays, in its place of the next generation. Returns how many genes were clamped.
+    /// Makes a survivor, in its place of the next generation. Returns the number of clamped genes.
     template <class By>
     unsigned keep(std::uint32_t organism, std::uint32_t place, bool mutates, Genes genes, By&& by) const {
         std::ranges::copy(column(present_, organism), genes.begin());
@@ -96,13 +96,13 @@ class Descent {
         return by.mutate(mutation_, genes, mutation);
     }
 
-    /// Of the first child of a pair; the second one's is the complement. Nothing: no crossover.
+    /// The mask of the first child of a pair; the second child has the complement. nullopt: no crossover.
     std::optional<GeneMask> draw_mask(std::uint32_t pair_index) const {
         base::RandomStream random{crossover_key_, pair_index};
         return crossover_.draw(random);
     }
 
-    /// One child, in its place. Returns how many genes were clamped.
+    /// Makes one child, in its place. Returns the number of clamped genes.
     template <class By>
     unsigned beget(const Inheritance& of, std::uint32_t place, Genes child, By&& by) const {
         cross(column(present_, of.parents.first), column(present_, of.parents.second), of.from_second, child);

@@ -99,7 +99,7 @@ std::vector<Pick> picks_of(std::span<const std::uint32_t> picked, std::uint32_t 
     return picks;
 }
 
-/// Does to a chromosome what happens to it, and writes it down.
+/// Applies the mutations to a chromosome and records them.
 struct Telling {
     Descendant& of;
 

@@ -1,11 +1,11 @@
-// Breeding record: how a generation came to be: the wheel and its turns, the tournaments and their contestants, the
-// pairs, the cuts, every gene that moved. Worked out again from what went in, by the same steps (breeding.h); nothing
-// of it is kept while a generation is bred.
+// Breeding record: how a generation was bred: the wheel and its spins, the tournaments and their contestants, the
+// pairs, the cuts, and every changed gene. It is computed afterwards from the same inputs by the same steps
+// (breeding.h); breeding itself records nothing.
 //
 // Threads      none of its own.
-// Determinism  the descendants are those of next_generation() bit for bit.
-// Cost         as the selection and the pairing of next_generation(), whatever part is wanted; the genes are worked out
-//              of those descendants alone that are told of.
+// Determinism  the descendants equal those of next_generation() bit for bit.
+// Cost         as much as the selection and the pairing of next_generation(), whatever rows are requested; genes are
+//              computed only for the requested descendants.
 #pragma once
 
 #include "server/evolution/crossover.h"
@@ -18,7 +18,7 @@
 
 namespace evod::evolution {
 
-/// Which part of each list is wanted: from there on, so many.
+/// Which rows of each list the record contains: count_max rows from the first one on.
 struct WantedRows {
     std::uint32_t first_contender = 0, first_pick = 0, first_descendant = 0;
     std::uint32_t count_max = 0;
@@ -30,28 +30,32 @@ struct BreedingRecord {
         double fitness = 0;
         std::uint32_t rank = 0; // 0: the fittest
         double weight = 0;      // scaled fitness
-        double slot_begin = 0;  // of the wheel, in turns; 0 where none is spun
+        double slot_begin = 0;  // of the wheel, in turns; 0 for methods without a wheel
         double slot_end = 0;
-        double expected_copies = 0; // of all the picks
+        double expected_copies = 0; // mean number of the picks, before chance
         std::uint32_t copies = 0;
-        std::optional<Migrant> migrant;    // that came and took its place; set by who knows of the migration
-        std::optional<double> own_fitness; // what it came to, if `fitness` was shuffled; set by who knows of that
+        std::optional<Migrant> migrant;    // the migrant that took its place; set by the caller, which knows the
+                                           // migration
+        std::optional<double> own_fitness; // its fitness before the shuffle, if `fitness` was shuffled; set by the
+                                           // caller
     };
     struct Pick {
         std::uint32_t organism = 0;
         std::optional<double> turns;             // of the wheel, in [0, 1)
-        std::optional<std::uint32_t> tournament; // index of the one that it won
-        std::vector<std::uint32_t> contestants;  // its own among them; empty if there are none, or too many to tell
+        std::optional<std::uint32_t> tournament; // index of the tournament that it won
+        std::vector<std::uint32_t> contestants;  // of that tournament, itself included; empty without a tournament, or
+                                                 // if there are too many to record
     };
     struct Descendant {
         std::uint32_t id = 0;
         Parents parents{};
         Chromosome first_genes, second_genes; // of the parents
-        GeneMask from_second = 0;             // the genes that come of the second parent
+        GeneMask from_second = 0;             // the genes that come from the second parent
         bool crossed = false;
-        std::optional<std::array<std::uint32_t, gene_count>> order; // rearranged: whose value each gene has got
+        std::optional<std::array<std::uint32_t, gene_count>> order; // after an order mutation: which gene's value each
+                                                                    // gene received
         std::vector<GeneChange> changes;
-        Chromosome genes; // that came of it
+        Chromosome genes; // the result
     };
 
     Places places;
@@ -61,7 +65,9 @@ struct BreedingRecord {
     std::vector<Descendant> descendants; // by index
 };
 
-/// What next_generation() does, given the same. rows: of which it tells; a list that does not go so far is empty.
+/// Records what next_generation() does with the same arguments.
+///
+/// rows  which rows the record contains; a list that has no such rows is empty.
 BreedingRecord record_breeding(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, const WantedRows& rows,
                                base::Executor& executor);

@@ -1,8 +1,9 @@
-// Chance: events of one fixed probability, many to a random word.
+// Chance: events of one fixed probability, many from one random word.
 //
-// A draw compares the binary digits of a uniform number with those of p, first digit first, and stops where they
-// differ: after two digits on average. So six genes are decided by little more than one word, and exactly as likely as
-// p says. Source  Knuth & Yao 1976, "The complexity of nonuniform random number generation".
+// A draw compares the binary digits of a uniform number with the digits of p, from the first, and stops at the first
+// difference: after two digits on average. Six genes therefore take little more than one word, and the probability is
+// exactly p.
+// Source  Knuth & Yao 1976, "The complexity of nonuniform random number generation".
 #pragma once
 
 #include "server/base/random.h"
@@ -13,20 +14,20 @@ namespace evod::evolution {
 
 class Chance {
   public:
-    /// p  in [0, 1]; kept exactly from 2^-11 up, and to a multiple of 2^-64 below.
+    /// p  in [0, 1]; represented exactly from 2^-11 up, and rounded to a multiple of 2^-64 below.
     explicit Chance(double p) : digits_{p < 1 ? static_cast<std::uint64_t>(p * 0x1p64) : 0}, certain_{p >= 1} {}
 
     bool is_never() const { return digits_ == 0 && !certain_; }
 
-    /// The low `count` bits (1 … 32) are each set with probability p, independently; the others are 0. Draws no word if
-    /// p is 0 or 1.
+    /// Sets each of the low `count` bits (1 … 32) with probability p, independently; the other bits are 0. Draws no
+    /// word if p is 0 or 1.
     std::uint32_t draw_bits(unsigned count, base::RandomStream& random) const {
         const std::uint64_t all = (std::uint64_t{1} << count) - 1;
         if (certain_) {
             return static_cast<std::uint32_t>(all);
         }
         std::uint64_t undecided = all, happens = 0;
-        std::uint64_t digits = digits_; // of p, the next one in the highest place
+        std::uint64_t digits = digits_; // of p; the next digit is in the highest place
         while (undecided != 0 && digits != 0) {
             std::uint64_t word = random.word();
             for (unsigned left = 32; left >= count; left -= count) {
@@ -43,8 +44,8 @@ class Chance {
     bool draw(base::RandomStream& random) const { return draw_bits(1, random) != 0; }
 
   private:
-    std::uint64_t digits_; // p · 2^64
-    bool certain_;         // p is 1, which has no such digits
+    std::uint64_t digits_; // p is 1, which has no digits after the point
+    bool certain_;         // p is 1, which is not below 2^64 · 2^-64
 };
 
 } // namespace evod::evolution

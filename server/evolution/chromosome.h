@@ -1,6 +1,6 @@
-// Chromosomes: six real genes each, kept as the columns of one matrix.
+// Chromosomes: six real genes each, stored as the columns of one matrix.
 //
-// Determinism  the first generation is drawn with one stream per organism, so it does not depend on how many there are.
+// Determinism  the first generation uses one stream per organism, so an organism does not depend on how many there are.
 #pragma once
 
 #include "server/base/random.h"
@@ -15,7 +15,7 @@
 
 namespace evod::evolution {
 
-/// The genes in chromosome order.
+/// The genes, in chromosome order.
 enum Gene : unsigned { NormalSpeed, Impulse, BodySize, BaseHealth, FoodRadius, PoisonRadius };
 constexpr unsigned gene_count = 6;
 constexpr std::array<std::string_view, gene_count> gene_names = {"normal_speed", "impulse",     "body_size",
@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, gene_count> gene_names = {"normal_speed",
 using GeneMatrix = Eigen::Array<float, gene_count, Eigen::Dynamic>;
 using Chromosome = Eigen::Array<float, gene_count, 1>;
 
-/// One chromosome in place: a column of a GeneMatrix.
+/// A view of one chromosome: a column of a GeneMatrix.
 using Genes = std::span<float, gene_count>;
 using ConstGenes = std::span<const float, gene_count>;
 
@@ -43,7 +43,7 @@ struct GeneBounds {
 
 GeneBounds gene_bounds(const Parameters& parameters);
 
-/// Puts every gene that is out of bounds onto the nearer bound; returns how many were.
+/// Moves every gene outside its bounds to the nearer bound. Returns how many genes it moved.
 unsigned clamp(Genes genes, const GeneBounds& bounds);
 
 /// The first generation of one island: every gene uniform in [initial_gene_min, initial_gene_max], then clamped to its

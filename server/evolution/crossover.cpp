@@ -37,7 +37,7 @@ Crossover::Crossover(const Parameters& parameters)
     if (wanted == 0) {
         return;
     }
-    for (GeneMask cuts = 2; cuts <= all_genes; cuts += 2) { // an even number has no cut before gene 0
+    for (GeneMask cuts = 2; cuts <= all_genes; cuts += 2) { // even numbers only: bit 0 would be a cut before gene 0
         if (std::popcount(cuts) == wanted) {
             masks_.at(mask_count_++) = mask_of_cuts(cuts);
         }

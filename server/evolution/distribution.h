@@ -1,6 +1,6 @@
-// Distribution: a counting sort of many things into buckets, keeping their order, in blocks that run side by side.
+// Distribution: a stable counting sort of many items into buckets, by blocks that run in parallel.
 //
-// Determinism  where a thing goes depends on the buckets alone, not on the blocks.
+// Determinism  the place of an item depends on the buckets alone, not on the blocks.
 #pragma once
 
 #include "server/base/executor.h"
@@ -11,8 +11,8 @@
 
 namespace evod::evolution {
 
-/// Calls put(i, place) once for each i of 0 … count − 1, side by side: first the things of bucket 0, then those of
-/// bucket 1, each bucket's in order of i.
+/// Calls put(i, place) once for each i of 0 … count − 1, in parallel: first come the items of bucket 0, then those of
+/// bucket 1, and so on, in order of i within a bucket.
 ///
 /// bucket_of(i)  less than bucket_count; called twice.
 /// returns       shape (bucket_count + 1): the place where each bucket begins, and `count`.
@@ -22,7 +22,8 @@ std::vector<std::uint32_t> distribute(std::size_t count, std::size_t bucket_coun
     constexpr std::size_t block_size = 16384;
     const std::size_t blocks = (count + block_size - 1) / block_size;
     std::vector<std::uint32_t> places(blocks *
-                                      bucket_count); // per block and bucket: how many, then where the next goes
+                                      bucket_count); // per block and bucket: the count, later the place of the next
+                                                     // item
     executor.parallel_for(count, block_size, [&](base::Range block) {
         std::uint32_t* const counts = &places[block.begin / block_size * bucket_count];
         for (std::size_t i = block.begin; i < block.end; ++i) {

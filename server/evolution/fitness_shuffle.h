@@ -1,9 +1,10 @@
-// Fitness shuffle: a control for experiments. The fitness of an island's organisms is dealt out among them anew, so
-// that the selection has as much to tell apart as before, but nothing of it has to do with what anyone did or is.
+// Fitness shuffle: a control for experiments. Permutes the fitness values among an island's organisms at random. The
+// selection then has the same differences to select by, but they have nothing to do with the organisms.
 //
-// Owner        World, between a generation's end and the migration; whoever works out again how one was bred.
+// Owner        World, between a generation's end and the migration; also the code that recomputes how a generation was
+//              bred.
 // Threads      none of its own.
-// Determinism  keyed by (seed, FitnessShuffle, island, generation), so any island's can be dealt out again alone.
+// Determinism  keyed by (seed, FitnessShuffle, island, generation), so the shuffle of one island can be repeated alone.
 // Source       the permutation of a permutation test: Good 2005, "Permutation, Parametric and Bootstrap Tests of
 //              Hypotheses".
 #pragma once
@@ -15,16 +16,16 @@
 
 namespace evod::evolution {
 
-/// The fitness by which a generation is bred: shuffled on every island where the parameters ask for it, otherwise as it is.
-/// Migration and selection both go by it, so whatever follows a run must apply this first.
+/// The fitness that a generation is bred by: shuffled on every island if the parameters say so, otherwise unchanged.
+/// Migration and selection both use it, so code that repeats a run must call this first.
 ///
 /// fitness_of  fitness_of(i) returns island i's fitness, a std::span<double>, shape (population).
-/// generation  that has just ended.
+/// generation  the generation that has just ended.
 template <class FitnessOf>
 void apply_shuffle(const Parameters& parameters, std::size_t island_count, FitnessOf&& fitness_of, base::Seed seed,
                    std::uint64_t generation, base::Executor& executor);
 
-/// Every order of the values equally likely. generation: that has just ended.
+/// Permutes the values; every order is equally likely. generation: the one that has just ended.
 void shuffle_fitness(std::span<double> fitness, const BreedingKey& key, base::Executor& executor);
 
 template <class FitnessOf>

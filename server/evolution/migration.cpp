@@ -11,7 +11,7 @@
 namespace evod::evolution {
 namespace {
 
-// The draws of one migration and island are told apart by what they decide, in the place of the tick.
+// The draws of one migration and island have different decisions in the place of the tick.
 enum Decision : std::uint64_t { Destination, WhoLeaves, WhoIsReplaced, LastPlaces };
 
 struct Edge {
@@ -50,11 +50,11 @@ std::vector<Edge> edges(std::uint32_t islands, Topology topology, base::Seed see
     return result;
 }
 
-/// Shares the places of an island among the edges that lead to it: in rounds, one place each, until there are no more
-/// places or migrants. The places of a last round that is not full are drawn.
+/// Divides the places of an island among the edges that lead to it: in rounds, one place each, until places or migrants
+/// run out. The places of an incomplete last round are drawn.
 ///
 /// wanted   migrants of each edge.
-/// returns  how many of them find a place; `wanted` itself where there is room for all, without a draw.
+/// returns  how many migrants of each edge get a place; `wanted` itself, without a draw, if there is room for all.
 std::vector<std::uint32_t> share_of_places(std::vector<std::uint32_t> wanted, std::uint32_t places,
                                            base::RandomStream random, base::Executor& executor) {
     if (std::accumulate(wanted.begin(), wanted.end(), std::uint64_t{0}) <= places) {
@@ -112,7 +112,7 @@ std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fi
         const std::vector<std::uint32_t> leaving =
             share_of_places(std::move(wanted), population(to), stream(to, 0, LastPlaces), executor);
 
-        std::vector<std::uint32_t> replaced; // in the order in which they make room
+        std::vector<std::uint32_t> replaced; // in the order in which their places are taken
         if (parameters.immigrants_replace == Replaced::Worst) {
             const auto order = rankings[to].best_first();
             replaced.assign(order.rbegin(), order.rend());

@@ -1,9 +1,9 @@
-// Migration: once an epoch, each island sends copies of some of its organisms to others.
+// Migration: once per epoch, each island sends copies of some of its organisms to other islands.
 //
-// Owner        World; called between a generation's end and the breeding of the next, so that arrivals can breed.
+// Owner        World; called between a generation's end and the breeding of the next, so that migrants can breed.
 // Threads      none of its own.
-// Determinism  emigrants are chosen, and then copied out, from every island before anyone arrives, islands in index
-//              order, so the result does not depend on the order in which the islands were computed.
+// Determinism  migrants are chosen and copied from every island before any arrives, islands in index order, so the
+//              result does not depend on the order in which islands were computed.
 // Source       Whitley, Rana & Heckendorn 1999, "The Island Model Genetic Algorithm".
 #pragma once
 
@@ -17,9 +17,9 @@
 
 namespace evod::evolution {
 
-/// Who goes from where to where in one migration.
+/// One migrant: which organism goes from where to where.
 struct Migrant {
-    std::uint32_t from, to; // islands, never the same
+    std::uint32_t from, to; // islands, never equal
     std::uint32_t organism; // index in `from`
     std::uint32_t replaces; // index in `to`
     friend bool operator==(const Migrant&, const Migrant&) = default;
@@ -31,19 +31,19 @@ bool migration_due(std::uint64_t generation, const Parameters& parameters);
 /// Chooses the migrants of one epoch; changes nothing.
 ///
 /// ring             island i sends to i + 1, the last to the first.
-/// fully_connected  every island sends to every other.
-/// random           every island sends to one other, drawn afresh each time, each equally likely.
+/// fully_connected  every island sends to every other island.
+/// random           every island sends to one other island, drawn in each epoch, each equally likely.
 ///
-/// Along each edge go min(migrant_count, population) different organisms: the best, best first (ties: lower index), or
-/// different ones drawn uniformly for that edge. Those that arrive at an island replace its worst, worst first (of
-/// equals the higher index is the worse), or different ones drawn uniformly. If more would arrive than the island
-/// holds, its places are shared evenly among the edges: none gets more than one place more than another, unless the other
-/// has no more migrants. The edges that get the places left over are drawn, each equally likely.
+/// min(migrant_count, population) different organisms go along each edge: either the best, best first (ties: lower
+/// index), or organisms drawn uniformly for that edge. At an island they replace either the worst, worst first (of
+/// equals the higher index is the worse), or different organisms drawn uniformly. If more would arrive than the island
+/// holds, its places are shared evenly among the edges: an edge gets at most one place more than another, unless the
+/// other has no more migrants. The edges that get the remaining places are drawn, each equally likely.
 ///
-/// fitness     one span per island, shape (population), finite; not all islands need the same population, and one may
-///             be empty: it sends and receives nobody.
-/// generation  that has just ended; keys the draws.
-/// returns     ordered by (to, from); no organism is replaced twice; empty with a single island or Topology::None.
+/// fitness     one span per island, shape (population), finite. Populations may differ; an island with an empty
+///             population sends and receives none.
+/// generation  the generation that has just ended; keys the draws.
+/// returns     ordered by (to, from); no organism is replaced twice; empty for a single island or Topology::None.
 std::vector<Migrant> choose_migrants(std::span<const std::span<const double>> fitness, const Parameters& parameters,
                                      base::Seed seed, std::uint64_t generation);
 
@@ -53,7 +53,7 @@ struct IslandPopulation {
     std::span<double> fitness; // shape (population)
 };
 
-/// Copies every migrant's chromosome and fitness out, then puts them where they go.
+/// Copies the chromosome and fitness of every migrant, then writes the copies to their places.
 void migrate(std::span<const Migrant> migrants, std::span<const IslandPopulation> islands);
 
 } // namespace evod::evolution

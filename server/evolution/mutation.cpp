@@ -15,13 +15,14 @@ double symmetric_uniform(base::RandomStream& random) {
     return (random.word() + 0.5) * 0x1p-31 - 1;
 }
 
-/// Standard normal numbers, most of them for one word: the area under the density is covered by layers of equal area,
-/// and a place in a layer that lies wholly under the density is taken as it is. Source: Marsaglia & Tsang 2000, "The
-/// ziggurat method for generating random variables", with independent bits for layer and place (Doornik 2005).
+/// Standard normal numbers, most of them from one word. The area under the density is covered by layers of equal area;
+/// a point in the part of a layer that lies entirely under the density is accepted at once.
+/// Source  Marsaglia & Tsang 2000, "The ziggurat method for generating random variables", with independent bits for
+///         layer and position (Doornik 2005).
 class Ziggurat {
   public:
     Ziggurat() {
-        width_[0] = area / density(tail); // the lowest layer, the tail included
+        width_[0] = area / density(tail); // the lowest layer, including the tail
         width_[1] = tail;
         for (unsigned i = 2; i < layers; ++i) {
             width_[i] = std::sqrt(-2 * base::log(area / width_[i - 1] + density(width_[i - 1])));
@@ -44,7 +45,7 @@ class Ziggurat {
             if (layer == 0) {
                 return std::copysign(draw_tail(random), x);
             }
-            // Between the densities at the layer's two edges.
+            // Between the densities at the two edges of the layer.
             const double low = density(width_[layer]), high = density(width_[layer + 1]);
             if (low + random.uniform() * (high - low) < density(x)) {
                 return x;
@@ -56,9 +57,9 @@ class Ziggurat {
     static constexpr unsigned layers = 128;
     static constexpr double tail = 3.442619855899, area = 9.91256303526217e-3; // for 128 layers
 
-    static double density(double x) { return base::exp(-x * x / 2); } // but for a factor
+    static double density(double x) { return base::exp(-x * x / 2); } // without the constant factor
 
-    /// Source: Marsaglia 1964, "Generating a variable from the tail of the normal distribution".
+    /// Source  Marsaglia 1964, "Generating a variable from the tail of the normal distribution".
     static double draw_tail(base::RandomStream& random) {
         while (true) {
             const double beyond = -base::log(1 - random.uniform()) / tail; // 1 − [0, 1) is never 0
@@ -68,8 +69,8 @@ class Ziggurat {
         }
     }
 
-    std::array<double, layers + 1> width_;    // of half a layer, from the lowest up; falling
-    std::array<double, layers> wholly_under_; // the share of it above which the next layer lies
+    std::array<double, layers + 1> width_;    // half the width of each layer, from the lowest up; decreasing
+    std::array<double, layers> wholly_under_; // the share of the width that lies entirely under the density
 };
 
 double draw_normal(base::RandomStream& random) {
@@ -77,7 +78,7 @@ double draw_normal(base::RandomStream& random) {
     return ziggurat.draw(random);
 }
 
-// Up to here it is cheaper to draw the ways from flip to flip than to draw for each bit.
+// Up to this probability it is cheaper to draw the distances between flips than to draw for each bit.
 constexpr double rare_flip_chance_max = 0.125;
 
 /// Calls `change` for every gene of the mask, in order.
@@ -169,7 +170,8 @@ template <class Change>
 void ValueMutation::flip_bits(ConstGenes genes, base::RandomStream& random, const Change& change) const {
     std::array<std::uint32_t, gene_count> flips{};
     if (rare_flips_) {
-        // A division by bits_, exact for so few trials: what the reciprocal is too large comes to less than 2^16.
+        // A division by bits_. It is exact because there are few trials: the error of the reciprocal adds up to less
+        // than 2^16.
         const unsigned reciprocal = (1u << 16) / bits_ + 1;
         rare_flips_->draw(random, [&](unsigned trial) {
             const unsigned gene = trial * reciprocal >> 16;

@@ -1,8 +1,8 @@
-// Value-making mutation: creep, random reset and bit flip give genes new values; then the bounds hold.
+// Value mutation: creep, random reset and bit flip give genes new values; then genes are clamped to their bounds.
 //
-// Determinism  the caller hands one stream per chromosome; how much of it is used depends on what mutates.
+// Determinism  the caller passes one stream per chromosome; how many words it takes depends on which genes mutate.
 // Source       Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.3.1 (bit flip), 4.4.1 (creep, random
-// reset).
+//              reset).
 #pragma once
 
 #include "server/base/random.h"
@@ -17,8 +17,8 @@
 
 namespace evod::evolution {
 
-/// The fixed-point binary view of a gene: `bits` plain binary digits (no Gray code, so neighbours can differ in all of
-/// them), all 0 at the lower bound and all 1 at the upper.
+/// The fixed-point binary view of a gene: `bits` plain binary digits, all 0 at the lower bound and all 1 at the upper.
+/// It is no Gray code, so neighbouring values can differ in all digits.
 struct BinaryView {
     float min, max;
     unsigned bits; // 1 … 24
@@ -30,7 +30,7 @@ struct BinaryView {
 
 enum class ChangeKind { Creep, Reset, BitFlip, Clamp };
 
-/// What happened to a gene.
+/// One change of a gene.
 struct GeneChange {
     unsigned gene = 0;
     ChangeKind kind = ChangeKind::Creep;
@@ -38,7 +38,7 @@ struct GeneChange {
     friend bool operator==(const GeneChange&, const GeneChange&) = default;
 };
 
-/// clamp(), and says which genes were put onto a bound.
+/// Like clamp(), and appends the genes that it moved to `changes`.
 unsigned clamp(Genes genes, const GeneBounds& bounds, std::vector<GeneChange>& changes);
 
 class ValueMutation {
@@ -50,18 +50,17 @@ class ValueMutation {
     /// creep     each gene with probability mutation_chance: + mutation_step · U, U uniform in (−1, 1) or standard
     ///           normal.
     /// reset     each gene with probability reset_chance: uniform within its bounds.
-    /// bounds    a gene outside is put onto the nearer one, and counted.
-    /// bit flip  each bit of each gene's BinaryView with probability bit_flip_chance. A gene none of whose bits flips
-    /// is
-    ///           not touched; one that is touched is also rounded to a value that has a code.
+    /// bounds    a gene outside its bounds is moved to the nearer bound, and counted.
+    /// bit flip  each bit of each gene's BinaryView with probability bit_flip_chance. A gene is changed only if one of
+    ///           its bits flips; it is then also rounded to a value that has a code.
     ///
-    /// returns  how many genes were clamped.
+    /// returns  the number of clamped genes.
     unsigned apply(Genes genes, base::RandomStream& random) const;
-    /// The same, and adds what happened, in order.
+    /// The same, and appends the changes to `changes`, in order.
     unsigned apply(Genes genes, base::RandomStream& random, std::vector<GeneChange>& changes) const;
 
   private:
-    /// change(gene, kind, value)  gives a gene a value.
+    /// change(gene, kind, value)  sets a gene.
     template <class Change, class Clamp>
     unsigned mutate(ConstGenes genes, base::RandomStream& random, const Change& change, const Clamp& clamp_all) const;
     template <class Change>
@@ -74,7 +73,7 @@ class ValueMutation {
     Chance reset_chance_;
     Chance bit_flip_chance_;
     unsigned bits_;
-    std::optional<RareEvents> rare_flips_; // of the bits of a chromosome, where flips are rare
+    std::optional<RareEvents> rare_flips_; // over the bits of a chromosome, if flips are rare
 };
 
 } // namespace evod::evolution

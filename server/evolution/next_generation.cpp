@@ -18,7 +18,7 @@ class Breeding {
     Breeding(const GeneMatrix& genes, const Parameters& parameters, const BreedingKey& key, base::Executor& executor)
         : present_{genes}, executor_{executor}, descent_{genes, parameters, key} {}
 
-    /// Copies the survivors; those after `kept` are mutated.
+    /// Copies the survivors, and mutates those after `kept`.
     void keep(std::span<const std::uint32_t> survivors, std::uint32_t kept, NextGeneration& next) const {
         next.clamped_count += counted(survivors.size(), survivors_per_piece, [&](std::size_t i) {
             const auto place = static_cast<std::uint32_t>(i);
@@ -30,7 +30,7 @@ class Breeding {
         });
     }
 
-    /// Fills the places from `first` on with two children a pair; the last pair may have room for only one.
+    /// Fills the places from `first` on with two children per pair; the last pair may have room for only one.
     void breed(std::span<const Parents> pairs, std::uint32_t first, NextGeneration& next) const {
         const auto organisms = static_cast<std::uint32_t>(next.genes.cols());
         next.clamped_count += counted(pairs.size(), pairs_per_piece, [&](std::size_t i) {
@@ -52,14 +52,14 @@ class Breeding {
     }
 
   private:
-    /// Has a chromosome fetched that is soon to be read: those of parents lie all over the memory.
+    /// Prefetches a chromosome that will be read soon: parents are scattered over memory.
     void prefetch(std::uint32_t organism) const {
         const ConstGenes genes = column(present_, organism);
         __builtin_prefetch(&genes.front());
         __builtin_prefetch(&genes.back());
     }
 
-    /// Runs `work` for each index and adds up what it returns.
+    /// Runs `work` for each index and returns the sum of its results.
     template <class Work>
     std::uint64_t counted(std::size_t count, std::size_t grain, const Work& work) const {
         std::vector<std::uint64_t> of_piece((count + grain - 1) / grain);

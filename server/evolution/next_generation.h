@@ -1,13 +1,12 @@
-// The next generation of one island: who stays, who breeds, and what becomes of their genes.
+// The next generation of one island: chooses survivors and parents, and makes the genes of all organisms.
 //
-//   fitness → scaling → selection → pairing → crossover → rearranging → creep, reset, bit flip → bounds
+//   fitness → scaling → selection → pairing → crossover → order mutation → creep, reset, bit flip → bounds
 //
 // Owner        World, once per generation and island.
-// Threads      none of its own; pairs and survivors are worked on in blocks given to the executor.
-// Determinism  every draw is keyed by (seed, stage, island, generation) and by the draw, pair or place it belongs to,
-// so
-//              the result does not depend on threads, and any single child can be worked out again alone.
-// Cost         O(n) time and memory in the larger of the two population sizes, for every choice of every stage but
+// Threads      none of its own; the executor processes pairs and survivors in blocks.
+// Determinism  every draw is keyed by (seed, stage, island, generation) and by its draw, pair or place. The result does
+//              not depend on threads, and any single child can be recomputed alone.
+// Cost         O(n) time and memory in the larger of the two population sizes, for every choice of every stage except
 //              tournament selection, which adds its contestants (tournament.h).
 #pragma once
 
@@ -25,7 +24,7 @@
 
 namespace evod::evolution {
 
-/// What the draws of one breeding are keyed by.
+/// The key of all draws of one breeding.
 struct BreedingKey {
     base::Seed seed;
     std::uint32_t island = 0;     // index, from 0
@@ -35,44 +34,45 @@ struct BreedingKey {
 struct NextGeneration {
     GeneMatrix genes;              // shape (gene_count, organisms): the elite, the other survivors, the children
     std::vector<Parents> parents;  // shape (organisms); first the parent that gave more of the genes
-    std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the last generation, best first
-    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 were kept, the elite among them; then children
-    std::uint64_t clamped_count = 0; // genes that were out of bounds and were put onto them
-    // From the generation before; set by who knows it as it was before migrants came. None: it is the first, or nobody
-    // knows.
+    std::uint32_t elite_count = 0; // organisms 0 … elite_count − 1: the best of the previous generation, best first
+    std::uint32_t survivor_count = 0; // organisms 0 … survivor_count − 1 survived, the elite among them; the others are
+                                      // children
+    std::uint64_t clamped_count = 0; // genes that were out of bounds and were clamped
+    // Compared with the previous generation before migration. Set by the caller; nullopt in the first generation, or if
+    // the previous one is not available.
     std::optional<SelectionAccount> account = std::nullopt;
 };
 
-/// How the places of the next generation are shared out.
+/// How the places of the next generation are divided.
 struct Places {
     std::uint32_t elite, survivors, children; // the survivors include the elite
 };
 
 /// The places of a next generation of `wanted` organisms bred from `present`; both >= 1.
 ///
-/// elite         elite_count, at most all of the present and at most all the places.
+/// elite         elite_count, but not more than `present` or `wanted`.
 /// hybrid        survivors: round(survivors · wanted), half up, at least 1 and at least the elite.
 /// generational  survivors: the elite alone.
-/// steady_state  survivors: min(present, wanted) − replaced_count, at least 0 and at least the elite, so all that a
-///               population grows by are children, and one that shrinks loses its worst.
+/// steady_state  survivors: min(present, wanted) − replaced_count, at least 0 and at least the elite. A growing
+///               population grows by children; a shrinking one loses its worst organisms.
 Places share_places(std::uint32_t present, std::uint32_t wanted, const Parameters& parameters);
 
-/// Breeds the next generation; changes nothing it is given.
+/// Breeds the next generation; does not change its arguments.
 ///
 /// fitness     shape (present), any finite numbers, present >= 1; larger is better, ties go to the lower index.
 /// genes       shape (gene_count, present).
 /// parameters  each in its range.
-/// wanted      organisms in the next generation, >= 1; more or fewer than there are makes the population grow or
-/// shrink.
+/// wanted      organisms in the next generation, >= 1; the population grows or shrinks to this number.
 ///
-/// hybrid        The selection picks as many as survive; one that is picked twice survives twice. The elite come first,
-///               each using up one of its picks if it has any, else the place of the last pick. The survivors are the
-///               parents.
-/// generational  As many parents as children, but at least two, are selected from everyone.
-/// steady_state  The best stay, in index order after the elite; parents as in generational, so the worst breed too.
+/// hybrid        The selection picks as many organisms as survive; an organism that is picked twice survives twice. The
+///               elite come first. Each of them uses up one of its picks, or the last pick if it has none. The
+///               survivors are the parents.
+/// generational  As many parents as children, but at least two, are selected from the whole population.
+/// steady_state  The best survive, in index order after the elite. Parents are selected as in generational, so the
+///               worst breed too.
 ///
-/// The elite are copied unchanged; so are the other survivors unless mutate_survivors. Bounds that were narrowed since
-/// hold for everyone.
+/// The elite are copied unchanged, and so are the other survivors unless mutate_survivors is on. Every organism is
+/// clamped to the present bounds.
 NextGeneration next_generation(std::span<const double> fitness, const GeneMatrix& genes, const Parameters& parameters,
                                std::uint32_t wanted, const BreedingKey& key, base::Executor& executor);
 

@@ -1,6 +1,4 @@
-// Pairing: who mates with whom.
-//
-// Determinism  each round has a stream of its own.
+// Pairing: decides which parents mate.
 #pragma once
 
 #include "server/base/executor.h"
@@ -12,19 +10,19 @@
 
 namespace evod::evolution {
 
-/// Where a chromosome comes from: indices into the parents' generation.
+/// The parents of a chromosome: indices into the parents' generation.
 struct Parents {
     std::uint32_t first, second; // equal for a survivor, and for a child of one organism with itself
     friend bool operator==(const Parents&, const Parents&) = default;
 };
 
-/// Pairs up parents in rounds. In a round all are shuffled and neighbours mate; if their number is odd, the one left
-/// over mates with one of the others, each equally likely, and a lone parent with itself. So everyone has mated before
-/// anyone mates for a second time of its own. Rounds follow, freshly shuffled, until there are enough pairs; the last
-/// one's surplus pairs are not made.
+/// Pairs parents in rounds. In each round all parents are shuffled and neighbours mate. If their number is odd, the
+/// last one mates with one of the others, each equally likely; a single parent mates with itself. In each round, every
+/// parent mates. Rounds are repeated, with a new shuffle each, until there are enough pairs; the surplus pairs of the
+/// last round are omitted.
 ///
-/// parents  indices into the present generation, at least one if pair_count > 0. An organism that was selected twice is
-///          two parents, and may mate with itself.
+/// parents  indices into the present generation, at least one if pair_count > 0. An organism that was selected twice
+///          counts as two parents, and may mate with itself.
 /// key      made for Purpose::Pairing; round i draws from the stream of entity i.
 /// returns  shape (pair_count).
 std::vector<Parents> pair_up(std::span<const std::uint32_t> parents, std::uint32_t pair_count,

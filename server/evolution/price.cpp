@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t organisms_per_block = 8192;
 constexpr std::uint32_t parents_prefetched = 16;
 
-/// A number for each gene, two in a vector: compilers left to themselves take them one by one, at twice the cost.
+/// A number for each gene, two in a vector. Compilers process single numbers one by one, at twice the cost.
 class Numbers {
   public:
     Numbers() = default;
@@ -52,11 +52,11 @@ class Numbers {
     Pair pairs_[pair_count] = {};
 };
 
-/// Several sums, each of every gene.
+/// Several sums, each with one number per gene.
 template <std::size_t count>
 using SumsOf = std::array<Numbers, count>;
 
-/// Adds up over the organisms [0, organisms): `add(i, sums)` adds what organism i has to give.
+/// Sums over the organisms [0, organisms): `add(i, sums)` adds the terms of organism i.
 template <std::size_t count, class Add>
 SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add& add) {
     std::vector<SumsOf<count>> blocks((organisms + organisms_per_block - 1) / organisms_per_block);
@@ -76,8 +76,8 @@ SumsOf<count> summed(std::size_t organisms, base::Executor& executor, const Add&
     return total;
 }
 
-/// Near the means of the genes, with few digits: differences of genes from it are exact, or nearly, and their sums are
-/// small, so that what the means differ by is known to more digits than the means themselves.
+/// A number near the mean of each gene, with few digits. Differences from it are exact, or nearly, and their sums are
+/// small, so the differences of means are more precise than the means themselves.
 Numbers centre_of(const GeneMatrix& genes, base::Executor& executor) {
     const auto organisms = static_cast<std::size_t>(genes.cols());
     const SumsOf<1> sums =
@@ -107,7 +107,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
 
     const auto population = summed<1>(
         organisms, executor, [&](std::uint32_t i, SumsOf<1>& sums) { sums[0] += Numbers{column(before, i)} - centre; });
-    // Those whom breeding saw, and by how much they are others than were born.
+    // The organisms that breeding saw, and their difference from the organisms as they were born.
     SumsOf<2> seen{population[0], {}};
     if (&before != &bred_from) {
         seen = summed<2>(organisms, executor, [&](std::uint32_t i, SumsOf<2>& sums) {
@@ -116,8 +116,7 @@ SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_fr
             sums[1] += z - Numbers{column(before, i)};
         });
     }
-    // The descendants; their parents, each as often as it has descendants; and by how much the ones differ from the
-    // others.
+    // The descendants; their parents, each counted once per descendant; and the differences between the two.
     const auto descent = summed<3>(parents.size(), executor, [&](std::uint32_t i, SumsOf<3>& sums) {
         if (i + parents_prefetched < parents.size()) {
             prefetch(bred_from, parents[i + parents_prefetched].first);

@@ -1,20 +1,19 @@
-// Price: what the mean of each gene did from one generation of an island to the next, and which part of that was
-// selection, which transmission and which migration. An account of what happened, that nothing reads back.
+// Price equation: splits the change of each gene's mean from one generation of an island to the next into selection,
+// transmission and migration. The numbers are statistics; the simulation never reads them.
 //
 //   change of the mean  =  selection  +  transmission  +  migration
-//                           Cov(w, z)    E(w · Δz)        z̄ − z̄ of before migrants came
+//                           Cov(w, z)    E(w · Δz)        z̄ − z̄ before migrants arrived
 //                           ─────────    ─────────
 //                              w̄            w̄
 //
-// over the organisms that breeding saw, migrants among them: z, the gene; w, how many descendants an organism has, ½
-// for each child that it is one of two parents of, 1 for each place that it is kept in itself; Δz, how far the genes of
-// those descendants are from its own, on average. So crossover, mutation, of survivors too, and bounds are
-// transmission.
+// The sums run over the organisms that breeding saw, migrants included. z is the gene. w is the number of an organism's
+// descendants: ½ for each child that it is one of two parents of, 1 for each place in which it survives. Δz is the mean
+// difference between the genes of these descendants and its own. Crossover, mutation (also of survivors) and bounds are
+// therefore transmission.
 //
-// Threads      none of its own; populations are gone through in blocks given to the executor.
-// Determinism  sums are taken in double by index, over blocks of fixed size, whose sums are added in order; no number
-// of
-//              the simulation follows from them.
+// Threads      none of its own; the executor processes populations in blocks.
+// Determinism  sums are taken in double by index, over blocks of fixed size, whose sums are added in order. No number
+//              of the simulation depends on them.
 // Source       Price 1970, Nature 227, 520–521, doi:10.1038/227520a0.
 #pragma once
 
@@ -29,27 +28,28 @@
 
 namespace evod::evolution {
 
-/// Of one gene, in its units. Each is summed up for itself, so that the first three together are the fourth but for
-/// rounding.
+/// The account of one gene, in its units. Each number is summed separately, so the first three add up to the fourth
+/// except for rounding.
 struct GeneAccount {
     double selection = 0, transmission = 0, migration = 0, change = 0;
     friend bool operator==(const GeneAccount&, const GeneAccount&) = default;
 };
 
-/// Of every gene, in chromosome order.
+/// One account per gene, in chromosome order.
 using SelectionAccount = std::array<GeneAccount, gene_count>;
 
-/// How a generation came from the one before.
+/// Computes how a generation developed from the previous one.
 ///
-/// before     chromosomes of that one as they were born; at least one.
-/// bred_from  the same as breeding saw them: with those of migrants in the places that they took over. May be `before`.
-/// born       chromosomes of the generation; at least one, and not always as many.
-/// parents    of those, in bred_from; shape (born).
+/// before     chromosomes of the previous generation as they were born; at least one.
+/// bred_from  the same after migration: the places of replaced organisms hold the migrants' chromosomes. May be
+///            `before`.
+/// born       chromosomes of the generation; at least one; their number may differ.
+/// parents    of the organisms in `born`, as indices into bred_from; shape (born).
 SelectionAccount account_for(const GeneMatrix& before, const GeneMatrix& bred_from, const GeneMatrix& born,
                              std::span<const Parents> parents, base::Executor& executor);
 
-/// Calls visit(name, value) for every number, in the order in which files have them as columns; a value is a
-/// std::optional<double>, nothing where there is no account.
+/// Calls visit(name, value) for every number, in the order of columns in files. A value is a std::optional<double>,
+/// nullopt if there is no account.
 template <class Visit>
 void for_each_number(const std::optional<SelectionAccount>& account, Visit&& visit) {
     for (unsigned gene = 0; gene < gene_count; ++gene) {
@@ -64,7 +64,7 @@ void for_each_number(const std::optional<SelectionAccount>& account, Visit&& vis
     }
 }
 
-/// The account of which for_each_number() tells; nothing if any number is missing.
+/// The inverse of for_each_number(): reads an account; nullopt if any number is missing.
 ///
 /// next  called for each number in that order: std::optional<double>().
 template <class Next>

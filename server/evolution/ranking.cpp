@@ -21,13 +21,13 @@ struct Entry {
     }
 };
 
-/// Cuts what lies between the greatest and the least fitness into buckets of equal width. A fitter organism is never in
-/// a later bucket, whatever rounding does: each step of the computation keeps the order.
+/// Divides the range of fitness into buckets of equal width. A fitter organism is never in a later bucket, despite
+/// rounding: every step of the computation is monotonic.
 class Buckets {
   public:
     explicit Buckets(std::span<const double> fitness) {
         const auto [least, greatest] = std::minmax_element(fitness.begin(), fitness.end());
-        half_of_greatest_ = *greatest / 2; // halves, as the whole difference may be more than a double holds
+        half_of_greatest_ = *greatest / 2; // halves, because the full difference may overflow a double
         const auto count = std::clamp<std::size_t>(fitness.size() / organisms_per_bucket, 1, buckets_max);
         const double per_unit = static_cast<double>(count) / (half_of_greatest_ - *least / 2);
         if (std::isfinite(per_unit)) {

@@ -1,5 +1,5 @@
-// Rare events: which of many trials, each with the same small chance, succeed. Draws one word an event rather than a
-// few bits a trial: it draws how many trials fail until the next success.
+// Rare events: which of many trials, each with the same small probability, succeed. Draws how many trials fail before
+// the next success: one word per event, rather than a few bits per trial.
 //
 // Source  geometric skips by inversion: Devroye 1986, Non-Uniform Random Variate Generation, III.2 and X.2.
 #pragma once
@@ -18,7 +18,7 @@ class RareEvents {
     static constexpr unsigned trials_max = 160;
 
     /// trials  at most trials_max.
-    /// chance  of each, in [0, 1); kept to 2^-53.
+    /// chance  of each trial, in [0, 1); rounded to 2^-53.
     RareEvents(unsigned trials, double chance) : trials_{trials} {
         EVOD_ASSERT(trials <= trials_max && chance >= 0 && chance < 1);
         double failures = 1;
@@ -46,14 +46,14 @@ class RareEvents {
     }
 
   private:
-    /// How many trials fail first: k + 1 or more with chance all_fail_[k]; trials_ if none succeeds.
+    /// How many trials fail first: k + 1 or more with probability all_fail_[k]; trials_ if none succeeds.
     unsigned skip(base::RandomStream& random) const {
         const std::uint32_t high = random.word();
         unsigned skip = guide_[high / (0xffffffffu / guides + 1)];
         while (skip > 0 && all_fail_[skip - 1].high < high) {
             --skip;
         }
-        // Where the first word says no more than that it could be either, a second one decides.
+        // If the first word fits two answers, a second word decides.
         if (skip == 0 || all_fail_[skip - 1].high != high) {
             return skip;
         }
@@ -64,13 +64,13 @@ class RareEvents {
         return skip;
     }
 
-    /// A chance in two words of binary digits.
+    /// A probability as two words of binary digits.
     struct Digits {
         std::uint32_t high, low;
     };
-    static constexpr unsigned guides = 1024; // so many that most words need no further look
+    static constexpr unsigned guides = 1024; // so many that most words need no search
     unsigned trials_;
-    std::array<Digits, trials_max> all_fail_{}; // [k]: that the first k + 1 trials all fail
+    std::array<Digits, trials_max> all_fail_{}; // [k]: the probability that the first k + 1 trials all fail
     std::array<std::uint8_t, guides> guide_{};  // the greatest skip that a word with these first digits can mean
 };
 

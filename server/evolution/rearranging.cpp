@@ -7,7 +7,7 @@ namespace evod::evolution {
 namespace {
 
 struct Slice {
-    unsigned first, last; // first < last, both included
+    unsigned first, last; // first < last, both inclusive
 };
 
 Slice draw_slice(base::RandomStream& random) {

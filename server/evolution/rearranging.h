@@ -1,4 +1,4 @@
-// Rearranging mutation: genes change places inside a chromosome. It makes no new value, and it is optional.
+// Order mutation: genes change places inside a chromosome. It makes no new values, and it is optional.
 //
 // Source  Eiben & Smith 2015, Introduction to Evolutionary Computing, 4.5.1 (swap, scramble, inversion).
 #pragma once
@@ -13,26 +13,26 @@
 
 namespace evod::evolution {
 
-/// Which gene's value each gene has got.
+/// Which gene's value each gene received.
 using GeneOrder = std::span<std::uint32_t, gene_count>;
 
 class RearrangingMutation {
   public:
     explicit RearrangingMutation(const Parameters& parameters);
 
-    /// Rearranges with probability rearrange_chance. Every slice or pair below is of two different indices, each pair
-    /// of them equally likely.
+    /// Mutates with probability rearrange_chance. Every slice or pair below has two different indices, each pair of
+    /// indices equally likely.
     ///
-    /// swap       two genes trade places; with even chance a second pair does too, which can be the same.
-    /// scramble   the genes of a slice, both ends included, are put in an order drawn uniformly, which can be the one
-    ///            they are in: with different genes that happens with probability 2383/10800.
-    /// inversion  the genes of a slice, both ends included, are put in the opposite order.
+    /// swap       two genes trade places; with probability 1/2 a second pair does too, which can be the same.
+    /// scramble   the genes of a slice, both ends included, are put in an order drawn uniformly. It can be the present
+    ///            order: with different genes that happens with probability 2383/10800.
+    /// inversion  the genes of a slice, both ends included, are reversed.
     ///
-    /// The genes may be out of their bounds afterwards, as each gene has bounds of its own.
+    /// Genes may be out of their bounds afterwards, because each gene has bounds of its own.
     ///
-    /// returns  whether an event of that probability happened.
+    /// returns  whether the event happened.
     bool apply(Genes genes, base::RandomStream& random) const;
-    /// Does to something else what apply() does to genes.
+    /// Applies the same operation to gene numbers instead of genes.
     bool apply(GeneOrder order, base::RandomStream& random) const;
 
     bool is_off() const { return method_ == Rearranging::None || chance_.is_never(); }

@@ -41,7 +41,7 @@ std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameter
         for (const std::uint32_t organism : ranking.best_first()) {
             scaled[organism] = weight;
             weight *= parameters.ranking_decay;
-            // Rounding would keep the least double where it is for ever, at the price of slow arithmetic.
+            // Rounding would keep the weight at the least double for ever, and such numbers are slow to compute with.
             if (weight < std::numeric_limits<double>::min()) {
                 weight = 0;
             }

@@ -1,6 +1,7 @@
-// Scaling: what selection in proportion to fitness is given in the place of the fitness itself.
+// Scaling: converts fitness into the weights of proportional selection.
 //
-// Scaling never changes who is better than whom, so tournament and truncation, which ask only that, read the fitness.
+// Scaling never changes the order of organisms, so tournament and truncation, which need only the order, use the
+// fitness.
 // Determinism  element by element, in index or rank order.
 #pragma once
 
@@ -15,17 +16,17 @@ namespace evod::evolution {
 /// Expected copies of the organism of rank `rank` (0 = fittest) of `population` when as many are drawn as there are:
 /// pressure − 2(pressure − 1) · rank/(population − 1); 1 in a population of one.
 ///
-/// pressure  1 (all alike) to 2 (the worst is never drawn).
+/// pressure  1 (all equal) to 2 (the worst is never drawn).
 /// Source    Baker 1985, "Adaptive selection methods for genetic algorithms".
 double linear_rank_weight(std::uint32_t rank, std::uint32_t population, double pressure);
 
 /// The scaled fitness, shape (population).
 ///
 /// none                 the fitness.
-/// windowing            the fitness less the least fitness, so the worst gets 0; halved if that would overflow.
+/// windowing            the fitness minus the least fitness, so the worst gets 0; halved if that would overflow.
 /// linear_ranking       linear_rank_weight with ranking_pressure.
-/// exponential_ranking  ranking_decay^rank; ranks so far down that this is below 2^-1022 get 0.
-///                      Source: Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361.
+/// exponential_ranking  ranking_decay^rank; 0 for ranks where this is below 2^-1022. Source: Blickle & Thiele 1996,
+///                      Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361.
 std::vector<double> scaled_fitness(Ranking& ranking, const Parameters& parameters);
 
 } // namespace evod::evolution

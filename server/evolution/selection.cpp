@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t spins_per_stream = 4096;
 constexpr std::size_t pointers_per_piece = 16384;
 
-/// Calls stop(i, turns) for each spin of a roulette, side by side.
+/// Calls stop(i, turns) for each spin of a roulette, in parallel.
 template <class Stop>
 void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& executor, const Stop& stop) {
     executor.parallel_for(spins, spins_per_stream, [&](base::Range piece) {
@@ -25,7 +25,7 @@ void spin(std::uint32_t spins, const base::RandomKey& key, base::Executor& execu
     });
 }
 
-/// Where one of `wanted` equally spaced pointers stands, in turns; `offset` of a space on from its first place.
+/// The position of one of `wanted` equally spaced pointers, in turns. The first pointer is `offset` of a space from 0.
 double pointer_turns(std::size_t pointer, double offset, std::uint32_t wanted) {
     return (static_cast<double>(pointer) + offset) / wanted;
 }
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t want
             while (slot < ends.end() && *slot <= place(pointer)) {
                 ++slot;
             }
-            // Rounding can put the last pointer onto the end of the wheel.
+            // Rounding can put the last pointer at the end of the wheel.
             picked[pointer] = static_cast<std::uint32_t>(std::min(slot, ends.end() - 1) - ends.begin());
         }
     });

@@ -1,9 +1,9 @@
-// Selection: who breeds. Every method picks `wanted` organisms from a population; repeats are allowed but for random
-// selection and truncation, which repeat only when they have been through everybody.
+// Selection: chooses the organisms that breed. Every method picks `wanted` organisms from a population. Repeats are
+// allowed; random selection and truncation repeat an organism only after they have picked every one.
 //
 // Determinism  picks are keyed one by one (tournaments) or in blocks of fixed size (roulette), or drawn from one
-// stream. Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361, for the laws of all of
-//              them.
+//              stream.
+// Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361, for the laws of all methods.
 #pragma once
 
 #include "server/base/executor.h"
@@ -17,7 +17,7 @@
 
 namespace evod::evolution {
 
-/// Roulette: each pick is a spin of its own, so pick after pick falls on an organism with the chance of its share.
+/// Roulette: each pick is an independent spin. The chance of an organism is its share of the wheel.
 /// returns  shape (wanted), in order of the spins.
 std::vector<std::uint32_t> spin_roulette(const Wheel& wheel, std::uint32_t wanted, const base::RandomKey& key,
                                          base::Executor& executor);
@@ -32,30 +32,30 @@ std::vector<double> roulette_turns(std::uint32_t wanted, const base::RandomKey& 
 std::vector<std::uint32_t> spin_universal(const Wheel& wheel, std::uint32_t wanted, base::RandomStream& random,
                                           base::Executor& executor);
 
-/// Where the pointer of each of those picks stands, in turns from the first slot, to within rounding in [0, 1).
+/// The position of the pointer of each of those picks, in turns from the first slot, in [0, 1) except for rounding.
 std::vector<double> universal_turns(std::uint32_t wanted, base::RandomStream& random, base::Executor& executor);
 
-/// Different organisms, each set and order of them equally likely. When more are wanted than there are, full rounds of
-/// everybody come first, each in a fresh order.
+/// Picks different organisms; each set and order of them is equally likely. If more are wanted than there are, complete
+/// rounds of all organisms come first, each in a new order.
 /// returns  shape (wanted); empty for a population of 0.
 std::vector<std::uint32_t> draw_unique(std::uint32_t population, std::uint32_t wanted, base::RandomStream& random,
                                        base::Executor& executor);
 
-/// The best `pool` organisms in order of rank, over and over.
+/// Picks the best `pool` organisms in order of rank, and repeats the list until there are enough.
 /// pool     1 … population.
 /// returns  shape (wanted).
 std::vector<std::uint32_t> take_best(Ranking& ranking, std::uint32_t pool, std::uint32_t wanted);
 
-/// What universal sampling and random selection draw from.
+/// The stream of universal sampling and random selection.
 base::RandomStream selection_stream(const base::RandomKey& key);
 
 struct Picks {
-    std::uint32_t wanted; // how many to pick
-    std::uint32_t pool; // truncation takes nobody below the best `pool`, 1 … population; the other methods ignore it
+    std::uint32_t wanted; // the number of picks
+    std::uint32_t pool;   // truncation picks only from the best `pool`, 1 … population; the other methods ignore it
 };
 
-/// Picks with the method, scaling and tournament of `parameters`. Roulette and universal sampling turn a wheel of the
-/// scaled fitness (wheel.h says what becomes of negative and of all-zero weights).
+/// Picks with the method, scaling and tournament of `parameters`. Roulette and universal sampling use a wheel of the
+/// scaled fitness (see wheel.h for negative weights and for weights that are all 0).
 ///
 /// ranking  of at least one organism.
 /// key      made for Purpose::Selection.

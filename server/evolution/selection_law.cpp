@@ -8,13 +8,13 @@
 namespace evod::evolution {
 namespace {
 
-/// The mean of min(X, most), X in [least, greatest], of which only the ratios of neighbouring chances are known.
+/// The mean of min(X, most), for X in [least, greatest]. Only the ratios of neighbouring probabilities are known.
 ///
-/// mode   where X is likeliest; to both sides its chance falls.
+/// mode   the most probable X; the probability falls on both sides of it.
 /// ratio  ratio(x) = P(X = x + 1) / P(X = x).
 template <class Ratio>
 double mean_up_to(double most, double least, double mode, double greatest, const Ratio& ratio) {
-    constexpr double negligible = 1e-22; // next to the chance of the mode
+    constexpr double negligible = 1e-22; // relative to the probability of the mode
     double all = 1, sum = std::min(mode, most);
     double chance = 1;
     for (double x = mode; x < greatest && chance > negligible; ++x) {
@@ -57,7 +57,8 @@ double SelectionLaw::expected_wins(std::uint32_t rank) const {
     const auto wins_of = [&](std::uint32_t winners) {
         tournament.winners = winners;
         const double better = rank == 0 ? 0 : expected_winners_up_to(rank - 1, population_, tournament);
-        return std::max(0.0, expected_winners_up_to(rank, population_, tournament) - better); // or less, by a rounding
+        return std::max(0.0, expected_winners_up_to(rank, population_, tournament) - better); // may be negative by
+                                                                                              // rounding
     };
     const std::uint32_t winners = winners_of_each(population_, tournament, picks_.wanted);
     const std::uint32_t whole = picks_.wanted / winners, left = picks_.wanted % winners;

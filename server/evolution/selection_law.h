@@ -1,7 +1,7 @@
-// Selection law: how often each organism is picked on average, by the method that picks.
+// Selection law: how often a selection method picks each organism on average.
 //
 // Source       Blickle & Thiele 1996, Evol. Comput. 4(4), doi:10.1162/evco.1996.4.4.361; for tournaments with several
-//              winners, the mean of a binomial or hypergeometric number that is cut off at the number of winners.
+//              winners, the mean of a binomial or hypergeometric number that is limited to the number of winners.
 #pragma once
 
 #include "server/evolution/parameters.h"
@@ -16,14 +16,14 @@ struct Tournament;
 class SelectionLaw {
   public:
     /// population  organisms to pick from, >= 1.
-    /// picks       as select() is given them.
+    /// picks       as passed to select().
     SelectionLaw(std::uint32_t population, const Picks& picks, const Parameters& parameters)
         : population_{population}, picks_{picks}, parameters_{parameters} {}
 
-    /// Of all the picks.
+    /// The expected number of picks, of all the picks, that go to one organism.
     ///
     /// rank   0 is the fittest.
-    /// share  of the wheel, where one is spun; the other methods ignore it.
+    /// share  of the wheel; ignored by methods without a wheel.
     double expected_copies(std::uint32_t rank, double share) const;
 
   private:
@@ -34,11 +34,11 @@ class SelectionLaw {
     Parameters parameters_;
 };
 
-/// Winners of one tournament whose rank is at most `rank`, on average: as many of its contestants as are so good, but
-/// no more than win.
+/// The mean number of winners of one tournament whose rank is at most `rank`: the contestants with such a rank, but not
+/// more than the number of winners.
 ///
 /// tournament  size, without replacement at most the population; winners at most its size.
-/// cost        grows with the root of the size.
+/// cost        grows with the square root of the size.
 double expected_winners_up_to(std::uint32_t rank, std::uint32_t population, const Tournament& tournament);
 
 } // namespace evod::evolution

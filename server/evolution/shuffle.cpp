@@ -19,7 +19,7 @@ void shuffle(std::span<std::uint32_t> items, base::RandomStream& random, base::E
     }
     const base::RandomKey key{base::Seed{random.long_word()}, base::Purpose::Shuffle, 0, 0};
     const auto bucket_count = static_cast<std::uint32_t>(items.size() / items_per_bucket);
-    std::vector<std::uint16_t> bucket_of(items.size()); // populations end long before 2^16 buckets
+    std::vector<std::uint16_t> bucket_of(items.size()); // populations have far fewer than 2^16 buckets
     executor.parallel_for(items.size(), items_per_stream, [&](base::Range block) {
         base::RandomStream choices{key, static_cast<std::uint32_t>(block.begin / items_per_stream), 0};
         for (std::size_t i = block.begin; i < block.end; ++i) {

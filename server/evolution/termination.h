@@ -1,6 +1,6 @@
-// Termination: when a run is over, and why. None of the criteria holds unless a parameter asks for it.
+// Termination: when a run is over, and why. Every criterion is off unless a parameter turns it on.
 //
-// Owner        World; asked once when a generation has ended.
+// Owner        World; called once at the end of each generation.
 // Determinism  a function of the generations' best fitness alone; Progress is part of a world's state.
 #pragma once
 
@@ -10,35 +10,36 @@
 
 namespace evod::evolution {
 
-/// What came of a run. The order is that of precedence: if several criteria hold, the first of them is the outcome.
+/// The outcome of a run, in order of precedence: if several criteria hold, the first of them is the outcome.
 enum class Outcome {
-    Running,         // none holds
+    Running,         // no criterion holds
     TargetFitness,   // an organism reached target_fitness, and stop_at_target_fitness is on
-    Extinction,      // everyone on every island died, and stop_at_extinction is on
-    Stagnation,      // the best fitness was not beaten for stagnation_limit generations
+    Extinction,      // every organism on every island died, and stop_at_extinction is on
+    Stagnation,      // stagnation_limit generations did not improve the best fitness
     GenerationLimit, // generation_limit generations are over
 };
 
-/// What the criteria look at, over all islands of a world.
+/// The input of the criteria, over all islands of a world.
 struct Progress {
-    std::uint64_t generations = 0; // that are over
-    std::uint64_t stagnant = 0;    // since the last that beat best_fitness; 0 if the last one did
-    double best_fitness = 0;       // of all generations that are over; without meaning before the first
+    std::uint64_t generations = 0; // ended generations
+    std::uint64_t stagnant = 0;    // generations since the last one that improved best_fitness; 0 if the last one did
+    double best_fitness = 0;       // of all ended generations; meaningless before the first
     double last_best_fitness = 0;  // of the last generation
-    bool last_died_out = false;    // whether everyone died in it
+    bool last_died_out = false;    // whether every organism died in it
     friend bool operator==(const Progress&, const Progress&) = default;
 };
 
-/// How the generation that has just ended went, over all islands.
+/// The result of the generation that has just ended, over all islands.
 struct GenerationResult {
     double best_fitness; // finite
-    bool died_out;       // nobody was alive at the end on any island
+    bool died_out;       // no organism was alive at the end, on any island
 };
 
-/// The progress after one more generation. A tie with the best so far is no improvement; the first generation is one.
+/// The progress after one more generation. A tie with the best so far is no improvement; the first generation always is
+/// one.
 Progress advance(Progress progress, const GenerationResult& result);
 
-/// The outcome after the last generation of `progress`; Running if none is over yet.
+/// The outcome after the last generation of `progress`; Running if no generation has ended yet.
 Outcome outcome(const Progress& progress, const Parameters& parameters);
 
 } // namespace evod::evolution

@@ -11,7 +11,8 @@
 namespace evod::evolution {
 namespace {
 
-// So many contestants are drawn before the first of them is looked at, as their fitness lies all over the memory.
+// This many contestants are drawn, and their fitness prefetched, before the first is compared: fitness is scattered
+// over memory.
 constexpr std::size_t contestants_at_once = 128;
 constexpr std::size_t contestants_per_piece = 4096;
 
@@ -22,14 +23,14 @@ struct Fitter {
     }
 };
 
-/// Numbers that were drawn already; emptied in O(1).
+/// The set of numbers already drawn; cleared in O(1).
 class DrawnSet {
   public:
     explicit DrawnSet(std::uint32_t capacity) : slots_(std::bit_ceil(std::size_t{capacity} * 2)) {}
 
     void clear() { ++round_; }
 
-    /// Whether `number` was new.
+    /// Adds `number`. Returns whether it was new.
     bool insert(std::uint32_t number) {
         std::size_t slot = number * 0x9e3779b9u & (slots_.size() - 1);
         for (; slots_[slot].round == round_; slot = (slot + 1) & (slots_.size() - 1)) {
@@ -55,7 +56,8 @@ void draw_contestants(std::uint32_t population, std::span<std::uint32_t> contest
     }
 }
 
-/// Every set of different contestants equally likely. Source: Floyd, in Bentley & Floyd 1987, "A sample of brilliance".
+/// Draws different contestants; every set is equally likely.
+/// Source  Floyd, in Bentley & Floyd 1987, "A sample of brilliance".
 void draw_different_contestants(std::uint32_t population, std::span<std::uint32_t> contestants, DrawnSet& drawn,
                                 base::RandomStream& random) {
     drawn.clear();
@@ -70,8 +72,9 @@ void draw_different_contestants(std::uint32_t population, std::span<std::uint32_
     }
 }
 
-/// The ranks of the best of `size` uniform draws, best first: the least of m uniform numbers above x is
-/// 1 − (1 − x) · U^(1/m). Source: Devroye 1986, Non-Uniform Random Variate Generation, V.3.1.
+/// The ranks of the best of `size` uniform draws, best first. The least of m uniform numbers above x is 1 − (1 − x) ·
+/// U^(1/m).
+/// Source  Devroye 1986, Non-Uniform Random Variate Generation, V.3.1.
 void draw_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                         base::RandomStream& random) {
     double above = 1;
@@ -81,8 +84,9 @@ void draw_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<
     }
 }
 
-/// The best ranks of `size` different draws: from the best rank down, each takes part with probability
-/// (places left) / (ranks left). Source: selection sampling, Knuth, The Art of Computer Programming 2, 3.4.2 S.
+/// The best ranks of `size` different draws: from the best rank down, each takes part with probability (places left) /
+/// (ranks left).
+/// Source  selection sampling, Knuth, The Art of Computer Programming 2, 3.4.2 S.
 void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                   base::RandomStream& random) {
     std::uint32_t rank = 0;
@@ -95,26 +99,26 @@ void draw_different_winning_ranks(std::uint32_t population, std::uint32_t size, 
     }
 }
 
-/// How many of `population` ranks are better than the best of `size` different draws. Source: Vitter 1987, "An
-/// efficient algorithm for sequential random sampling", algorithm D.
+/// How many of `population` ranks are better than the best of `size` different draws.
+/// Source  Vitter 1987, "An efficient algorithm for sequential random sampling", algorithm D.
 std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::RandomStream& random) {
     if (size == 1) {
         return random.below(population);
     }
     const double ranks = population, draws = size, ends = ranks - draws + 1; // a skip is less than `ends`
     while (true) {
-        // A proposal from nearly the law, ...
+        // A proposal from an approximate distribution, ...
         const double x = ranks * (1 - base::pow(1 - random.uniform(), 1 / draws));
         if (x >= ends) {
             continue;
         }
         const double skip = std::floor(x);
-        // ... accepted by a bound that is quick to find, ...
+        // ... accepted by a cheap bound, ...
         const double needed = base::pow(random.uniform() * ranks / ends, 1 / (draws - 1));
         if (needed * (1 - x / ranks) * (ends / (ends - skip)) <= 1) {
             return static_cast<std::uint32_t>(skip);
         }
-        // ... or by the law itself.
+        // ... or by the exact distribution.
         double product = 1, above = ranks - 1;
         double below = draws - 1 > skip ? ranks - draws : ranks - skip - 1;
         const double last = draws - 1 > skip ? ranks - skip : ends;
@@ -127,7 +131,7 @@ std::uint32_t draw_skip(std::uint32_t population, std::uint32_t size, base::Rand
     }
 }
 
-/// The same as draw_different_winning_ranks, in a time that does not depend on how many ranks are passed over.
+/// The same as draw_different_winning_ranks, in a time that does not depend on how many ranks are skipped.
 void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t size, std::span<std::uint32_t> ranks,
                                      base::RandomStream& random) {
     std::uint32_t rank = 0;
@@ -137,8 +141,8 @@ void skip_to_different_winning_ranks(std::uint32_t population, std::uint32_t siz
     }
 }
 
-/// The chance of each rank to be the best of `size` different draws, as long as it can be told from 0: the ranks above
-/// it are missed one after another.
+/// The probability of each rank to be the best of `size` different draws, down to negligible probabilities: all better
+/// ranks must be missed.
 std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t size) {
     std::vector<double> chances;
     double all_missed = 1;
@@ -150,16 +154,16 @@ std::vector<double> chances_of_ranks(std::uint32_t population, std::uint32_t siz
     return chances;
 }
 
-/// How the winners are found; each is the cheapest for what it is chosen for.
+/// How the winners are found. Each method is the cheapest in its case.
 enum class Way {
     Held,            // contestants are drawn and compared
     OrderStatistics, // with replacement
-    WheelOfRanks,    // without, one winner
-    WalkDownRanks,   // without, several winners, a large part of the population
-    SkipRanks,       // without, several winners, a small part of it
+    WheelOfRanks,    // without replacement, one winner
+    WalkDownRanks,   // without replacement, several winners, a large part of the population
+    SkipRanks,       // without replacement, several winners, a small part of the population
 };
 
-// To walk past so many ranks for each winner costs what a skip costs.
+// Walking over this many ranks per winner costs as much as one skip.
 constexpr std::uint64_t walked_ranks_max = 13;
 
 Way choose_way(std::uint32_t population, const Tournament& tournament) {
@@ -179,7 +183,7 @@ Way choose_way(std::uint32_t population, const Tournament& tournament) {
     return size < 4 * winners ? Way::Held : Way::SkipRanks;
 }
 
-/// Tournaments as they are held for a number of picks.
+/// The rules of the tournaments for a number of picks.
 struct Rules {
     std::uint32_t population, size, winners;
     bool replacement;
@@ -194,7 +198,7 @@ Rules rules_of(std::uint32_t population, const Tournament& tournament, std::uint
             choose_way(population, {size, winners, tournament.replacement})};
 }
 
-/// Of Way::Held.
+/// Draws the contestants of Method::Held.
 void draw_held(const Rules& rules, std::span<std::uint32_t> contestants, DrawnSet& drawn, base::RandomStream& random) {
     if (rules.replacement) {
         draw_contestants(rules.population, contestants, random);

@@ -14,16 +14,15 @@ namespace evod::evolution {
 
 class Wheel {
   public:
-    /// weights  shape (population), finite, population >= 1. If any is negative, the least is subtracted from all. If
-    /// then
-    ///          all are 0, all count the same. Only their ratios matter; sums cannot overflow.
+    /// weights  shape (population), finite, population >= 1. If any weight is negative, the least is subtracted from
+    ///          all. If all are then 0, all count the same. Only their ratios matter; sums cannot overflow.
     explicit Wheel(std::vector<double> weights);
 
-    /// The organism at `turns` of the way round, in [0, 1): the first whose slot ends beyond it. A slot of width 0 is
-    /// never met.
+    /// The organism at `turns` of a full turn, in [0, 1): the first whose slot ends beyond it. A slot of width 0 is
+    /// never hit.
     std::uint32_t at(double turns) const;
 
-    /// Where each slot ends, in index order, shape (population); the last is the circumference.
+    /// The end of each slot, in index order, shape (population); the last is the circumference.
     std::span<const double> slot_ends() const { return ends_; }
 
     /// The organism's share of the circumference: its chance per spin.
@@ -31,7 +30,7 @@ class Wheel {
 
   private:
     std::vector<double> ends_;
-    std::vector<std::uint32_t> guide_; // the organism at i/population of the way round, for each i
+    std::vector<std::uint32_t> guide_; // the organism at i/population of a turn, for each i
 };
 
 } // namespace evod::evolution

@@ -3,7 +3,7 @@
 namespace evod::physics {
 namespace {
 
-/// visit(column, what a void circle has there).
+/// visit(column, the value of a void circle).
 template <class F>
 void for_each_column(Circles& circles, F&& visit) {
     visit(circles.x, elsewhere);
@@ -44,7 +44,7 @@ void Circles::add(const AtRest& circle) {
 }
 
 void Circles::remove(std::size_t i) {
-    // The identity stays: it says whose place it was.
+    // The id stays: it identifies the circle that was here.
     x[i] = y[i] = elsewhere;
     velocity_x[i] = velocity_y[i] = 0;
     inverse_mass[i] = radius[i] = 0;

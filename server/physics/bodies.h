@@ -1,8 +1,8 @@
-// Bodies: circles and axis-aligned boxes, without rotation, as columns.
+// Bodies: circles and axis-aligned boxes, without rotation, stored as columns.
 //
-// Positions are whole numbers of 1/4096 px, so a scene moves the same way anywhere on an island, however large: a
-// difference of positions is exact, and only differences are turned into floats. Velocities are floats; they know no
-// place. An island may be 524,288 px wide.
+// Positions are whole numbers of 1/4096 px. A difference of two positions is exact, and only differences are converted
+// to floats, so bodies move the same way at every place of an island, however large it is. Velocities are floats. An
+// island may be 524,288 px wide.
 #pragma once
 
 #include "server/base/column.h"
@@ -16,7 +16,7 @@
 
 namespace evod::physics {
 
-/// The nearest whole unit, halves to even; |px| < 2^19.
+/// The nearest unit, halves to even; |px| < 2^19.
 inline Coordinate to_units(double px) {
     return static_cast<Coordinate>(std::lrint(px * units_per_px));
 }
@@ -27,7 +27,7 @@ inline double to_px(Coordinate units) {
     return static_cast<double>(units) / units_per_px;
 }
 
-/// b − a in units. Wraps around for what is_elsewhere, which is far from everything all the same.
+/// b − a in units. The subtraction may wrap around for a void body, whose position is far from every place either way.
 inline Coordinate difference(Coordinate a, Coordinate b) {
     return static_cast<Coordinate>(static_cast<std::uint32_t>(b) - static_cast<std::uint32_t>(a));
 }
@@ -37,22 +37,22 @@ inline float distance_px(Coordinate a, Coordinate b) {
     return static_cast<float>(difference(a, b)) * px_per_unit;
 }
 
-/// An island's inside: 0 … width, 0 … height. The walls are half-planes beyond it.
+/// The inside of an island: 0 … width, 0 … height. The walls are the half-planes outside it.
 struct Area {
     Coordinate width = 0, height = 0;
 };
 
-/// What circles and boxes have in common; index i of every column is the same body.
+/// The columns that circles and boxes share; index i of every column is the same body.
 struct Bodies {
     base::Column<Coordinate> x, y;              // centre
     base::Column<float> velocity_x, velocity_y; // px/s
-    base::Column<float> inverse_mass;           // 1/kg; 0 is immovable
+    base::Column<float> inverse_mass;           // 1/kg; 0 means immovable
 };
 
-/// Circles, in any order; contacts are resolved in order of `id`.
+/// Circles, in any order. Contacts are resolved in order of `id`.
 ///
-/// Columns are padded(size()) long. What is beyond size(), and circles that have been removed until compact() is
-/// called, are void: immovable, without extent, and elsewhere.
+/// Columns have padded(size()) elements. The elements beyond size() are void: immovable, without extent, at
+/// void_position. A removed circle is void until reorder() leaves it out.
 struct Circles : Bodies {
     base::Column<std::uint32_t> id; // below 2^31
     base::Column<float> radius;     // px
@@ -60,27 +60,27 @@ struct Circles : Bodies {
     std::size_t size() const { return size_; }
     bool is_void(std::size_t i) const { return x[i] == elsewhere; }
     void clear();
-    /// Void circles are added, or the last ones taken away.
+    /// Appends void circles, or removes the last ones.
     void resize(std::size_t size);
-    /// A circle at rest in the place of a void one; side by side for different ones.
+    /// A circle at rest. put() stores it in the place of a void circle; different circles may be put in parallel.
     struct AtRest {
         std::uint32_t id;
         Coordinate x, y;
         float radius, mass; // px, kg
     };
     void put(std::size_t i, const AtRest& circle);
-    /// The same, after the last one.
+    /// Appends a circle at rest.
     void add(const AtRest& circle);
     /// Makes the circle void.
     void remove(std::size_t i);
-    /// Those that are left become the circles with the indices order[0], order[1], …
+    /// The circles order[0], order[1], … become circles 0, 1, …; circles that `order` leaves out are dropped.
     void reorder(const Reordering& reordering);
 
   private:
     std::size_t size_ = 0;
 };
 
-/// Boxes; their index is their identity.
+/// Boxes. A box's index is its identity.
 struct Boxes : Bodies {
     base::Column<float> half_width, half_height; // px
 

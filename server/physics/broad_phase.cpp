@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t cells_per_block = 1024;
 
 float greatest_radius(const Circles& circles) {
-    float greatest[lanes_max] = {}; // several, so that no comparison waits for the one before
+    float greatest[lanes_max] = {}; // several maxima, so that no comparison waits for the previous one
     for (std::size_t i = 0; i < circles.radius.size(); i += lanes_max) {
         for (std::size_t lane = 0; lane < lanes_max; ++lane) {
             greatest[lane] = std::max(greatest[lane], circles.radius[i + lane]);
@@ -25,7 +25,7 @@ float greatest_radius(const Circles& circles) {
 void Strips::choose_cells(std::size_t circles, const Area& area, float reach_px) {
     const double width = std::max(area.width, 1), height = std::max(area.height, 1);
     const double share = width * height / static_cast<double>(std::max<std::size_t>(circles, 1));
-    // A little higher than the reach, for the rounding of what is compared with it.
+    // A little higher than the reach, to allow for rounding in later comparisons.
     const double reach = static_cast<double>(reach_px) * units_per_px * (1 + 1e-5) + 2;
     const double strip_height = std::max({reach, std::sqrt(share) / 2, 256.0});
     const double column_width = std::max(share / std::min(strip_height, height), 256.0);
@@ -71,7 +71,7 @@ void Strips::sort(const Circles& circles, const Area& area, float reach_px, base
         count_and_place<false>(circles, executor);
     }
 
-    // Each cell for itself, which also undoes the order in which threads came.
+    // Each cell is sorted by itself. This also removes the order in which threads filled it.
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
         return circles.x[a] != circles.x[b] ? circles.x[a] < circles.x[b] : circles.id[a] < circles.id[b];
     };
@@ -104,7 +104,7 @@ std::uint32_t Strips::strip_of_place(std::size_t k) const {
 }
 
 bool NearPairs::worn(const Circles& circles, const Boxes& boxes) const {
-    // A little less than half the skin: distances are rounded.
+    // A little less than half the skin, to allow for rounding of distances.
     const float allowed = skin_px_ / 2 - 0.01f;
     if (circles.size() != circle_count_ || boxes.size() != box_anchor_x_.size() || allowed <= 0 ||
         strayed_square_ > allowed * allowed) {
@@ -121,14 +121,14 @@ bool NearPairs::worn(const Circles& circles, const Boxes& boxes) const {
 
 void NearPairs::sort(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor) {
     radius_max_ = greatest_radius(circles);
-    // With an even spread, about one other circle in two comes within reach: few enough to test each tick, and the list
-    // lasts for some twenty ticks. A tick of 20,000 organisms takes a tenth longer with half of this skin, and 4 % with
-    // twice as much.
+    // With an even distribution, about every second circle has one other circle within reach. That is few enough to
+    // test in each tick, and the list lasts for about twenty ticks. A tick of 20,000 organisms takes a tenth longer
+    // with half of this skin, and 4 % longer with twice as much.
     const double share_px2 =
         to_px(area.width) * to_px(area.height) / static_cast<double>(std::max<std::size_t>(circles.size(), 1));
     const auto reach = static_cast<float>(0.56 * std::sqrt(share_px2));
-    skin_share_ = std::min(1.0f, skin_share_ * 1.1f); // a crowd may have dispersed
-    // Up to so many px distances are exact (bodies.h).
+    skin_share_ = std::min(1.0f, skin_share_ * 1.1f); // a crowd may have dispersed since
+    // Distances are exact up to this many px (bodies.h).
     constexpr float thickest_px = 4096;
     skin_px_ = std::min(std::max(skin_share_ * (reach - 2 * radius_max_), radius_max_ / 4 + 0.05f), thickest_px);
     strips_.sort(circles, area, 2 * radius_max_ + skin_px_, executor);
@@ -163,7 +163,7 @@ void NearPairs::list(const Circles& circles, const Boxes& boxes, base::Executor&
 
 bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& executor) {
     const std::span<const std::uint32_t> order = strips_.order();
-    // More would be a crowd, for which a thinner skin is better, down to what bodies move in a tick or two.
+    // More pairs mean a crowd, for which a thinner skin is faster, down to what bodies move in a tick or two.
     constexpr std::size_t pairs_max = 6 * circles_per_block;
     const bool thick = skin_px_ > radius_max_ / 4 + 0.1f;
     const auto window_max = static_cast<Coordinate>((2 * radius_max_ + skin_px_) * units_per_px) + 1;
@@ -179,7 +179,7 @@ bool NearPairs::list_circle_pairs(const Circles& circles, base::Executor& execut
             const std::size_t end = std::min(begin + circles_per_block, range.end);
             std::uint32_t strip = strips_.strip_of_place(begin);
             std::size_t strip_end = strips_.strip(strip).end;
-            std::size_t below = 0, below_end = 0; // of the next strip: from what is not too far left, to its end
+            std::size_t below = 0, below_end = 0; // of the next strip: from window_max to the left, to its end
             const auto enter_strip = [&](std::size_t k) {
                 while (k >= strip_end) {
                     strip_end = strips_.strip(++strip).end;
@@ -249,7 +249,7 @@ void NearPairs::list_box_pairs(const Circles& circles, const Boxes& boxes) {
         });
     }
 
-    // Sweep along x: a box can only come to touch those that begin before it ends.
+    // Sort and sweep along x: a box can only touch the following boxes that begin before it ends.
     if (boxes.size() < 2) {
         return;
     }
@@ -262,7 +262,7 @@ void NearPairs::list_box_pairs(const Circles& circles, const Boxes& boxes) {
               [&](std::uint32_t a, std::uint32_t b) { return left(a) != left(b) ? left(a) < left(b) : a < b; });
     for (std::size_t i = 0; i < boxes_by_left_.size(); ++i) {
         const std::uint32_t a = boxes_by_left_[i];
-        // A pixel more: far from 0 a float of an absolute place is worth several hundredths of one.
+        // One pixel more: far from 0, a float of an absolute position has an error of several hundredths of a pixel.
         const float right = distance_px(0, boxes.x[a]) + boxes.half_width[a] + skin_px_ + 1;
         for (std::size_t j = i + 1; j < boxes_by_left_.size() && left(boxes_by_left_[j]) <= right; ++j) {
             const std::uint32_t b = boxes_by_left_[j];

@@ -37,7 +37,7 @@ void resolve_contact(Body a, Body b, const Overlap& overlap, float restitution) 
     const float mass_a = a.bodies.inverse_mass[a.index], mass_b = b.bodies.inverse_mass[b.index];
     const float total = mass_a + mass_b;
     const float nx = overlap.normal_x, ny = overlap.normal_y;
-    // What cannot move is not written to: several contacts with it may be resolved at once.
+    // Immovable bodies are not written to, because several contacts with one may be resolved in parallel.
     const auto move = [&](Body body, float way) {
         if (body.bodies.inverse_mass[body.index] == 0) {
             return;
@@ -74,7 +74,7 @@ Overlap overlap_of(const Circles& circles, std::size_t a, std::size_t b) {
                          circles.radius[a], circles.radius[b]);
 }
 
-/// What contacts are ordered by.
+/// The sort key of contacts.
 std::uint32_t identity_of(const Circles& circles, std::uint32_t body) {
     return body & box_bit ? body : circles.id[body];
 }
@@ -141,8 +141,8 @@ void Contacts::resolve(Circles& circles, Boxes& boxes, float restitution, base::
     for (const std::vector<Contact>& found : found_in_block_) {
         left_.insert(left_.end(), found.begin(), found.end());
     }
-    // A long chain, or a body with many contacts, gives up one contact a round: what is left then is put in order at
-    // once.
+    // A long row of touching bodies, or a body with many contacts, resolves only one contact per round. The remaining
+    // contacts are then sorted and resolved in order.
     const auto resolve_rounds = [&](std::size_t enough, auto resolve_one_round) {
         while (left_.size() > enough) {
             const std::size_t before = left_.size();
@@ -178,7 +178,7 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
     const auto first_of = [&](std::uint32_t body) -> std::uint32_t& {
         return body & box_bit ? first_of_box_[body & ~box_bit] : first_of_circle_[body];
     };
-    // What cannot move is not changed by a contact, so it may be in many at once.
+    // A contact does not change an immovable body, so such a body may take part in several contacts at once.
     const auto waits = [&](std::uint32_t body) { return !(body & box_bit) || boxes.inverse_mass[body & ~box_bit] > 0; };
     const std::size_t grain = side_by_side ? contacts_per_piece : left_.size();
 
@@ -215,7 +215,7 @@ void Contacts::resolve_round(Circles& circles, Boxes& boxes, float restitution, 
 void Contacts::resolve_one(Circles& circles, Boxes& boxes, const Contact& contact, float restitution) {
     std::size_t a = contact.a & ~box_bit, b = contact.b & ~box_bit;
     if (!(contact.b & box_bit)) {
-        // From the lower id to the higher: circles at the same place part along that way.
+        // From the lower id to the higher: two circles at the same position separate in that direction.
         if (circles.id[a] > circles.id[b]) {
             std::swap(a, b);
         }

@@ -1,13 +1,13 @@
-// Contacts: finds which bodies touch, and resolves them.
+// Contacts: the narrow phase. Finds which listed pairs touch, and resolves the contacts.
 //
-// Resolving a contact moves the two apart in proportion to their inverse masses and, if they approach, gives the
-// impulse j = −(1 + e)(v_rel·n)/(Σ inverse mass) along n.
+// Resolving a contact moves the two bodies apart in proportion to their inverse masses. If they approach each other, it
+// also applies the impulse j = −(1 + e)(v_rel·n)/(Σ inverse mass) along n.
 //
-// Threads      pairs are looked at in blocks of circles side by side, and resolved in rounds: in each, side by side,
-//              the contacts that are the first of those left for both their bodies.
-// Determinism  so a body's contacts are resolved in rising order of the other's identity, circles by id before boxes by
-//              index, which is what resolving all contacts in order of (first body, second body) would give. Groups of
-//              bodies that do not touch each other do not influence each other.
+// Threads      pairs are tested in parallel, by blocks of circles. Contacts are resolved in rounds: each round resolves
+//              in parallel the contacts that are next for both of their bodies.
+// Determinism  a body's contacts are resolved in ascending order of the other body's identity, circles by id before
+//              boxes by index. The result is that of resolving all contacts in order of (first body, second body).
+//              Groups of bodies that do not touch each other do not influence each other.
 // Source       Baraff 1997, "An introduction to physically based modeling", on impulses without rotation.
 #pragma once
 
@@ -22,23 +22,23 @@ namespace evod::physics {
 
 class Contacts {
   public:
-    /// Forgets what was found with boxes; each block forgets when it is looked at.
+    /// Clears the contacts with boxes. Each block clears its own contacts when it is tested.
     void begin(const Circles& circles, const Boxes& boxes);
-    /// What touches now of what `near` lists. Blocks may be looked at side by side.
+    /// Finds the pairs of a block, among those that `near` lists, that touch now. Blocks may be tested in parallel.
     void find_among_circles(const Circles& circles, const NearPairs& near, std::size_t block);
     void find_with_boxes(const Circles& circles, const Boxes& boxes, const NearPairs& near);
 
-    /// Every touching pair in which at least one body can move, found afresh.
+    /// Finds every touching pair in which at least one body can move, from a new list of near pairs.
     void find(const Circles& circles, const Boxes& boxes, const Area& area, base::Executor& executor);
 
-    /// Resolves what has been found, each pair as it is when its turn comes.
+    /// Resolves the contacts found, each from the state of its bodies at that moment.
     void resolve(Circles& circles, Boxes& boxes, float restitution, base::Executor& executor);
 
-    /// Pairs found.
+    /// The number of pairs found.
     std::size_t size() const;
 
   private:
-    // Bodies are circle indices, and box indices with the highest bit set.
+    // A body is a circle's index, or a box's index with the highest bit set.
     struct Contact {
         std::uint32_t a, b;
         bool resolved = false;
@@ -49,10 +49,11 @@ class Contacts {
     void resolve_in_order(Circles& circles, Boxes& boxes, float restitution);
     static void resolve_one(Circles& circles, Boxes& boxes, const Contact& contact, float restitution);
 
-    std::vector<std::vector<Contact>> found_in_block_; // of circles; kept warm between ticks
+    std::vector<std::vector<Contact>> found_in_block_; // per block of circles; kept between ticks
     std::vector<Contact> found_with_boxes_;
     std::vector<Contact> left_;
-    base::Column<std::uint32_t> first_of_circle_, first_of_box_; // the least identity it is in contact with; nobody
+    base::Column<std::uint32_t> first_of_circle_, first_of_box_; // the least identity that it is in contact with, or
+                                                                 // no_identity
 };
 
 } // namespace evod::physics

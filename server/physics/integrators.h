@@ -13,17 +13,17 @@ namespace evod::physics {
 
 enum class Integrator : std::uint8_t { SymplecticEuler, ExplicitEuler, BackwardEuler };
 
-/// A tick's numbers, worked out once.
+/// The constants of a tick, computed once.
 struct Integration {
     Integrator integrator = Integrator::SymplecticEuler;
     float tick_s = 1.0f / 60;
-    float velocity_kept = 1; // factor that damping puts on every velocity in a tick
+    float velocity_kept = 1; // factor by which damping multiplies every velocity in a tick
 };
 
-/// damping_rate  1/s, >= 0: what is kept of a velocity after t seconds is e^(−rate·t).
+/// damping_rate  1/s, >= 0: after t seconds the share e^(−rate·t) of a velocity is left.
 Integration integration(Integrator integrator, double tick_s, double damping_rate);
 
-/// The rate at which `share` of a velocity is kept in 1/60 s; share in (0, 1].
+/// The rate at which the share `share_kept` of a velocity is left after 1/60 s; share_kept in (0, 1].
 double damping_rate(double share_kept);
 
 /// The velocity after acceleration and damping.

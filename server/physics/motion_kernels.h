@@ -1,6 +1,7 @@
-// Motion kernels: what becomes of the velocities and positions of circles in a tick, several circles at once.
+// Motion kernels: update the velocities and positions of circles in a tick, several circles at once.
 //
-// Determinism  per circle; compiled for two sets of instructions, with the same bits (base/instructions.h).
+// Determinism  each circle is independent; the kernels are compiled for two sets of instructions, which give the same
+//              bits (base/instructions.h).
 #pragma once
 
 #include <cstddef>
@@ -8,16 +9,16 @@
 
 namespace evod::physics {
 
-/// Columns as in Circles, padded to whole lanes.
+/// Columns as in Circles, padded to full vectors.
 struct MotionColumns {
     std::int32_t *x, *y;
     float *velocity_x, *velocity_y;
     const float *inverse_mass, *radius;
-    float *drift_x, *drift_y; // explicit Euler: what the velocity was more before it changed; else nullptr
-    const std::int32_t *anchor_x, *anchor_y; // see MoveCounts::strayed_square
+    float *drift_x, *drift_y;                // explicit Euler: old velocity − new velocity; otherwise nullptr
+    const std::int32_t *anchor_x, *anchor_y; // see MoveCounts::displacement_square
 };
 
-/// What acts on a block of circles in one tick, kg px/s²; padded as columns are, 0 for what is void.
+/// The forces on a block of circles in one tick, kg px/s²; padded like the columns, 0 for void circles.
 struct Forces {
     const float *x, *y;
 };
@@ -31,21 +32,22 @@ struct MotionRules {
 };
 
 struct MoveCounts {
-    std::uint64_t too_fast = 0, speed_limited = 0; // as StepCounts
-    float strayed_square = 0;                      // px²; of the greatest distance from an anchor
+    std::uint64_t too_fast = 0, speed_limited = 0; // as in StepCounts
+    float strayed_square = 0;                      // px²; of the circle furthest from its anchor
 };
 
 struct MotionKernels {
-    /// Force → velocity, damping, and the bounce off a wall that is touched by a circle that heads outward.
+    /// Applies force and damping to velocities, and bounces a circle off a wall that it touches if it moves outward.
     /// force  of the circles from `begin` on.
     void (*accelerate)(const MotionColumns& columns, const Forces& force, std::size_t begin, std::size_t end,
                        const MotionRules& rules);
-    /// Limits speeds; velocity → position; puts back what is beyond a wall, and bounces it if it still heads outward.
+    /// Limits speeds, and applies velocities to positions. Puts circles beyond a wall back inside, and bounces those
+    /// that still move outward.
     MoveCounts (*move)(const MotionColumns& columns, std::size_t begin, std::size_t end, const MotionRules& rules);
-    // begin is a multiple of lanes_max; up to lanes_max − 1 void circles beyond `end` are gone through too.
+    // begin is a multiple of lanes_max. Up to lanes_max − 1 void circles beyond `end` are processed too.
 };
 
-/// Those for the instructions in use.
+/// The kernels for the instructions in use.
 const MotionKernels& motion_kernels();
 
 } // namespace evod::physics

@@ -19,7 +19,7 @@ template <class ExtentOf>
 void add_motion(MotionReport& report, const Bodies& bodies, std::size_t count, double tick_s, ExtentOf&& extent_of) {
     for (std::size_t i = 0; i < count; ++i) {
         if (bodies.inverse_mass[i] == 0) {
-            continue; // void ones too
+            continue; // also skips void bodies
         }
         const double mass = 1 / static_cast<double>(bodies.inverse_mass[i]);
         const auto vx = static_cast<double>(bodies.velocity_x[i]), vy = static_cast<double>(bodies.velocity_y[i]);
@@ -38,9 +38,9 @@ void add_overlap(MotionReport& report, double depth, double extent) {
     report.deepest_overlap_share = std::max(report.deepest_overlap_share, depth / extent);
 }
 
-/// How far beyond the walls something reaches along one axis, px.
+/// How far a body reaches beyond the walls along one axis, px.
 double beyond(Coordinate position, float extent_px, Coordinate size) {
-    const Coordinate extent = to_units(extent_px); // as the walls see it
+    const Coordinate extent = to_units(extent_px); // rounded as in the test against walls
     return to_px(std::max({extent - position, position + extent - size, 0}));
 }
 

@@ -1,9 +1,9 @@
-// Motion report: how bodies move and overlap, measured between two ticks, for whoever judges whether a tick is short
-// enough for its speeds.
+// Motion report: how fast bodies move and how deeply they overlap, measured between two ticks. It shows whether a tick
+// is short enough for the speeds.
 //
-// Determinism  what is summed are whole numbers of 1/65536, which doubles add exactly up to 2^37: equal scenes give
-//              equal reports, in whatever order their circles lie.
-// Cost         O(n); a little more where the near pairs are worn, for they are found afresh then.
+// Determinism  the terms of sums are rounded to multiples of 1/65536, which doubles add exactly up to 2^37. Equal
+//              states give equal reports, in whatever order circles are stored.
+// Cost         O(n); a little more if the list of near pairs is stale, because the report then makes its own.
 #pragma once
 
 #include "server/physics/bodies.h"
@@ -14,17 +14,19 @@
 namespace evod::physics {
 
 struct MotionReport {
-    std::uint32_t body_count = 0;              // that can move
+    std::uint32_t body_count = 0;              // bodies that can move
     double kinetic_energy = 0;                 // kg px²/s²
     double momentum_x = 0, momentum_y = 0;     // kg px/s
     std::uint32_t touching_count = 0;          // pairs of bodies, at least one of which can move
-    double deepest_overlap_px = 0;             // of two bodies, or of one that can move and a wall
-    double deepest_overlap_share = 0;          // the most, of the smaller one's radius or least half side
-    double fastest_px_s = 0, fastest_step = 0; // the most that a body moves in a tick, of its radius or least half side
-    double strip_px = 0;                       // height of the strips in which contacts are looked for
+    double deepest_overlap_px = 0;             // of two bodies, or of a movable body and a wall
+    double deepest_overlap_share = 0;          // greatest overlap as a share of the smaller body's radius or least half
+                                               // side
+    double fastest_px_s = 0, fastest_step = 0; // fastest_step: greatest movement in a tick as a share of the body's
+                                               // radius or least half side
+    double strip_px = 0;                       // height of the strips in which contacts are searched
 };
 
-/// near  of these bodies; worn or not.
+/// near  the near pairs of these bodies; may be stale.
 MotionReport report_motion(const Circles& circles, const Boxes& boxes, const Area& area, double tick_s,
                            const NearPairs& near);
 

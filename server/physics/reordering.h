@@ -1,6 +1,6 @@
-// Reordering: puts columns into another order, with what is void left out; all columns of one entity by the same order.
+// Reordering: applies one order to all columns of one kind of entity, leaving out void elements.
 //
-// Threads      a column is read in blocks side by side.
+// Threads      blocks of a column are copied in parallel.
 #pragma once
 
 #include "server/base/column.h"
@@ -14,7 +14,7 @@
 
 namespace evod::physics {
 
-/// Kernels take several bodies at once; the columns that they read are a multiple of this long.
+/// Kernels take several bodies at once, so the columns that they read have a multiple of this length.
 constexpr std::size_t lanes_max = 8;
 constexpr std::size_t padded(std::size_t size) {
     return (size + lanes_max - 1) / lanes_max * lanes_max;
@@ -22,14 +22,14 @@ constexpr std::size_t padded(std::size_t size) {
 
 class Reordering {
   public:
-    /// order  indices into the columns, none twice.
-    /// spare  working memory, kept by the caller so that no column needs its own.
+    /// order  indices into the columns, none of them twice.
+    /// spare  working memory, shared by all columns; the caller keeps it.
     Reordering(std::span<const std::uint32_t> order, base::Column<std::uint32_t>& spare, base::Executor& executor)
         : order_{order}, spare_{spare}, executor_{executor} {}
 
     std::size_t size() const { return order_.size(); }
 
-    /// Element i becomes what order[i] was; `filling` fills up to padded(size()).
+    /// Element i becomes the former element order[i]; `filling` fills the column up to padded(size()).
     template <class T>
     void apply(base::Column<T>& column, T filling) const {
         static_assert(sizeof(T) == sizeof(std::uint32_t));

@@ -1,7 +1,7 @@
-// Shapes: exact tests of two shapes against each other, at a given distance between their centres.
+// Shapes: exact overlap tests of two shapes, given the offset between their centres.
 //
-// Each says whether they touch, how deep they overlap, and the normal of least penetration, from the first shape toward
-// the second, of length 1. Shapes that share a single point touch, with depth 0.
+// Each test returns whether the shapes touch, how deeply they overlap, and the normal of least penetration: a vector of
+// length 1 from the first shape toward the second. Shapes that share a single point touch, with depth 0.
 // Source  Ericson 2005, Real-Time Collision Detection, ch. 4–5.
 #pragma once
 
@@ -17,14 +17,17 @@ struct BoxShape {
     float half_width, half_height; // px
 };
 
-/// dx, dy  second centre − first centre, px. Equal centres: depth is the sum of the radii, normal +x.
+/// dx, dy  second centre − first centre, px. If the centres are equal, depth is the sum of the radii and the normal is
+///         +x.
 Overlap circle_circle(float dx, float dy, float first_radius, float second_radius);
 
-/// dx, dy  second centre − first centre, px. Of equal overlaps the x axis wins; equal centres: normal +x or +y.
+/// dx, dy  second centre − first centre, px. If both overlaps are equal, the x axis wins; if the centres are equal too,
+///         the normal is positive.
 Overlap box_box(float dx, float dy, BoxShape first, BoxShape second);
 
-/// dx, dy  circle's centre − box's centre, px. A centre inside the box, or on its edge, leaves by the nearest side:
-/// depth is the way to it plus the radius; of equally near sides the x axis wins, then +.
+/// dx, dy  circle's centre − box's centre, px. A centre inside the box or on its edge leaves by the nearest side: depth
+///         is the distance to that side plus the radius. If sides are equally near, the x axis wins, then the positive
+///         side.
 Overlap box_circle(float dx, float dy, BoxShape box, float radius);
 
 } // namespace evod::physics

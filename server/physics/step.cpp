@@ -15,7 +15,7 @@ const MotionKernels& motion_kernels() {
 
 namespace {
 
-/// Cuts a velocity to `limit`, px/s; whether it had to.
+/// Reduces a velocity to `limit`, px/s. Returns whether it was above it.
 bool limit_speed(float& vx, float& vy, float limit) {
     const float square = vx * vx + vy * vy;
     if (square <= limit * limit) {
@@ -27,7 +27,7 @@ bool limit_speed(float& vx, float& vy, float limit) {
     return true;
 }
 
-/// Lets `wall` act on each axis of each box that can move, with its half side in units.
+/// Calls `wall` for each axis of each movable box, with its half side in units.
 template <class Wall>
 void for_each_axis(Boxes& boxes, const Area& area, Wall&& wall) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {

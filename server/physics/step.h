@@ -2,10 +2,10 @@
 // accumulated forces → velocity; damping; detect and resolve collisions; limit speeds; velocity → position; keep inside
 // the walls. Forces act for one tick.
 //
-// Owner        an island; keeps its working memory warm between ticks.
-// Threads      blocks of circles are accelerated, looked at for contacts and moved side by side; whoever has more to do
-//              with a block calls the parts of the step in loops of its own.
-// Determinism  see contacts.h; everything else is per body.
+// Owner        an island; it keeps the working memory between ticks.
+// Threads      blocks of circles are accelerated, tested for contacts and moved in parallel. A caller with more work
+//              per block calls the parts of the step in loops of its own.
+// Determinism  see contacts.h; everything else is independent for each body.
 #pragma once
 
 #include "server/base/executor.h"
@@ -27,29 +27,29 @@ struct StepParameters {
 };
 
 struct StepCounts {
-    std::uint64_t too_fast = 0;      // bodies that moved more than their radius, or least half side
-    std::uint64_t speed_limited = 0; // bodies whose speed was cut to the greatest allowed
+    std::uint64_t too_fast = 0;      // bodies that moved more than their radius or least half side
+    std::uint64_t speed_limited = 0; // bodies whose speed was reduced to the maximum
 };
 
 class Stepper {
   public:
-    /// One tick. force: on each circle, padded as the columns are.
+    /// One tick. force: on each circle, padded like the columns.
     StepCounts step(Circles& circles, Boxes& boxes, const Area& area, const StepParameters& parameters,
                     const Forces& force, base::Executor& executor);
 
     // The parts of step(), in the order in which they are called.
 
-    /// Which pairs are near; to be renewed while it is worn().
+    /// The list of near pairs. Renew it when it is stale().
     NearPairs& near() { return near_; }
     const NearPairs& near() const { return near_; }
     void begin(Circles& circles, const Boxes& boxes, const Area& area, const StepParameters& parameters);
-    /// Forces → velocities, damping, bounces off walls, for one block of circles; and what touches in it. Blocks may be
-    /// done side by side.
-    /// force: of the circles of the block.
+    /// For one block of circles: forces → velocities, damping, bounces off walls; then finds the contacts of the block.
+    /// Blocks may be processed in parallel.
+    /// force  of the circles of the block.
     void accelerate(Circles& circles, std::size_t block, const Forces& force);
     /// The same for the boxes; then resolves all contacts.
     void collide(Circles& circles, Boxes& boxes, base::Executor& executor);
-    /// Velocities → positions for one block of circles. Blocks may be done side by side.
+    /// Velocities → positions for one block of circles. Blocks may be processed in parallel.
     void move(Circles& circles, std::size_t block);
     /// The same for the boxes.
     StepCounts finish(Boxes& boxes);

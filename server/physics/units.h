@@ -1,4 +1,5 @@
-// Units: places are whole numbers of 1/4096 px. Constants alone, so that kernels (base/lanes.h) may include it.
+// Units: positions are whole numbers of 1/4096 px. This file contains only constants, so that kernels (base/lanes.h)
+// may include it.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,8 @@ using Coordinate = std::int32_t;
 constexpr Coordinate units_per_px = 4096;
 constexpr float px_per_unit = 1.0f / units_per_px;
 
-/// Where what is not there pretends to be: further from any place on an island than anything reaches, so that loops
-/// need not ask whether it is there.
+/// The position of void bodies. It is further from every place of an island than anything reaches, so loops need no
+/// test for void bodies.
 constexpr Coordinate elsewhere = -(1 << 30);
 
 } // namespace evod::physics
