@@ -3,7 +3,7 @@
     viewer_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--json]
 
 The same ticks of the same run are simulated again and again at full speed on one thread, by turns with a subscriber at
-30 pictures a second and without one; what is compared is the processor time of the simulation thread for those ticks.
+30 snapshots a second and without one; what is compared is the processor time of the simulation thread for those ticks.
 """
 import argparse
 import socket
@@ -36,7 +36,7 @@ class Reader(threading.Thread):
 
     def __init__(self, viewer):
         super().__init__()
-        self.viewer, self.pictures, self.picture_bytes = viewer, 0, 0
+        self.viewer, self.snapshots, self.snapshot_bytes = viewer, 0, 0
         self.start()
 
     def run(self):
@@ -44,8 +44,8 @@ class Reader(threading.Thread):
             while True:
                 channel, body = self.viewer.frame()
                 if channel == 2:
-                    self.pictures += 1
-                    self.picture_bytes = len(body)
+                    self.snapshots += 1
+                    self.snapshot_bytes = len(body)
         except (EOFError, OSError):
             pass
 
@@ -74,9 +74,9 @@ def measure_memory():
 
 
 def measure_viewer(server):
-    """Seconds of the simulation thread per tick, by whether a viewer watched; how many pictures, and bytes of one."""
+    """Seconds of the simulation thread per tick, by whether a viewer watched; how many snapshots, and bytes of one."""
     per_tick = {False: [], True: []}
-    pictures = 0
+    snapshots = 0
     control = server.control
     for run in range(2 * options.runs):
         watched = run % 2 == 1
@@ -92,8 +92,8 @@ def measure_viewer(server):
         per_tick[watched].append((server.thread_s("simulation") - before) / (last_tick - first_tick))
         if reader:
             reader.finish()
-            pictures += reader.pictures
-    return per_tick, pictures, reader.picture_bytes
+            snapshots += reader.snapshots
+    return per_tick, snapshots, reader.snapshot_bytes
 
 
 def time_calls(control, count, **request):
@@ -112,7 +112,7 @@ def measure():
         control = server.control
         control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(parameters)))
         control.call(set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
-        per_tick, pictures, picture_bytes = measure_viewer(server)
+        per_tick, snapshots, snapshot_bytes = measure_viewer(server)
         control.call(run=c.Run(world="w"))
         command_beside = time_calls(control, 300, set_speed=c.SetSpeed(world="w", speed=w.Speed(max=True)))
         query_beside = time_calls(control, 300, list_worlds=c.ListWorlds())
@@ -124,7 +124,7 @@ def measure():
             "start_ms": spread_ms(starts), "default_world_memory_bytes": memory_bytes,
             "tick_alone_ms": spread_ms(per_tick[False]), "tick_watched_ms": spread_ms(per_tick[True]),
             "viewer_rise_percent": spread(rises),
-            "pictures": pictures, "picture_bytes": picture_bytes,
+            "snapshots": snapshots, "snapshot_bytes": snapshot_bytes,
             "command_at_rest_ms": spread_ms(command_at_rest), "command_beside_ms": spread_ms(command_beside),
             "query_beside_ms": spread_ms(query_beside)}
 

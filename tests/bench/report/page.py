@@ -1,7 +1,6 @@
-"""docs/PERFORMANCE.md from the results: every {{name}} of the template is a method here.
+"""Writes docs/PERFORMANCE.md from the results: every {{name}} of the template is a method here.
 
-A number stands in the page only if it comes from the results; what is kept from earlier days is in by_hand.md.in, with
-its date.
+Every number of the page comes from the results.
 """
 import pathlib
 import re
@@ -12,6 +11,10 @@ from .sections import columns, measured_ticks, warm_up_ticks
 folder = pathlib.Path(__file__).resolve().parent
 program_names = {"evod": "evod", "box2d": "Box2D", "chipmunk_hash": "Chipmunk, hash", "chipmunk_tree": "Chipmunk, tree",
                  "all_pairs": "all pairs", "galib": "GAlib", "deap": "DEAP"}
+
+
+def percent(spread):
+    return minus(f"{spread['median']:+.2f} % ({spread['min']:+.2f} – {spread['max']:+.2f} %)")
 
 
 class Page:
@@ -36,12 +39,12 @@ class Page:
                 ["compiler", f"{about['compiler']}, preset `release` ({about['flags']})"],
                 ["evod", f"version {about['version']}, commit {about['commit']}"],
                 ["date", about["date"]],
-                ["beside", ", ".join(f"{name} {version}" for name, version in about["packages"].items())],
-                ["load", f"{load['load_before']} before; while it ran, other programs kept "
-                         f"{load['others_cores']} cores busy"],
-                ["took", f"{load['minutes']} minutes, {about['repeats']} runs of everything" +
-                         (", **a quick look only**" if about["quick"] else "") +
-                         (", **the rest is older than " + ", ".join(about["only"]) + "**" if "only" in about else "")]]
+                ["compared with", ", ".join(f"{name} {version}" for name, version in about["packages"].items())],
+                ["load", f"{load['load_before']} before the start; other programs kept {load['others_cores']} cores busy "
+                         "during the measurements"],
+                ["duration", f"{load['minutes']} minutes, {about['repeats']} runs of each program" +
+                         (", **with --quick**" if about["quick"] else "") +
+                         (", **all other sections are older than " + ", ".join(about["only"]) + "**" if "only" in about else "")]]
         return table(["", ""], rows)
 
     def repeats(self):
@@ -50,8 +53,8 @@ class Page:
     def warm_up_ticks(self):
         return warm_up_ticks
 
-    def measured_ticks(self):
-        return measured_ticks
+    def last_tick(self):
+        return warm_up_ticks + measured_ticks
 
     # The workload
 
@@ -103,7 +106,7 @@ class Page:
             rows.append([count(organisms), *against,
                          f"{digits(evod / best['organism_ticks_per_processor_s']['median'])} "
                          f"({program_names[best['program']]}{order})"])
-        return table(["organisms", "× Box2D", "× Chipmunk, hash", "× all pairs", "× the fastest of the others"], rows)
+        return table(["organisms", "× Box2D", "× Chipmunk, hash", "× all pairs", "× the fastest other program"], rows)
 
     def agreement(self):
         rows = self.results["agreement"]
@@ -116,7 +119,7 @@ class Page:
             return minus(f"{text} ({100 * (row[key] / evod[key] - 1):+.1f} %)")
         keys = ("food_per_organism_s", "poison_per_organism_s", "speed_mean_px_s", "seeing_food_share", "deaths_share",
                 "organism_ticks")
-        return table(["", "food eaten, an organism and s", "poison", "mean speed, px/s", "share that sees food",
+        return table(["", "food eaten per organism and s", "poison eaten", "mean speed, px/s", "share that perceives food",
                       "share that dies", "organism-ticks"],
                      [[program_names[row["program"]], *(beside(row, key) for key in keys)] for row in rows])
 
@@ -124,7 +127,7 @@ class Page:
         return self.results["agreement"][0]["scenes"]
 
     def agreement_worst(self, key):
-        """The greatest difference to evod of any program, in per cent."""
+        """The largest difference of any program from evod, in per cent."""
         rows = self.results["agreement"]
         return f"{max(abs(100 * (row[key] / rows[0][key] - 1)) for row in rows[1:]):.1f}"
 
@@ -140,19 +143,19 @@ class Page:
                 rows.append([where, with_spread(one, 1e-6), with_spread(two, 1e-6),
                              f"{two['median'] / one['median']:.2f}", digits(1e9 / one["median"]),
                              digits(1e9 / two["median"]), digits(two["median"] / (60 * islands * organisms))])
-        return table(["organisms", "1 thread, M/s", "2 threads, M/s", "2 : 1", "1 thread, ns", "2 threads, ns",
+        return table(["organisms", "1 thread, M/s", "2 threads, M/s", "2 threads ÷ 1", "1 thread, ns", "2 threads, ns",
                       "2 threads, × real time"], rows)
 
     def densities(self):
-        names = {"as it is": "the benchmark world of 20,000, as it is",
+        names = {"as it is": "the benchmark world of 20,000",
                  "far-sighted": "genes food_radius and poison_radius 1,000 px",
                  "thin": "an island of the same area, a hundred times as long as wide",
                  "default density": "as dense as the default world",
-                 "crowded": "all of the greatest size, bodies cover 0.3 of the island",
+                 "crowded": "all organisms of the maximum size; bodies cover 0.3 of the island",
                  "few organisms": "10 organisms, 1,000,000 food",
                  "many islands": "64 islands of 500"}
         rows = {row["world"]: row for row in self.results.get("densities", [])}
-        return table(["world", "ns an organism and tick", "× as it is", "µs a tick"],
+        return table(["world", "ns per organism-tick", "× benchmark world", "µs per tick"],
                      [[names[name], with_spread(row["ns"]),
                        digits(row["ns"]["median"] / rows["as it is"]["ns"]["median"]),
                        digits(row["tick_us"]["median"])] for name in names if (row := rows.get(name))])
@@ -169,7 +172,7 @@ class Page:
         return 1e9 / self._row(program="evod", organisms=organisms, threads=1)["organism_ticks_per_s"]["median"]
 
     def growth(self):
-        """How much dearer an organism and tick is in the largest population than at 2,000."""
+        """The cost of an organism-tick in the largest population, divided by the cost at 2,000."""
         return f"{self._ns(self._populations()[-1]) / self._ns(2_000):.2f}"
 
     def largest(self):
@@ -179,16 +182,16 @@ class Page:
 
     def roofs(self):
         rows = []
-        for key, name in (("memory_gb_per_s", "triad in memory, 3 × 256 MiB a thread, GB/s"),
-                          ("cache_8_mib_gb_per_s", "triad in cache, 8 MiB a thread, GB/s"),
-                          ("cache_192_kib_gb_per_s", "triad in cache, 192 KiB a thread, GB/s"),
-                          ("instructions_g_per_s", "additions that wait for nothing, G instructions/s")):
+        for key, name in (("memory_gb_per_s", "triad in memory, 3 × 256 MiB per thread, GB/s"),
+                          ("cache_8_mib_gb_per_s", "triad in cache, 8 MiB per thread, GB/s"),
+                          ("cache_192_kib_gb_per_s", "triad in cache, 192 KiB per thread, GB/s"),
+                          ("instructions_g_per_s", "independent additions, G instructions/s")):
             rows.append([name, *(digits(self.results["machine"][n][key]) for n in ("one_thread", "two_threads"))])
         return table(["", "1 thread", "2 threads"], rows)
 
     def columns(self):
         rows = [[entry["pass"], entry["columns"], entry["read"], entry["written"]] for entry in columns()]
-        rows.append(["**together**", "", *(sum(entry[way] for entry in columns()) for way in ("read", "written"))])
+        rows.append(["**total**", "", *(sum(entry[way] for entry in columns()) for way in ("read", "written"))])
         return table(["pass", "columns", "bytes read", "written"], rows)
 
     def bytes_per_organism_tick(self):
@@ -214,9 +217,9 @@ class Page:
         return f"{100 * rate * self._counted('ticks') / (1e9 * roof):.0f}"
 
     def counts(self):
-        names = {"ticks": "a tick of an organism, benchmark world of 2,000",
-                 "generation": "a tick of an organism, default world, breeding and placing included",
-                 "breeding": "a chromosome bred, of 20,000"}
+        names = {"ticks": "per organism-tick, benchmark world of 2,000",
+                 "generation": "per organism-tick, default world, with breeding and placement",
+                 "breeding": "per chromosome bred, population of 20,000"}
         return table(["", "instruction set", "instructions"],
                      [[names[e["work"]], e["instruction_set"], digits(e["instructions"] / e["units"])]
                       for e in self.results["instructions"]])
@@ -230,10 +233,10 @@ class Page:
         parts = [name for name in dict.fromkeys(row["phase"] for row in rows) if name != "whole tick"]
         whole = {n: ns["whole tick", n] for n in populations}
         body = [[name, *(digits(ns[name, n]) for n in populations)] for name in parts]
-        body += [["**together**", *(digits(sum(ns[name, n] for name in parts)) for n in populations)],
-                 ["an island's tick, by one clock", *(digits(whole[n]) for n in populations)],
+        body += [["**total**", *(digits(sum(ns[name, n] for name in parts)) for n in populations)],
+                 ["a whole tick of an island, one clock", *(digits(whole[n]) for n in populations)],
                  ["state hash, share of a tick", *(f"{100 * ns['hash', n] / whole[n]:.1f} %" for n in populations)]]
-        return table(["ns an organism and tick", *map(count, populations)], body) + \
+        return table(["ns per organism-tick", *map(count, populations)], body) + \
             "\n\n![phases of a tick](performance/phases.svg)"
 
     # The genetic algorithm
@@ -241,7 +244,7 @@ class Page:
     def genetic(self):
         rows = self.results["genetic"]
         evod = {row["population"]: row["ms_per_generation"]["median"] for row in rows if row["program"] == "evod"}
-        return table(["", "population", "generations", "ms a generation", "× evod", "best fitness at the end"],
+        return table(["", "population", "generations", "ms per generation", "× evod", "best fitness at the end"],
                      [[program_names[row["program"]], count(row["population"]), row["generations"],
                        with_spread(row["ms_per_generation"]),
                        digits(row["ms_per_generation"]["median"] / evod[row["population"]]),
@@ -254,12 +257,12 @@ class Page:
         slowest = [row for row in small if row["choice"] == "slowest choices together"][0]
         single = sorted((row for row in small if row is not slowest), key=lambda row: row["ms"]["median"])
         rows = [["100,000", "the defaults", 1, with_spread(default["ms"])],
-                ["100,000", f"the fastest single choice, `{single[0]['choice']}`", 1, with_spread(single[0]["ms"])],
-                ["100,000", f"the slowest single choice, `{single[-1]['choice']}`", 1, with_spread(single[-1]["ms"])],
-                ["100,000", "the slowest choices together", 1, with_spread(slowest["ms"])]]
+                ["100,000", f"the fastest single option, `{single[0]['choice']}`", 1, with_spread(single[0]["ms"])],
+                ["100,000", f"the slowest single option, `{single[-1]['choice']}`", 1, with_spread(single[-1]["ms"])],
+                ["100,000", "the slowest option of every stage", 1, with_spread(slowest["ms"])]]
         rows += [[count(row["chromosomes"]), "the defaults", row["threads"], with_spread(row["ms"])]
                  for row in found if row["chromosomes"] == 1_000_000]
-        return table(["chromosomes", "choices", "threads", "ms"], rows)
+        return table(["chromosomes", "options", "threads", "ms"], rows)
 
     # Whole programs
 
@@ -269,79 +272,75 @@ class Page:
             ["`evod run`, default world, one thread, × real time", with_spread(default["real_time_factor"])],
             ["the same, M organism-ticks/s", with_spread(default["m_organism_ticks_per_s"])],
             [f"`evod run`, benchmark world of {count(large['organisms'])}: start-up, s", digits(large["start_up_s"])],
-            ["the same: turnover of a generation, s", digits(large["turnover_s"])],
-            ["the same: most memory (`VmHWM`), MB", megabytes(large["memory_bytes"])],
-            ["the same: bytes of memory an organism", digits(large["memory_bytes"] / large["organisms"])]])
+            ["the same: from one generation to the next, s", digits(large["turnover_s"])],
+            ["the same: peak memory (`VmHWM`), MB", megabytes(large["memory_bytes"])],
+            ["the same: bytes of memory per organism", digits(large["memory_bytes"] / large["organisms"])]])
 
     def server(self):
         figures = self.results["server"]
-        rise, storage = figures["viewer_rise_percent"], figures["storage"]
-
-        def percent(spread):
-            return minus(f"{spread['median']:+.2f} % ({spread['min']:+.2f} – {spread['max']:+.2f} %)")
+        increase, storage = figures["viewer_rise_percent"], figures["storage"]
         rows = [
-            ["from exec to the first accepted client's welcome, ms", with_spread(figures["start_ms"])],
-            [f"a viewer at 30 pictures/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, "
-             "free running: rise of the simulation thread's processor time per tick",
-             percent(rise)],
-            [f"keeping the run of {count(storage['organisms'])} organisms, free running: the same rise",
+            ["from exec to the first client's Welcome, ms", with_spread(figures["start_ms"])],
+            [f"one viewer at 30 snapshots/s, {count(figures['organisms'])} organisms and {count(figures['items'])} items, full "
+             "speed: increase of the simulation thread's processor time per tick", percent(increase)],
+            [f"recording the run of {count(storage['organisms'])} organisms, full speed: the same increase",
              percent(storage["simulation_rise_percent"])],
-            ["processor time of the threads that write and pack, over that of the simulation thread",
+            ["processor time of the storage threads, divided by that of the simulation thread",
              percent(storage["storage_share_percent"])],
-            ["one of its pictures, bytes", count(figures["picture_bytes"])],
-            ["a command to a server at rest that keeps nothing, ms", with_spread(figures["command_at_rest_ms"])],
-            ["a command beside that world at full speed, ms", with_spread(figures["command_beside_ms"])],
-            ["a query beside it, ms", with_spread(figures["query_beside_ms"])],
-            ["a command to a server that keeps its runs, on the disk before it is answered, ms",
+            ["one of its snapshots, bytes", count(figures["snapshot_bytes"])],
+            ["a command to an idle server that records nothing, ms", with_spread(figures["command_at_rest_ms"])],
+            ["a command while that world runs at full speed, ms", with_spread(figures["command_beside_ms"])],
+            ["a query while it runs, ms", with_spread(figures["query_beside_ms"])],
+            ["a command to a server that records its runs: on the disk before the reply, ms",
              with_spread(storage["command_ms"])]]
         if "ready_after_kill_s" in storage:
-            rows.append([f"from exec to a client's welcome, after a kill late in a generation of "
+            rows.append([f"from exec to a client's Welcome, after a kill late in a generation of "
                          f"{count(storage['organisms'])}, s", with_spread(storage["ready_after_kill_s"])])
-        return table(["", "median (least – greatest)"], rows)
+        return table(["", "median (minimum – maximum)"], rows)
 
     def run_files(self):
         figures = self.results["run_files"]
         generations = count(figures["generations"])
-        rows = [["bytes by which the default world's file grows in a generation of 50",
+        rows = [["growth of the default world's file per generation of 50, bytes",
                  count(round(figures["bytes_per_generation"]))],
-                [f"from any moment of {generations} generations to any other, ms", with_spread(figures["seek_ms"])],
+                [f"seek from any tick of {generations} generations to any other, ms", with_spread(figures["seek_ms"])],
                 [f"`evod run`, {generations} generations, all threads, s", with_spread(figures["run_s"])],
                 ["`evod verify` of the same run, s", with_spread(figures["verify_s"])],
-                ["ratio of the two", with_spread(figures["verify_over_run"])]]
+                ["verify ÷ run", with_spread(figures["verify_over_run"])]]
         for at in figures["checkpoints"]:
-            rows += [[f"a tick of {count(at['organisms'])} organisms, their run kept, ms", with_spread(at["tick_ms"])],
+            rows += [[f"a tick of {count(at['organisms'])} organisms, recorded, ms", with_spread(at["tick_ms"])],
                      ["the same with a checkpoint", with_spread(at["tick_with_checkpoint_ms"])],
                      ["a checkpoint, bytes", count(at["packed_bytes"])]]
-        return table(["", "median (least – greatest)"], rows)
+        return table(["", "median (minimum – maximum)"], rows)
 
     def stream(self):
         def decoding(row):
             return digits(row["decode_ms"]) if "decode_ms" in row else ""
-        return table(["organisms", "codec", "bytes a picture", "the same an organism", "a keyframe, bytes",
-                      "network thread, ms a picture", "numpy decodes, ms"],
+        return table(["organisms", "codec", "bytes per snapshot", "bytes per organism", "bytes per keyframe",
+                      "network thread, ms per snapshot", "numpy decodes, ms"],
                      [[count(row["organisms"]), row["codec"], count(round(row["bytes"])), digits(row["bytes_per_organism"]),
                        count(round(row["keyframe_bytes"])) if row.get("keyframes") else "", digits(row["server_ms"]),
                        decoding(row)] for row in self.results["stream"]])
 
     def package(self):
-        generations, pictures = self.results["package"]["generations"], self.results["package"]["pictures"]
-        organisms = count(pictures["organisms"])
-        return table(["", "median (least – greatest)"], [
-            ["100 generations by `evod run`, s", with_spread(generations["evod_run_s"])],
-            ["the same by `World.run()`, s", with_spread(generations["package_s"])],
+        generations, snapshots = self.results["package"]["generations"], self.results["package"]["snapshots"]
+        organisms = count(snapshots["organisms"])
+        return table(["", "median (minimum – maximum)"], [
+            ["100 generations with `evod run`, s", with_spread(generations["evod_run_s"])],
+            ["the same with `World.run()`, s", with_spread(generations["package_s"])],
             ["ratio of the two", with_spread(generations["ratio"])],
-            ["ratio of the processor time of what simulates",
+            ["ratio of the simulation's processor time",
              with_spread(generations["ratio_of_processor_s_of_what_simulates"])],
-            ["Python's own processor time of a generation, ms",
+            ["Python's own processor time per generation, ms",
              with_spread(generations["python_processor_ms_a_generation"])],
-            [f"pictures of {organisms} organisms that come as arrays, a second", digits(pictures["come_per_s"])],
-            ["the same from memory", digits(pictures["decoded_alone_per_s"])]])
+            [f"snapshots of {organisms} organisms received as arrays, per second", digits(snapshots["come_per_s"])],
+            ["the same decoded from memory", digits(snapshots["decoded_alone_per_s"])]])
 
     def drawing(self):
         def own(row):
             return digits(row["own_ms"]) if "own_ms" in row else ""
-        return table(["organisms", "ms of processor time a drawn frame, OpenGL in software included",
-                      "a frame with a new picture, without the calls that hand it over and draw it"],
+        return table(["organisms", "processor time per drawn frame, OpenGL in software included, ms",
+                      "a frame with a new snapshot, without the OpenGL calls, ms"],
                      [[count(row["organisms"]), digits(row["ms"]), own(row)] for row in self.results["drawing"]])
 
     def sizes(self):
@@ -351,5 +350,15 @@ class Page:
         rows += [[f"`{name}` on disk, MB", megabytes(size)] for name, size in disk.items()]
         return table(["", ""], rows)
 
-    def by_hand(self):
-        return (folder / "by_hand.md.in").read_text().strip()
+    def clients(self):
+        rows = []
+        for name, figures in self.results.get("clients", {}).items():
+            if "loss_percent" in figures:
+                rows.append([name.replace("_", " "), percent(figures["loss_percent"]), percent(figures["others_share_percent"])])
+        return table(["clients", "loss", "of which other threads"], rows)
+
+    def sweeps(self):
+        figures = self.results.get("sweeps")
+        return table(["", "median"], figures and [
+            ["processor time, share of all cores, %", digits(100 * figures["busy_share"])],
+            ["duration, s", digits(figures["wall_s"])]])

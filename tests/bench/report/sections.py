@@ -211,6 +211,15 @@ def package(bench):
                              bench.build / "python", "--json", *quick)
 
 
+def clients(bench):
+    return of_server(bench, "network_cost.py")
+
+
+def sweeps(bench):
+    quick = ["--rounds", 1, "--generations", 20] if bench.quick else []
+    return programs.run_json(python, bench.root / "tests/bench/sweep_cost.py", bench.program("evod"), "--json", *quick)
+
+
 def evod_run(bench, *arguments):
     """One `evod run`: what its last lines say, and the most memory it took."""
     with tempfile.TemporaryFile("w+") as text:
@@ -244,7 +253,7 @@ def whole_program(bench):
 everything = {"machine": machine_roofs, "workload": workload, "islands": islands, "densities": densities,
               "agreement": agreement, "instruction_sets": instruction_sets, "instructions": instructions,
               "phases": phases, "genetic": genetic, "breeding": breeding, "runs": whole_program,
-              "server": server, "run_files": run_files, "stream": stream, "package": package, "drawing": drawing}
+              "server": server, "clients": clients, "run_files": run_files, "stream": stream, "sweeps": sweeps, "package": package, "drawing": drawing}
 
 
 def columns():
