@@ -1,4 +1,4 @@
-"""A real evod and a client of it, for the programs beside: it asks one thing after another. And how they tell figures."""
+"""A real evod and a client of it, for the programs beside it, with one request at a time; and how they print figures."""
 import json
 import os
 import re

@@ -42,7 +42,7 @@ def shares(seconds):
             "max_ms": ordered[-1]}
 
 
-def told(control, name):
+def histogram_of(control, name):
     """Of a histogram of the server's metrics: its mean, and by milliseconds how many in 100 took no longer."""
     histogram = next(family for family in control.call(get_metrics=c.GetMetrics()).metrics.families
                      if family.name == name).samples[0].histogram
@@ -99,7 +99,7 @@ def measure_commands(folder):
                     looked = time.monotonic()
                     checkpoints |= {tick for (tick,) in run.execute("SELECT tick FROM checkpoint")}
             ticks = tick() - first_tick
-            waited, commits = told(control, "evod_journal_wait_seconds"), told(control, "evod_journal_commit_seconds")
+            waited, commits = histogram_of(control, "evod_journal_wait_seconds"), histogram_of(control, "evod_journal_commit_seconds")
     return {"checkpoints": len(checkpoints), "tick_ms": 1e3 * options.seconds / max(ticks, 1),
             "command_alone": shares(alone), "command_beside_a_checkpoint": shares(beside), "query": shares(queries),
             "waited_for_the_disk": waited, "commit": commits}

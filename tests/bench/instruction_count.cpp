@@ -1,7 +1,7 @@
 // instruction_count: fixed pieces of work whose instructions callgrind counts; see instruction_count.py.
 //
 // instruction_count WORK [--instructions baseline|avx2] does everything that is needed before the work, then the work
-// inside counted_work(), which is what callgrind is told to count; one thread.
+// inside counted_work(), which is what callgrind counts; one thread.
 #include "server/base/inline_executor.h"
 #include "server/evolution/next_generation.h"
 #include "server/simulation/world.h"

@@ -2,7 +2,7 @@
 // instructions a second. One line of JSON.
 //
 // Source  the triad of McCalpin's STREAM (a = b + s · c), 24 bytes an element counted as there, without the read of
-//         what is overwritten; written anew.
+//         what is overwritten; written.
 #include <boost/json.hpp>
 
 #include <algorithm>

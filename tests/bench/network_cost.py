@@ -1,11 +1,11 @@
-"""What clients cost the simulation, whether they watch, idle or attack; how soon commands and pictures come beside them.
+"""What clients cost the simulation, whether they watch, idle or attack; how soon commands and snapshots arrive meanwhile.
 
     network_cost.py EVOD MESSAGES [--organisms N] [--runs N] [--only NAME ...] [--json]
 
 The world is that of default.json with scale_with_population. It runs free with one worker; the same ticks of the same run
 are simulated by turns with such clients and without. The clients are a process of their own (tests/system/attacker.py),
 pinned to another core than the server's simulation thread. A loss is the rise of the simulation thread's processor time
-per tick, plus the processor time of all other threads of the server over the simulation thread's. Pictures come 20 times
+per tick, plus the processor time of all other threads of the server over the simulation thread's. Snapshots come 20 times
 a second, as deltas without compression.
 """
 import argparse
@@ -115,7 +115,7 @@ def percentile(values, percent):
 
 
 def measure_latency(folder):
-    """Milliseconds to the answer of a command beside a full stream; to the first picture of one who comes late."""
+    """Milliseconds to the answer of a command beside a full stream; to the first snapshot of a late subscriber."""
     figures = {}
     for name, arguments in (("kept_nothing", ["--keep-nothing"]), ("durable", ["--data", folder])):
         with serve(*arguments) as server:
@@ -147,7 +147,7 @@ def measure_latency(folder):
                     pass
                 times.append(1e3 * (time.perf_counter() - began))
                 viewer.socket.close()
-            figures[f"first_picture_{organisms}_ms"] = spread(times)
+            figures[f"first_snapshot_{organisms}_ms"] = spread(times)
     return figures
 
 

@@ -1,10 +1,10 @@
-// What the network thread does to make a picture, stage by stage, without sending it: to put what the simulation thread
-// copied in order and into whole numbers, to tell it from the picture before, and to make bytes of that, with a
+// The network thread's work for one snapshot, stage by stage, without sending it: sorting and quantising what the
+// simulation thread copied, encoding it against the snapshot before, and building and compressing the bytes, with a
 // checksum, as they are or by zstd.
 //
 // Benchmarks are named WORLD/COMPRESSION; the counters are nanoseconds of an entity (organisms, food, poison), and
 // bytes. The worlds have 23,000 entities, of which half, a tenth or all move, and are those of `stream_cost.py
-// --movers`; pictures are 3 ticks apart, or 300 to 302, as a world at full speed has them.
+// --movers`; snapshots are 3 ticks apart, or 300 to 302, as a world at full speed has them.
 #include "proto/codec/snapshot_codec.h"
 #include "server/base/inline_executor.h"
 #include "server/runtime/snapshot.h"
@@ -64,7 +64,7 @@ std::vector<runtime::SnapshotPtr> snapshots_of(const Kind& kind) {
     return snapshots;
 }
 
-void pictures(benchmark::State& state, const Kind& kind, v1::Compression compression) {
+void snapshots(benchmark::State& state, const Kind& kind, v1::Compression compression) {
     const std::vector<runtime::SnapshotPtr> snapshots = snapshots_of(kind);
     codec::Compressor compressor;
     std::chrono::duration<double> scene{0}, delta{0}, bytes{0};
@@ -81,18 +81,18 @@ void pictures(benchmark::State& state, const Kind& kind, v1::Compression compres
             auto made = std::make_shared<const codec::QuantisedSnapshot>(streaming::quantise(snapshot.islands.front()));
             codec::describe(*made, about);
             const auto ready = Clock::now();
-            const streaming::DeltaSnapshotPtr& picture =
+            const streaming::DeltaSnapshotPtr& snapshot =
                 chain.add(std::make_shared<const v1::SnapshotFrame>(about), std::move(made), compressor, {}, {});
-            const auto told = Clock::now();
-            const streaming::SharedBytes frame = picture->after(i, compression);
+            const auto encoded = Clock::now();
+            const streaming::SharedBytes frame = snapshot->after(i, compression);
             benchmark::DoNotOptimize(frame->data());
             const auto done = Clock::now();
             if (i == 0) { // a keyframe
                 continue;
             }
             scene += ready - began;
-            delta += told - ready;
-            bytes += done - told;
+            delta += encoded - ready;
+            bytes += done - encoded;
             entities += about.organism_count() + about.food_count() + about.poison_count();
             size += frame->size();
         }
@@ -113,7 +113,7 @@ const bool registered = [] {
                              Kind{"all move", world_of(23'000, 0, 0, 23'000)}, Kind{"at full speed", half, 300, 3}}) {
         for (const auto& [name, compression] :
              {std::pair{"none", v1::COMPRESSION_NONE}, std::pair{"zstd", v1::COMPRESSION_ZSTD}}) {
-            benchmark::RegisterBenchmark((std::string{kind.name} + '/' + name).c_str(), pictures, kind, compression)
+            benchmark::RegisterBenchmark((std::string{kind.name} + '/' + name).c_str(), snapshots, kind, compression)
                 ->Unit(benchmark::kMillisecond);
         }
     }

@@ -1,16 +1,16 @@
-"""What pictures cost by each codec, on a real evod: bytes, the server's time, and numpy's to decode them.
+"""The cost of snapshots in each codec, on a real evod: bytes, the server's time, and NumPy's time to decode them.
 
     stream_cost.py EVOD MESSAGES [--organisms N ...] [--movers] [--seconds S] [--json]
 
-Each world runs at the speed of life, and one viewer at a time reads 30 pictures a second of the same stretch of it. Bytes
+Each world runs at real time, and one viewer at a time reads 30 snapshots a second of the same stretch of it. Bytes
 are those of whole frames with their headers, keyframes included; the server's time is that of its network thread, sending
 included.
 
-With --movers instead: 23,000 entities of which some move, by delta and zstd, 20 pictures a second, 3 ticks from one to the
+With --movers instead: 23,000 entities of which some move, by delta and zstd, 20 snapshots a second, 3 ticks from one to the
 next. `half_move` is default.json with scale_with_population and 10,000 organisms; of `tenth_moves` 2,300 are organisms on
-as much ground; of `all_move` all are, with ground in proportion. Bytes are those of an entity and picture; a keyframe is
+as much ground; of `all_move` all are, with ground in proportion. Bytes are those of an entity and snapshot; a keyframe is
 either one that all get, every 2 s, or `asked` for by one viewer in between. Then what the simulation thread does to give a
-picture away, as the server measures it, of 10,000 and 100,000 organisms at full speed.
+snapshot away, as the server measures it, of 10,000 and 100,000 organisms at full speed.
 """
 import argparse
 import ctypes
@@ -48,7 +48,7 @@ def zstd_content(frame):
 
 
 def watch(server, name, codec, compression):
-    """Reads the pictures of a run from first_tick to last_tick; figures of one picture, in the mean."""
+    """Reads the snapshots of a run from first_tick to last_tick; figures of one snapshot, on average."""
     control = server.control
     control.call(reset_world=c.ResetWorld(world=name))
     control.call(set_speed=c.SetSpeed(world=name, speed=w.Speed(max=True)))
@@ -68,28 +68,28 @@ def watch(server, name, codec, compression):
         channel, body = viewer.frame()
         if channel != 2:
             continue
-        picture = stream_pb2.SnapshotFrame.FromString(bytes(body))
-        tick = picture.tick
+        snapshot = stream_pb2.SnapshotFrame.FromString(bytes(body))
+        tick = snapshot.tick
         if codec == stream_pb2.CODEC_DELTA:
             began = time.thread_time()
-            decoder.decode(picture)
+            decoder.decode(snapshot)
             decoding.append(time.thread_time() - began)
-            if picture.base_sequence == 0:
+            if snapshot.base_sequence == 0:
                 keyframes.append(8 + len(body))
-                entities_in_keyframes += entities_in(picture)
-        entities += entities_in(picture)
+                entities_in_keyframes += entities_in(snapshot)
+        entities += entities_in(snapshot)
         sizes.append(8 + len(body))
-        alive.append(picture.organism_count)
+        alive.append(snapshot.organism_count)
     spent = server.thread_s("evod") - before
     if options.movers:
         control.call(run_until_tick=c.RunUntilTick(world=name, tick=last_tick + 60))
         asked = keyframe_asked_for(viewer, subscribed.subscription_id)
         viewer.socket.close()
-        return {"pictures": len(sizes), "keyframes": len(keyframes), "entities": entities / len(sizes),
+        return {"snapshots": len(sizes), "keyframes": len(keyframes), "entities": entities / len(sizes),
                 "bytes_each": sum(sizes) / entities, "keyframe_bytes_each": sum(keyframes) / entities_in_keyframes,
                 "asked_keyframe_bytes_each": asked, "server_ns_each": 1e9 * spent / entities}
     viewer.socket.close()
-    figures = {"pictures": len(sizes), "bytes": statistics.mean(sizes), "bytes_median": statistics.median(sizes),
+    figures = {"snapshots": len(sizes), "bytes": statistics.mean(sizes), "bytes_median": statistics.median(sizes),
                "bytes_per_organism": sum(sizes) / sum(alive), "server_ms": 1e3 * spent / len(sizes)}
     if decoding:
         figures |= {"decode_ms": 1e3 * statistics.median(decoding), "keyframes": len(keyframes),
@@ -97,28 +97,28 @@ def watch(server, name, codec, compression):
     return figures
 
 
-def entities_in(picture):
-    return (picture.organism_count + picture.food_count + picture.poison_count + picture.crate_count +
-            picture.obstacle_count)
+def entities_in(snapshot):
+    return (snapshot.organism_count + snapshot.food_count + snapshot.poison_count + snapshot.crate_count +
+            snapshot.obstacle_count)
 
 
 def keyframe_asked_for(viewer, subscription_id):
-    """Bytes an entity of one, some pictures after the one before it."""
+    """Bytes an entity of one, some snapshots after the one before it."""
     for _ in range(8):
         viewer.frame()
     viewer.call(request_keyframe=c.RequestKeyframe(subscription_id=subscription_id))
     while True:
         channel, body = viewer.frame()
-        picture = stream_pb2.SnapshotFrame.FromString(bytes(body)) if channel == 2 else None
-        if picture and picture.base_sequence == 0:
-            return (8 + len(body)) / entities_in(picture)
+        snapshot = stream_pb2.SnapshotFrame.FromString(bytes(body)) if channel == 2 else None
+        if snapshot and snapshot.base_sequence == 0:
+            return (8 + len(body)) / entities_in(snapshot)
 
 
 def handing_over(server, organisms):
-    """Milliseconds of the simulation thread for a picture."""
-    def pictures():
+    """Milliseconds of the simulation thread for a snapshot."""
+    def snapshots():
         of_world = next(family for family in server.control.call(get_metrics=c.GetMetrics()).metrics.families
-                        if family.name == "evod_picture_seconds").samples[-1].histogram
+                        if family.name == "evod_snapshot_seconds").samples[-1].histogram
         return of_world.sum, sum(of_world.counts)
     server.control.call(create_world=c.CreateWorld(name="w", seed=1, parameters=assignments(
         {"population_size": organisms, "scale_with_population": True})))
@@ -129,14 +129,14 @@ def handing_over(server, organisms):
         world="w", rate_hz=rate_hz, codec=stream_pb2.CODEC_DELTA, compression=stream_pb2.COMPRESSION_ZSTD))
     for _ in range(10):
         viewer.frame()
-    sum_before, count_before = pictures()
+    sum_before, count_before = snapshots()
     for _ in range(rate_hz * seconds):
         viewer.frame()
-    sum_after, count_after = pictures()
+    sum_after, count_after = snapshots()
     viewer.socket.close()
     server.control.call(delete_world=c.DeleteWorld(world="w"))
     return {"hand_over_ms": 1e3 * (sum_after - sum_before) / (count_after - count_before),
-            "pictures": count_after - count_before}
+            "snapshots": count_after - count_before}
 
 
 def measure_movers():

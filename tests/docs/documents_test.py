@@ -4,7 +4,7 @@
 
 The folder looks like that of the sources, and build/release in it is the environment's BUILD, whose programs are on the
 path and whose Python package can be imported. HOME is above it, and the network is the document's own, so that every port is
-free and nothing comes from outside; as root there one may mount what nobody else sees.
+free and nothing comes from outside; as root there the test can mount folders in a namespace of its own.
 
     ```sh       all of them are run by one bash, so a variable, a folder, a server in the background is there for the next.
                 Every command has to succeed.
@@ -12,9 +12,9 @@ free and nothing comes from outside; as root there one may mount what nobody els
     ```sql      what sqlite3 is asked, of default.evod in that folder; each question has to have an answer
     ```text     what the block before it prints, on both outputs together. A line of … stands for any lines, or none
 
-Other blocks are not run. Comments before a block, which nobody sees who reads the page, say what else is to know of it:
+Other blocks are not run. HTML comments before a block, which readers of the page do not see, say more about it:
 
-    <!-- not run: REASON -->       it needs what a test has not: root, a window, a person. All of them are counted and told
+    <!-- not run: REASON -->       it needs what a test lacks: root, a window, a person. They are counted and printed
     <!-- ends with status N -->    that is what its last command is for
     <!-- before: CODE -->          goes before it, in its language, of sql in sh: what its reader has done, or has anyway
     <!-- varies: REGEX -->         of a ```text: each match stands for any other, as evod's version always does; the rest is
@@ -116,7 +116,7 @@ class Reader:
         environment = {"PATH": os.environ["BUILD"] + "/bin:/usr/bin:/bin:/usr/sbin:/sbin", "HOME": str(self.home),
                        "PYTHONPATH": os.environ["BUILD"] + "/python", "LC_ALL": "C.UTF-8", "TZ": "UTC", "TMPDIR": str(folder),
                        "MPLBACKEND": "Agg", "MPLCONFIGDIR": os.environ["BUILD"] + "/matplotlib"}
-        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # looking for fonts is told if it takes long: now
+        if not pathlib.Path(environment["MPLCONFIGDIR"]).exists():  # the search for fonts prints a warning if it takes long, so it is done here
             subprocess.run(["/usr/bin/python3", "-c", "import matplotlib.font_manager"], env=environment, capture_output=True)
         self.bash = subprocess.Popen(["bash", "--norc", "--noprofile"], cwd=work, env=environment, umask=0o022,
                                      start_new_session=True, text=True, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
@@ -180,7 +180,7 @@ def compare(block, said, more_may_come):
 
 
 def read(path, reader, verbose):
-    """Follows the document; returns what is to tell of it."""
+    """Follows the document; returns the report."""
     counts, left_out, said = collections.Counter(), collections.Counter(), None
     for block in blocks_of(path.read_text()):
         begun = time.monotonic()

@@ -69,7 +69,7 @@ class Documents(unittest.TestCase):
     def test_an_output_is_waited_for(self):
         self.right(block("sh", "(sleep 0.3; echo ready) &") + block("text", "ready"))
 
-    def test_what_is_not_run_is_told(self):
+    def test_skipped_blocks_are_reported(self):
         self.right("<!-- not run: it needs a window -->\n" + block("sh", "false") + block("sh", "true"),
                    "1 not run: it needs a window", "1 sh blocks")
 

@@ -25,13 +25,13 @@ class EvodScene {
     }
 
     /// Of the first island.
-    Picture picture() const {
-        Picture picture;
+    Observation observation() const {
+        Observation observation;
         const simulation::Island& island = world_.islands()[0];
         const evolution::GeneMatrix& genes = island.born().genes;
         for (std::uint32_t id = 0; id < genes.cols(); ++id) {
             if (const auto i = island.body_of(id)) {
-                picture.organisms.push_back(
+                observation.organisms.push_back(
                     {.place = {physics::to_px(island.bodies().x[*i]), physics::to_px(island.bodies().y[*i])},
                      .velocity = {static_cast<double>(island.bodies().velocity_x[*i]),
                                   static_cast<double>(island.bodies().velocity_y[*i])},
@@ -40,11 +40,11 @@ class EvodScene {
         }
         for (std::uint32_t item = 0; item < island.food().size(); ++item) {
             if (island.food().present(item)) {
-                picture.food.push_back(
+                observation.food.push_back(
                     {physics::to_px(island.food().all()[item].x), physics::to_px(island.food().all()[item].y)});
             }
         }
-        return picture;
+        return observation;
     }
 
   private:

@@ -33,11 +33,11 @@ struct Measured {
 };
 
 /// Adds what the living are doing: every organism compared with every food.
-inline void look_at(const Picture& picture, Measured& measured) {
-    for (const Picture::Organism& organism : picture.organisms) {
+inline void observe(const Observation& observation, Measured& measured) {
+    for (const Observation::Organism& organism : observation.organisms) {
         ++measured.looked_at;
         measured.speed_sum += std::sqrt(square(organism.velocity));
-        for (const Vector& food : picture.food) {
+        for (const Vector& food : observation.food) {
             if (square({food.x - organism.place.x, food.y - organism.place.y}) <=
                 organism.food_radius * organism.food_radius) {
                 ++measured.seeing_food;
@@ -74,7 +74,7 @@ Measured measure(const Window& window, MakeScene&& make_scene, base::Executor& e
                 measured.time.wall += took.wall;
                 measured.time.processor += took.processor;
                 if (window.look_every_ticks > 0) {
-                    look_at(scene.picture(), measured);
+                    observe(scene.observation(), measured);
                 }
             }
             const Counts after = scene.counts();

@@ -41,8 +41,8 @@ class EngineScene {
         , items_{start.items}
         , behaviour_key_{seed, base::Purpose::Behaviour, 0, 1}
         , respawn_key_{seed, base::Purpose::FoodRespawn, 0, 1}
-        , sights_(organisms_.size())
-        , takers_(items_.size(), nobody) {
+        , perceived_(organisms_.size())
+        , takers_(items_.size(), no_taker) {
         for (std::uint32_t i = 0; i < organisms_.size(); ++i) {
             living_.push_back(i);
         }
@@ -64,18 +64,18 @@ class EngineScene {
         bury_the_dead();
     }
 
-    Picture picture() const {
-        Picture picture;
+    Observation observation() const {
+        Observation observation;
         for (const std::uint32_t i : living_) {
-            picture.organisms.push_back({engine_.place(i), engine_.velocity(i), organisms_[i].food_radius});
+            observation.organisms.push_back({engine_.place(i), engine_.velocity(i), organisms_[i].food_radius});
         }
-        picture.food.assign(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(food_count_));
+        observation.food.assign(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(food_count_));
         for (const std::uint32_t item : eaten_) {
             if (item < food_count_) {
-                picture.food[item].x = -1e9; // is away until the next tick
+                observation.food[item].x = -1e9; // is away until the next tick
             }
         }
-        return picture;
+        return observation;
     }
 
   private:
@@ -85,7 +85,7 @@ class EngineScene {
         Vector way;
         bool seen = false;
 
-        void look_at(const Vector& to_item) {
+        void observe(const Vector& to_item) {
             const double distance = bench::square(to_item);
             if (distance < square || (!seen && distance == square)) {
                 square = distance;
@@ -95,7 +95,7 @@ class EngineScene {
         }
     };
     /// Where an organism was at the tick's start, and a distance that no item was nearer than.
-    struct Sight {
+    struct Perception {
         Vector place;
         double clear;
     };
@@ -103,7 +103,7 @@ class EngineScene {
         double square; // of the distance, px²
         std::uint32_t organism;
     };
-    static constexpr Taker nobody{std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()};
+    static constexpr Taker no_taker{std::numeric_limits<double>::infinity(), std::numeric_limits<std::uint32_t>::max()};
 
     bool is_food(std::uint32_t item) const { return item < food_count_; }
 
@@ -136,9 +136,9 @@ class EngineScene {
         Nearest poison{.square = organism.poison_radius * organism.poison_radius, .way = {}};
         engine_.items_about(place, std::max(organism.food_radius, organism.poison_radius), [&](std::uint32_t item) {
             const Vector way{items_[item].x - place.x, items_[item].y - place.y};
-            (is_food(item) ? food : poison).look_at(way);
+            (is_food(item) ? food : poison).observe(way);
         });
-        sights_[i] = {place, std::sqrt(std::min(food.square, poison.square))};
+        perceived_[i] = {place, std::sqrt(std::min(food.square, poison.square))};
 
         const double effort = organism.impulse * model_.force_per_unit;
         const bool afraid = poison.seen && (!food.seen || poison.square < food.square);
@@ -171,8 +171,8 @@ class EngineScene {
             const Vector place = engine_.place(i);
             const double reach = organisms_[i].radius + model_.item_radius;
             // Items rest: what was further away than the reach and the way since cannot be touched.
-            const Vector moved{place.x - sights_[i].place.x, place.y - sights_[i].place.y};
-            if (sights_[i].clear > reach + std::sqrt(square(moved))) {
+            const Vector moved{place.x - perceived_[i].place.x, place.y - perceived_[i].place.y};
+            if (perceived_[i].clear > reach + std::sqrt(square(moved))) {
                 continue;
             }
             engine_.items_about(place, reach, [&](std::uint32_t item) {
@@ -181,7 +181,7 @@ class EngineScene {
                 if (distance > reach * reach) {
                     return;
                 }
-                if (taker.organism == nobody.organism) {
+                if (taker.organism == no_taker.organism) {
                     eaten_.push_back(item);
                 }
                 if (distance < taker.square) {
@@ -193,7 +193,7 @@ class EngineScene {
             double& health = organisms_[takers_[item].organism].health;
             health += is_food(item) ? model_.food_health : -model_.poison_harm;
             ++(is_food(item) ? counts_.food_eaten : counts_.poison_eaten);
-            takers_[item] = nobody;
+            takers_[item] = no_taker;
         }
     }
 
@@ -217,7 +217,7 @@ class EngineScene {
     base::RandomKey behaviour_key_, respawn_key_;
     std::uint64_t tick_ = 0;
     std::vector<std::uint32_t> living_; // in order of id
-    std::vector<Sight> sights_;
+    std::vector<Perception> perceived_;
     std::vector<Taker> takers_;
     std::vector<std::uint32_t> eaten_; // in this tick
     Counts counts_;

@@ -14,7 +14,7 @@ struct Counts {
 };
 
 /// The living and the food as they are between two ticks.
-struct Picture {
+struct Observation {
     struct Organism {
         Vector place, velocity; // px, px/s
         double food_radius;     // px

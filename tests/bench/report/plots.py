@@ -1,4 +1,4 @@
-"""The pictures of docs/PERFORMANCE.md, as small SVG files."""
+"""The plots of docs/PERFORMANCE.md, as small SVG files."""
 import matplotlib
 
 matplotlib.use("svg")

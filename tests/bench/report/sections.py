@@ -166,8 +166,8 @@ def instructions(bench):
 
 
 def drawing(bench):
-    """ms of the drawing thread a frame, by organisms, on a screen of our own, drawn in software: all of it when the whole
-    island is seen, and the viewer's own for a new picture, at the dearer of two zooms."""
+    """Milliseconds of the drawing thread per frame, by number of organisms, drawn in software under Xvfb: with OpenGL when the
+    whole island is visible, and without it for a frame with a new snapshot, at the slower of two zooms."""
     if not bench.program("viewer_frame_bench").exists():
         return []
     run = subprocess.run([bench.root / "tests/system/viewer/under_xvfb.sh", bench.program("viewer_frame_bench"),
