@@ -1,18 +1,18 @@
 // evod: options → objects → run → exit code. The only place that knows everyone.
 #include "proto/command_line/command.h"
-#include "server/console/certificate.h"
-#include "server/console/check.h"
-#include "server/console/common_options.h"
-#include "server/console/compare.h"
-#include "server/console/experiment_file.h"
-#include "server/console/export.h"
-#include "server/console/fork.h"
-#include "server/console/parameter_list.h"
-#include "server/console/population_file.h"
-#include "server/console/run.h"
-#include "server/console/sweep.h"
-#include "server/console/token.h"
-#include "server/console/verify.h"
+#include "server/commands/certificate.h"
+#include "server/commands/check.h"
+#include "server/commands/common_options.h"
+#include "server/commands/compare.h"
+#include "server/commands/export.h"
+#include "server/commands/fork.h"
+#include "server/commands/parameter_list.h"
+#include "server/commands/run.h"
+#include "server/commands/sweep.h"
+#include "server/commands/token.h"
+#include "server/commands/verify.h"
+#include "server/experiments/experiment_file.h"
+#include "server/experiments/population_file.h"
 #include "server/log/log.h"
 #include "server/network/random_ids.h"
 #include "server/network/server.h"
@@ -183,7 +183,7 @@ void add_common_options(Command& command, ServeOptions& options) {
         .check(port_number)
         .show_default();
     command.add_option("--threads", &options.threads, "Threads that simulate")
-        .check(console::thread_count)
+        .check(commands::thread_count)
         .show_default();
     const auto http = command
                           .add_option("--http-port", &options.http_port,
@@ -244,11 +244,11 @@ int serve(ServeOptions& options) {
     simulation::CreateWorld create{
         .name = "default", .parameters = {}, .seed = network::draw_seed(), .run_id = network::draw_run_id()};
     if (!options.experiment_file.empty()) {
-        const auto experiment = console::load_experiment(options.experiment_file);
+        const auto experiment = experiments::load_experiment(options.experiment_file);
         if (!experiment) {
             return fail(to_text(experiment.error()));
         }
-        create.name = console::world_name(options.experiment_file);
+        create.name = experiments::world_name(options.experiment_file);
         create.parameters = experiment->parameters;
         create.schedule = experiment->schedule;
         create.seed = experiment->seed.value_or(create.seed);
@@ -256,24 +256,24 @@ int serve(ServeOptions& options) {
     if (options.seed) {
         create.seed = base::Seed{*options.seed};
     }
-    auto population = console::load_population(options.population_file, create.parameters);
+    auto population = experiments::load_population(options.population_file, create.parameters);
     if (!population) {
         return fail("--population: " + to_text(population.error()));
     }
     create.first_population = *std::move(population);
 
-    std::string data_folder = console::data_folder_or_default(options.data_folder);
+    std::string data_folder = commands::data_folder_or_default(options.data_folder);
     if (options.keep_nothing) {
         data_folder.clear();
     } else if (data_folder.empty()) {
-        return fail(std::string{console::no_data_folder} + ", or give --keep-nothing");
+        return fail(std::string{commands::no_data_folder} + ", or give --keep-nothing");
     }
     network::ServerOptions server_options{
         .bind_address = options.bind_address,
         .port = options.port,
         .threads = options.threads,
         .data_folder = data_folder,
-        .token_folder = console::data_folder_or_default(options.data_folder),
+        .token_folder = commands::data_folder_or_default(options.data_folder),
         .session_bounds = options.session_bounds,
         .token_needed = options.token_needed,
         .tls = options.tls,
@@ -302,7 +302,7 @@ int replay(ServeOptions& options, network::ServerOptions::Replay run) {
                   .port = options.port,
                   .threads = options.threads,
                   .data_folder = {},
-                  .token_folder = console::data_folder_or_default(options.data_folder),
+                  .token_folder = commands::data_folder_or_default(options.data_folder),
                   .session_bounds = options.session_bounds,
                   .token_needed = options.token_needed,
                   .tls = options.tls,
@@ -316,7 +316,7 @@ int replay(ServeOptions& options, network::ServerOptions::Replay run) {
 void add_first_world_options(Command& app, ServeOptions& options) {
     app.add_option("--experiment", &options.experiment_file, "JSON file with the parameters of the first world");
     app.add_option("--seed", &options.seed, "Seed of the first world; otherwise the file's, or one drawn by chance")
-        .check(console::any_number);
+        .check(commands::any_number);
     app.add_option(
         "--population", &options.population_file,
         "CSV file of `evod export --what population`: the first world begins with these organisms instead of "
@@ -363,7 +363,7 @@ void add_replay_command(Command& app, ServeOptions& options) {
     auto& run = command.keep(network::ServerOptions::Replay{});
     command.add_option("run", &run.path, "Run file, NAME.evod; the run need not be over").required();
     command.add_option("--generation", &run.generation, "Begins there; otherwise with the first")
-        .check(console::generation_number);
+        .check(commands::generation_number);
     command.add_option("--data", &options.data_folder, "Folder whose tokens let others in");
     add_common_options(command, options);
     command.footer("Watch it with evoview, go elsewhere in it with evoctl seek, run and pause it as any world.");
@@ -390,17 +390,17 @@ int main(int argument_count, char** arguments) {
     app.hand_options_down("the server");
     app.action([&] { return serve(options); });
     const base::Seed drawn_seed = network::draw_seed();
-    console::add_run_command(app, options.threads, drawn_seed);
-    console::add_compare_command(app, options.threads, drawn_seed);
-    console::add_sweep_command(app, options.threads, network::draw_run_id);
-    console::add_check_command(app);
-    console::add_fork_command(app, network::draw_run_id);
+    commands::add_run_command(app, options.threads, drawn_seed);
+    commands::add_compare_command(app, options.threads, drawn_seed);
+    commands::add_sweep_command(app, options.threads, network::draw_run_id);
+    commands::add_check_command(app);
+    commands::add_fork_command(app, network::draw_run_id);
     add_replay_command(app, options);
-    console::add_verify_command(app, options.threads);
-    console::add_export_command(app, options.threads);
-    console::add_token_command(app);
-    console::add_certificate_command(app);
-    console::add_parameters_command(app);
+    commands::add_verify_command(app, options.threads);
+    commands::add_export_command(app, options.threads);
+    commands::add_token_command(app);
+    commands::add_certificate_command(app);
+    commands::add_parameters_command(app);
     app.add_command("limits", "Print every limit of the network, as docs/OPERATIONS.md has it").action([] {
         std::cout << network::limit_list();
     });

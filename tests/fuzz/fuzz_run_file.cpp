@@ -4,7 +4,7 @@
 // run from its first generation on, of a fork, or of the format before.
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"
-#include "server/console/export.h"
+#include "server/commands/export.h"
 #include "server/storage/row.h"
 #include "server/storage/run_file.h"
 #include "tests/support/older_run_file.h"
@@ -280,7 +280,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)(*file)->journal((*file)->contents().journal_entries);
     }
     for (const char* what : {"generations", "organisms", "events"}) {
-        (void)console::export_run({.run = place.path, .what = what, .format = "jsonl", .output = "/dev/null"});
+        (void)commands::export_run({.run = place.path, .what = what, .format = "jsonl", .output = "/dev/null"});
     }
     return 0;
 }

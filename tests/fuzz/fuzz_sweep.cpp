@@ -1,26 +1,26 @@
 // Any text as a sweep file: cells that are valid and end, the same each time, or a refusal that says why.
-#include "server/console/sweep_file.h"
+#include "server/experiments/sweep_file.h"
 
 #include <cstdlib>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace evod;
     const std::string_view text{reinterpret_cast<const char*>(data), size};
-    const console::LoadExperiment load = [](const std::string& path) -> base::Result<parameters::Experiment> {
+    const experiments::LoadExperiment load = [](const std::string& path) -> base::Result<parameters::Experiment> {
         if (path == "../default.json") {
             return parameters::Experiment{};
         }
         return refusal(base::RefusalCode::NotFound, path + ": there is none");
     };
-    const auto sweep = console::parse_sweep(text, load);
+    const auto sweep = experiments::parse_sweep(text, load);
     if (!sweep) {
         const base::Refusal refused = sweep.error();
-        if (refused.message.empty() || refused.violations.size() > console::violations_max) {
+        if (refused.message.empty() || refused.violations.size() > experiments::violations_max) {
             std::abort();
         }
         return 0;
     }
-    if (sweep->cells.empty() || sweep->replicates == 0 || sweep->run_count() > console::Sweep::runs_max) {
+    if (sweep->cells.empty() || sweep->replicates == 0 || sweep->run_count() > experiments::Sweep::runs_max) {
         std::abort();
     }
     for (std::size_t cell = 0; cell < sweep->cells.size(); ++cell) {
@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             }
         }
     }
-    const auto again = console::parse_sweep(text, load);
+    const auto again = experiments::parse_sweep(text, load);
     if (!again || again->cells != sweep->cells) {
         std::abort();
     }

@@ -1,0 +1,37 @@
+#include "server/commands/check.h"
+
+#include "proto/command_line/command.h"
+#include "server/experiments/experiment_file.h"
+
+#include <iostream>
+
+namespace evod::commands {
+
+int check(const std::string& path) {
+    const base::Result<parameters::Experiment> experiment = experiments::load_experiment(path);
+    if (!experiment) {
+        std::cerr << "evod check: " << base::to_text(experiment.error()) << '\n';
+        return 1;
+    }
+    std::cout << path << ": good";
+    if (!experiment->description.empty()) {
+        std::cout << "\n" << experiment->description;
+    }
+    const std::string changes =
+        parameters::to_experiment_text(experiment->parameters, parameters::Written::Differences, experiment->schedule);
+    if (changes == "{}\n") {
+        std::cout << "\nEvery parameter has its default.\n";
+    } else {
+        std::cout << "\nParameters that differ from their defaults:\n" << changes;
+    }
+    return 0;
+}
+
+void add_check_command(command_line::Command& app) {
+    auto& command = app.add_command("check", "Say what an experiment file changes, or what is wrong with it");
+    auto& path = command.keep(std::string{});
+    command.add_option("experiment", &path, "JSON file").required();
+    command.action([&] { return check(path); });
+}
+
+} // namespace evod::commands

@@ -1,0 +1,192 @@
+#include "server/commands/export.h"
+
+#include "proto/command_line/command.h"
+#include "server/commands/common_options.h"
+#include "server/experiments/bundle.h"
+#include "server/runtime/worker_pool.h"
+#include "server/tables/run_tables.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+namespace evod::commands {
+namespace {
+
+using base::Refusal;
+using base::Result;
+using storage::RunFile;
+
+Refusal cannot_write(const std::string& what) {
+    return {.code = base::RefusalCode::Unavailable, .message = what, .violations = {}};
+}
+
+Refusal wrong_option(const std::string& option, const std::string& allowed, const std::string& got) {
+    return {.code = base::RefusalCode::InvalidArgument,
+            .message = option + ": got " + got + ", allowed " + allowed,
+            .violations = {}};
+}
+
+/// "30:0:12".
+std::optional<tables::OrganismName> organism_named(const std::string& text) {
+    tables::OrganismName name;
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    const auto read = [&](auto& number, char before) {
+        if (before != 0 && (at == end || *at++ != before)) {
+            return false;
+        }
+        const auto done = std::from_chars(at, end, number);
+        at = done.ptr;
+        return done.ec == std::errc{};
+    };
+    const bool good = read(name.generation, 0) && read(name.island, ':') && read(name.organism, ':') && at == end;
+    return good ? std::optional{name} : std::nullopt;
+}
+
+/// What the options together ask for, as far as they alone tell; nothing for a bundle.
+Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& options) {
+    using tables::RunTable;
+    static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
+                                                        {"organisms", RunTable::Organisms},
+                                                        {"lineage", RunTable::Lineage},
+                                                        {"population", RunTable::Population},
+                                                        {"events", RunTable::Events}};
+    const auto table = tables.find(options.what);
+    if (table == tables.end() && options.bundle.empty()) {
+        return wrong_option("--what", "one of its words, or --bundle FOLDER instead", "nothing");
+    }
+    if (!options.of.empty() && options.what != "lineage") {
+        return wrong_option("--of", "only with --what lineage", options.of);
+    }
+    const auto of = organism_named(options.of);
+    if (!options.of.empty() && !of) {
+        return wrong_option("--of", "GENERATION:ISLAND:ORGANISM", options.of);
+    }
+    if (options.generation && options.what != "population") {
+        return wrong_option("--generation", "only with --what population", std::to_string(*options.generation));
+    }
+    if (!options.bundle.empty() && options.format != "csv") { // its tables are compared with those of evod run --csv
+        return wrong_option("--format", "only csv with --bundle", options.format);
+    }
+    if (table == tables.end()) {
+        return std::nullopt;
+    }
+    return tables::WantedTable{.table = table->second,
+                               .format = options.format == "jsonl" ? tables::Table::Format::JsonLines
+                                                                   : tables::Table::Format::Csv,
+                               .generation = options.generation,
+                               .of = of};
+}
+
+void tell_what_is_left_out(RunFile& file) {
+    if (const auto count = tables::generations_out_of_reach(file)) {
+        std::cerr << "evod export: " << count
+                  << " generations are left out: they are not held any more, and "
+                     "follow another version of the model than this evod, which cannot simulate them again\n";
+    }
+}
+
+/// The options are known by their names on the command line.
+Refusal with_options(Refusal refused) {
+    for (base::Violation& violation : refused.violations) {
+        violation.field = "--" + violation.field.substr(0, violation.field.find('.'));
+    }
+    return refused;
+}
+
+Result<void> export_to(const ExportOptions& options) {
+    const auto wanted = wanted_table(options);
+    if (!wanted) {
+        return wanted.error();
+    }
+    std::error_code error;
+    if (!options.output.empty() && std::filesystem::equivalent(options.output, options.run, error)) {
+        return wrong_option("--output", "another file than the run file itself", options.output);
+    }
+    const auto file = RunFile::open_checked(options.run);
+    if (!file) {
+        return file.error();
+    }
+    if (auto held = (*file)->hold_still(); !held) {
+        return held;
+    }
+    const Result<void> sound = (*file)->check();
+    if (!sound && !options.bundle.empty()) {
+        return sound;
+    }
+    const auto executor = runtime::make_executor(options.threads);
+    const tables::RunSource run{**file, *executor};
+    using tables::RunTable;
+    if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage) {
+        tell_what_is_left_out(**file);
+    }
+    if (!*wanted) {
+        return experiments::write_bundle(run, options.bundle);
+    }
+    std::ofstream output;
+    if (!options.output.empty()) {
+        output.open(options.output, std::ios::binary);
+        if (!output) {
+            return cannot_write("--output: cannot write " + options.output + ": " + std::strerror(errno));
+        }
+    }
+    std::ios::sync_with_stdio(false);
+    std::ostream& out = options.output.empty() ? std::cout : output;
+    if (Result<void> written = tables::write_table(run, **wanted, out); !written) {
+        return with_options(written.error());
+    }
+    if (!out.flush()) {
+        return cannot_write(options.output.empty()
+                                ? "standard output cannot be written, the disk may be full"
+                                : "--output: cannot write " + options.output + ", the disk may be full");
+    }
+    return sound; // what is not damaged is written
+}
+
+} // namespace
+
+int export_run(const ExportOptions& options) {
+    if (const Result<void> done = export_to(options); !done) {
+        std::cerr << "evod export: " << base::to_text(done.error()) << '\n';
+        return 1;
+    }
+    return 0;
+}
+
+void add_export_command(command_line::Command& app, std::size_t threads) {
+    auto& command = app.add_command("export", "Write what a run file holds as rows for other programs");
+    auto& options = command.keep(ExportOptions{});
+    options.threads = threads;
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    const auto what =
+        command
+            .add_option(
+                "--what", &options.what,
+                "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
+                "whom; population: the genes of one generation, for --population; events: the commands")
+            .choices({"generations", "organisms", "lineage", "population", "events"});
+    command.add_option("--of", &options.of,
+                       "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone, back to the first");
+    command.add_option("--generation", &options.generation, "Of the population; otherwise the last that has begun")
+        .check(generation_number);
+    command.add_option("--format", &options.format, "csv, or jsonl: an object of JSON a line")
+        .choices({"csv", "jsonl"})
+        .show_default();
+    const auto output = command.add_option("--output", &options.output, "File; without it, standard output");
+    command.add_option("--threads", &options.threads, "Threads that simulate again what is not held any more")
+        .check(thread_count)
+        .show_default();
+    command
+        .add_option("--bundle", &options.bundle,
+                    "Folder to make, with a copy of the run file, all tables, checksums and how to repeat the run")
+        .excludes(what)
+        .excludes(output);
+    command.action([&] { return export_run(options); });
+}
+
+} // namespace evod::commands

@@ -1,0 +1,96 @@
+#include "server/commands/interview.h"
+
+#include <istream>
+#include <ostream>
+#include <string>
+
+namespace evod::commands {
+namespace {
+
+using parameters::Parameters;
+
+struct Question {
+    const char* name;
+    bool (*matters)(const Parameters&); // asked only where the answers so far make it matter
+};
+
+constexpr auto always = [](const Parameters&) { return true; };
+
+constexpr Question questions[] = {
+    {"population_size", always},
+    {"food_count", always},
+    {"poison_count", always},
+    {"generation_s", always},
+    {"generation_limit", always},
+    {"population_model", always},
+    {"survivors", [](const Parameters& p) { return p.population_model == evolution::PopulationModel::Hybrid; }},
+    {"replaced_count",
+     [](const Parameters& p) { return p.population_model == evolution::PopulationModel::SteadyState; }},
+    {"elite_count", always},
+    {"mutate_survivors", always},
+    {"fitness_scaling", always},
+    {"ranking_pressure",
+     [](const Parameters& p) { return p.fitness_scaling == evolution::FitnessScaling::LinearRanking; }},
+    {"ranking_decay",
+     [](const Parameters& p) { return p.fitness_scaling == evolution::FitnessScaling::ExponentialRanking; }},
+    {"selection", always},
+    {"tournament_size", [](const Parameters& p) { return p.selection == evolution::SelectionMethod::Tournament; }},
+    {"tournament_winners", [](const Parameters& p) { return p.selection == evolution::SelectionMethod::Tournament; }},
+    {"tournament_replacement",
+     [](const Parameters& p) { return p.selection == evolution::SelectionMethod::Tournament; }},
+    {"crossover", always},
+    {"crossover_cuts", [](const Parameters& p) { return p.crossover == evolution::CrossoverMethod::MultiPoint; }},
+    {"crossover_chance", [](const Parameters& p) { return p.crossover != evolution::CrossoverMethod::None; }},
+    {"rearranging", always},
+    {"rearrange_chance", [](const Parameters& p) { return p.rearranging != evolution::Rearranging::None; }},
+    {"creep", always},
+    {"mutation_chance", always},
+    {"mutation_step", always},
+    {"reset_chance", always},
+    {"bit_flip_chance", always},
+    {"island_count", always},
+    {"migration", [](const Parameters& p) { return p.island_count > 1; }},
+    {"migration_epoch", [](const Parameters& p) { return p.migration != evolution::Topology::None; }},
+    {"migrant_count", [](const Parameters& p) { return p.migration != evolution::Topology::None; }},
+    {"emigrants", [](const Parameters& p) { return p.migration != evolution::Topology::None; }},
+    {"immigrants_replace", [](const Parameters& p) { return p.migration != evolution::Topology::None; }},
+};
+
+} // namespace
+
+base::Result<Parameters> interview(const Parameters& proposed, std::istream& in, std::ostream& out) {
+    out << "Enter takes the value in brackets.\n";
+    Parameters answers = proposed;
+    for (const Question& question : questions) {
+        if (!question.matters(answers)) {
+            continue;
+        }
+        const parameters::ParameterDescription& description = *parameters::find_parameter(question.name);
+        while (true) {
+            out << description.help << "\n  " << description.name << " (" << description.allowed()
+                << (description.unit.empty() ? "" : "; ") << description.unit << ") ["
+                << parameters::to_text(description.get(answers)) << "]: " << std::flush;
+            std::string line;
+            if (!std::getline(in, line)) {
+                out << '\n';
+                return refusal(base::RefusalCode::FailedPrecondition,
+                               "--ask: the input ended before the answer to " + std::string{description.name} +
+                                   "; give an empty line for each value in brackets");
+            }
+            if (line.empty()) {
+                break;
+            }
+            const auto value = parameters::parse_value(description, line);
+            const base::Result<Parameters> changed =
+                value ? parameters::assign(answers, {{{std::string{description.name}, *value}}}) : value.error();
+            if (changed) {
+                answers = *changed;
+                break;
+            }
+            out << base::to_text(changed.error()) << '\n';
+        }
+    }
+    return answers;
+}
+
+} // namespace evod::commands

@@ -1,0 +1,32 @@
+#include "server/commands/report.h"
+
+#include <cstdio>
+
+namespace evod::commands {
+namespace {
+
+template <class... Values>
+std::string row_text(const char* format, Values... values) {
+    char text[256];
+    std::snprintf(text, sizeof text, format, values...);
+    return text;
+}
+
+} // namespace
+
+std::string table_heading(bool with_island) {
+    return row_text("%10s%s %8s %8s %8s %8s %8s %6s %7s %8s %7s %7s %9s", "generation", with_island ? " island" : "",
+                    "best", "mean", "median", "worst", "spread", "alive", "starved", "poisoned", "food", "poison",
+                    "diversity");
+}
+
+std::string table_row(const simulation::GenerationStatistics& s, bool with_island) {
+    const std::string island = with_island ? row_text(" %6u", s.island) : std::string{};
+    return row_text("%10llu%s %8.1f %8.1f %8.1f %8.1f %8.1f %6u %7u %8u %7llu %7llu %9.4f",
+                    static_cast<unsigned long long>(s.generation), island.c_str(), s.fitness_best, s.fitness_mean,
+                    s.fitness_median, s.fitness_worst, s.fitness_deviation, s.alive_count, s.starved_count,
+                    s.poisoned_count, static_cast<unsigned long long>(s.food_eaten),
+                    static_cast<unsigned long long>(s.poison_eaten), s.diversity);
+}
+
+} // namespace evod::commands

@@ -1,0 +1,216 @@
+#include "server/commands/run.h"
+
+#include "proto/command_line/command.h"
+#include "server/commands/common_options.h"
+#include "server/commands/interrupt.h"
+#include "server/commands/interview.h"
+#include "server/commands/progress_line.h"
+#include "server/commands/report.h"
+#include "server/experiments/experiment_file.h"
+#include "server/experiments/population_file.h"
+#include "server/runtime/worker_pool.h"
+#include "server/simulation/world.h"
+#include "server/tables/columns.h"
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+namespace evod::commands {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What the ticks of a run have cost.
+struct Cost {
+    double start_s = 0, tick_s = 0, turnover_s = 0;
+    std::uint64_t organism_ticks = 0; // organisms alive at the start of each tick, summed
+};
+
+base::Result<parameters::Experiment> experiment_of(const RunOptions& options) {
+    parameters::Experiment experiment;
+    if (!options.experiment.empty()) {
+        const auto loaded = experiments::load_experiment(options.experiment);
+        if (!loaded) {
+            return loaded.error();
+        }
+        experiment = *loaded;
+    }
+    auto changed = experiments::with_changes(std::move(experiment), options.changes);
+    if (!changed) {
+        return changed.error();
+    }
+    experiment = *std::move(changed);
+    if (options.ask) {
+        // What is answered takes the place of what is scheduled; Enter leaves it.
+        const parameters::Parameters proposed = experiment.parameters;
+        const auto answers = interview(proposed, std::cin, std::cout);
+        if (!answers) {
+            return answers.error();
+        }
+        experiment.parameters = *answers;
+        for (const parameters::ParameterDescription* description :
+             parameters::parameters_that_differ(experiment.parameters, proposed)) {
+            experiment.schedule.remove(description->name);
+        }
+    }
+    if (options.generations) {
+        experiment.parameters.generation_limit = *options.generations;
+        experiment.schedule.remove("generation_limit");
+    }
+    if (auto fits = experiments::fit_schedule(experiment); !fits) {
+        return fits.error();
+    }
+    if (options.seed) {
+        experiment.seed = base::Seed{*options.seed};
+    }
+    if (!experiment.seed) {
+        experiment.seed = options.drawn_seed;
+    }
+    return experiment;
+}
+
+std::string progress_of(const simulation::World& world) {
+    char text[96];
+    std::snprintf(text, sizeof text, "generation %llu  %.1f s  %llu alive",
+                  static_cast<unsigned long long>(world.moment().generation),
+                  static_cast<double>(world.moment().generation_tick) * world.parameters().active.tick_s,
+                  static_cast<unsigned long long>(world.alive_count()));
+    return text;
+}
+
+void print_summary(const simulation::World& world, const Cost& cost) {
+    std::printf("%llu generations, %llu ticks, %.1f simulated s; state %s\n",
+                static_cast<unsigned long long>(world.moment().generation - (world.generation_over() ? 0 : 1)),
+                static_cast<unsigned long long>(world.moment().tick), world.moment().simulated_s,
+                base::to_text(world.hash()).c_str());
+    if (cost.tick_s > 0) {
+        std::printf("%.2f M organism-ticks/s, %.0f × real time (%.2f s in ticks)\n",
+                    static_cast<double>(cost.organism_ticks) / cost.tick_s / 1e6,
+                    world.moment().simulated_s / cost.tick_s, cost.tick_s);
+    }
+    std::printf("start-up %.3f s, turnover of generations %.3f s\n", cost.start_s, cost.turnover_s);
+}
+
+int status_of(evolution::Outcome outcome) {
+    switch (outcome) {
+    case evolution::Outcome::TargetFitness:
+        std::puts("ended: target_fitness was reached");
+        return LimitOrTargetReached;
+    case evolution::Outcome::GenerationLimit:
+        std::puts("ended: generation_limit was reached");
+        return LimitOrTargetReached;
+    case evolution::Outcome::Stagnation:
+        std::puts("ended: the best fitness was not beaten for stagnation_limit generations");
+        return Stagnated;
+    case evolution::Outcome::Extinction:
+        std::puts("ended: everyone died");
+        return Extinct;
+    case evolution::Outcome::Running:
+        break;
+    }
+    std::puts("ended: interrupted");
+    return Interrupted;
+}
+
+} // namespace
+
+int run(const RunOptions& options) {
+    const auto experiment = experiment_of(options);
+    if (!experiment) {
+        std::cerr << "evod run: " << base::to_text(experiment.error()) << '\n';
+        return experiment.error().code == base::RefusalCode::InvalidArgument ? WrongArguments : RunError;
+    }
+    auto first_population = experiments::load_population(options.population, experiment->parameters);
+    if (!first_population) {
+        std::cerr << "evod run: --population: " << base::to_text(first_population.error()) << '\n';
+        return RunError;
+    }
+    std::ofstream csv;
+    std::optional<tables::Table> table;
+    if (!options.csv.empty()) {
+        errno = 0;
+        csv.open(options.csv);
+        table.emplace(csv, tables::Table::Format::Csv, tables::statistics_columns());
+        if (!csv.flush()) {
+            std::cerr << "evod run: --csv: cannot write " << options.csv << ": " << std::strerror(errno) << '\n';
+            return RunError;
+        }
+    }
+    mind_interrupts();
+
+    Cost cost;
+    const auto start = Clock::now();
+    const std::unique_ptr<base::Executor> executor = runtime::make_executor(options.threads);
+    simulation::World world{experiment->parameters, *experiment->seed, *std::move(first_population),
+                            experiment->schedule};
+    cost.start_s = seconds_since(start);
+
+    const bool several_islands = world.islands().size() > 1;
+    std::printf("seed %llu\n%s\n", static_cast<unsigned long long>(world.seed().value),
+                table_heading(several_islands).c_str());
+    ProgressLine progress;
+    while (!interrupted() && world.outcome() == evolution::Outcome::Running) {
+        auto began = Clock::now();
+        world.turn_over(*executor);
+        cost.turnover_s += seconds_since(began);
+        began = Clock::now();
+        do {
+            cost.organism_ticks += world.has_bodies() ? world.alive_count() : 0;
+            world.advance_tick(*executor);
+            progress.show([&] { return progress_of(world); });
+        } while (!interrupted() && !world.generation_over());
+        cost.tick_s += seconds_since(began);
+        world.take_events();
+        if (!world.generation_over()) {
+            break;
+        }
+        progress.clear();
+        for (const simulation::GenerationStatistics& statistics : world.history().back()) {
+            std::puts(table_row(statistics, several_islands).c_str());
+            if (table) {
+                tables::write_row(*table, statistics);
+            }
+        }
+        std::fflush(stdout);
+        if (table && !csv.flush()) {
+            std::cerr << "evod run: --csv: cannot write " << options.csv << ", the disk may be full\n";
+            return RunError;
+        }
+    }
+    progress.clear();
+    const int status = status_of(world.outcome());
+    print_summary(world, cost);
+    return status;
+}
+
+void add_run_command(command_line::Command& app, std::size_t threads, base::Seed drawn_seed) {
+    auto& command = app.add_command("run", "Run an experiment without a network");
+    auto& options = command.keep(RunOptions{});
+    options.drawn_seed = drawn_seed;
+    options.threads = threads;
+    command.add_option("experiment", &options.experiment, "JSON file; without one, the default world");
+    command.add_option("--seed", &options.seed, "Otherwise the file's, or one drawn by chance").check(any_number);
+    command.add_option("--population", &options.population,
+                       "CSV file of `evod export --what population`: begin with these organisms instead of drawn ones");
+    command
+        .add_option("--generations", &options.generations,
+                    "How many; takes the place of generation_limit, 0 is no limit")
+        .check(command_line::WholeNumber{.max = std::numeric_limits<std::uint32_t>::max()});
+    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.add_option("--set", &options.changes, "name=value of a parameter; see evod parameters");
+    command.add_option("--csv", &options.csv, "File for the statistics of every generation");
+    command.add_flag("--ask", &options.ask, "Ask for population, food, poison, time and every choice of the algorithm");
+    command.footer("Exit status: 0 limit or target reached, 3 stagnation, 4 extinction, 130 interrupted, 1 error, "
+                   "2 a value that is not allowed.");
+    command.action([&] { return run(options); });
+}
+
+} // namespace evod::commands

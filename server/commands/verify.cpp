@@ -1,0 +1,105 @@
+#include "server/commands/verify.h"
+
+#include "proto/command_line/command.h"
+#include "server/commands/common_options.h"
+#include "server/commands/progress_line.h"
+#include "server/runtime/worker_pool.h"
+#include "server/storage/verify.h"
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <mutex>
+#include <optional>
+
+namespace evod::commands {
+namespace {
+
+using storage::Difference;
+using storage::StoredMoment;
+using storage::VerifyProgress;
+using Clock = std::chrono::steady_clock;
+
+std::string text_of(const StoredMoment& moment) {
+    return "generation " + std::to_string(moment.generation) + ", tick " + std::to_string(moment.tick);
+}
+
+void print_difference(const std::string& path, const Difference& difference) {
+    std::cerr << "evod verify: " << path << " tells of another run than the one that begins as it does\n"
+              << "last moment that agrees: "
+              << (difference.agrees ? text_of(*difference.agrees) + ": " + difference.agreeing_part : "none") << '\n'
+              << "first that does not: " << text_of(difference.differs) << ": " << difference.part << ": stored "
+              << difference.stored << ", simulated again " << difference.simulated << '\n';
+}
+
+/// simulated_for  how long it has been since the first tick.
+std::string text_of(const VerifyProgress& now, std::chrono::duration<double> simulated_for) {
+    if (now.ticks == 0) {
+        return "reading: " + std::to_string(now.generations) + " of " + std::to_string(now.generations_in_all) +
+               " generations";
+    }
+    const double share = static_cast<double>(now.ticks) / static_cast<double>(now.ticks_in_all);
+    std::string text = std::to_string(now.ticks) + " of " + std::to_string(now.ticks_in_all) +
+                       " ticks simulated again, " + std::to_string(static_cast<int>(100 * share)) + " %";
+    if (simulated_for > std::chrono::seconds{2}) { // else it is a guess
+        text += ", " + std::to_string(1 + static_cast<long>(simulated_for.count() * (1 - share) / share)) + " s to go";
+    }
+    return text;
+}
+
+} // namespace
+
+int verify(const VerifyOptions& options) {
+    const auto start = Clock::now();
+    const auto fail = [](const base::Refusal& why) {
+        std::cerr << "evod verify: " << base::to_text(why) << '\n';
+        return 1;
+    };
+    const auto file = storage::RunFile::open_checked(options.run);
+    if (!file) {
+        return fail(file.error());
+    }
+
+    ProgressLine progress;
+    std::mutex progress_mutex; // guards the line, which any thread may write, and what follows
+    std::optional<Clock::time_point> simulating_since;
+    const auto executor = runtime::make_executor(options.threads);
+    const auto verified = storage::verify(**file, *executor, [&](const VerifyProgress& now) {
+        const std::unique_lock lock{progress_mutex, std::try_to_lock};
+        if (!lock) {
+            return;
+        }
+        if (now.ticks > 0 && !simulating_since) {
+            simulating_since = Clock::now();
+        }
+        progress.show([&] { return text_of(now, Clock::now() - simulating_since.value_or(Clock::now())); });
+    });
+    progress.clear();
+    if (!verified) {
+        return fail(verified.error());
+    }
+    if (verified->difference) {
+        print_difference(options.run, *verified->difference);
+        return 1;
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double factor = verified->simulated_s / seconds;
+    std::printf("%s: all agrees: %llu generations, %llu ticks, %llu state hashes, %llu checkpoints compared in %.2f s, "
+                "%.*f × real time\n",
+                options.run.c_str(), static_cast<unsigned long long>(verified->generations),
+                static_cast<unsigned long long>(verified->ticks), static_cast<unsigned long long>(verified->hashes),
+                static_cast<unsigned long long>(verified->checkpoints), seconds, factor < 10 ? 1 : 0, factor);
+    return 0;
+}
+
+void add_verify_command(command_line::Command& app, std::size_t threads) {
+    auto& command = app.add_command("verify", "Simulate the run of a run file again and compare everything");
+    auto& options = command.keep(VerifyOptions{});
+    options.threads = threads;
+    command.add_option("run", &options.run, "Run file, NAME.evod; the run need not be over").required();
+    command.add_option("--threads", &options.threads, "Threads that simulate").check(thread_count).show_default();
+    command.footer("Exit status: 0 all agrees, 1 it does not, or the file is damaged or cannot be simulated again.");
+    command.action([&] { return verify(options); });
+}
+
+} // namespace evod::commands

@@ -1,0 +1,205 @@
+#include "server/experiments/bundle.h"
+
+#include "server/parameters/experiment.h"
+#include "server/storage/rerun.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace evod::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+template <class Write>
+Result<void> write_file(const fs::path& path, Write&& write) {
+    std::ofstream out{path, std::ios::binary};
+    if (out) {
+        if (Result<void> written = write(out); !written) {
+            return written;
+        }
+    }
+    if (!out.flush()) {
+        return refusal(RefusalCode::Unavailable, path.string() + " cannot be written, the disk may be full");
+    }
+    return {};
+}
+
+/// With the seed, as experiment files have it.
+std::string experiment_text(const storage::RunIdentity& identity) {
+    // A fork's own parameters are those of the generation that it begins with, not of its schedule's first.
+    const std::string parameters =
+        to_experiment_text(identity.parameters, parameters::Written::Everything,
+                           identity.forked_from ? parameters::Schedule{} : identity.schedule);
+    return "{\n  \"seed\": " + std::to_string(identity.seed.value) + "," + parameters.substr(1);
+}
+
+/// 64 hexadecimal digits.
+Result<std::string> sha256_of(const fs::path& path) {
+    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+    std::ifstream in{path, std::ios::binary};
+    bool good = context && in && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+    std::vector<char> block(1 << 20);
+    while (good && in) {
+        in.read(block.data(), static_cast<std::streamsize>(block.size()));
+        good = !in.bad() && EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(in.gcount())) == 1;
+    }
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int bytes = 0;
+    if (!good || EVP_DigestFinal_ex(context.get(), digest, &bytes) != 1) {
+        return refusal(RefusalCode::Unavailable, path.string() + ": its checksum cannot be made");
+    }
+    std::string text;
+    for (unsigned int i = 0; i < bytes; ++i) {
+        for (const int digit : {digest[i] >> 4, digest[i] & 15}) {
+            text += "0123456789abcdef"[digit];
+        }
+    }
+    return text;
+}
+
+Result<void> write_checksums(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& file : fs::directory_iterator{folder}) {
+        names.push_back(file.path().filename().string());
+    }
+    std::ranges::sort(names);
+    return write_file(folder / "SHA256SUMS", [&](std::ostream& out) -> Result<void> {
+        for (const std::string& name : names) {
+            const auto sum = sha256_of(folder / name);
+            if (!sum) {
+                return sum.error();
+            }
+            out << *sum << "  " << name << '\n';
+        }
+        return {};
+    });
+}
+
+/// How `evod run` gives the same numbers; or why it does not.
+Result<std::string> rerun_text(storage::RunFile& file) {
+    const storage::RunIdentity& identity = file.identity();
+    const auto changes = parameter_changes(file);
+    if (!changes) {
+        return changes.error();
+    }
+    const std::uint64_t generations = file.last_generation_ended();
+    if (identity.forked_from) {
+        return "The run is a fork: it begins in generation " + std::to_string(identity.first_generation) +
+               ", at tick " + std::to_string(identity.first_tick) +
+               ", of another run, and only the run file contains that state. `evod verify` " + "begins there.\n";
+    }
+    if (generations == 0) {
+        return std::string{"No generation has ended, so there are no numbers to compare.\n"};
+    }
+    if (!changes->empty()) {
+        return "Parameters were changed while it ran, " + std::to_string(changes->size()) +
+               (changes->size() == 1 ? " time" : " times") +
+               " (events.csv). `evod verify` makes the same changes at the same ticks.\n";
+    }
+    return "    evod run experiment.json " +
+           std::string{identity.first_population ? "--population population.csv " : ""} + "--generations " +
+           std::to_string(generations) +
+           " --csv again.csv\n    cmp again.csv generations.csv\n\nThe first simulates the run from its parameters and "
+           "seed alone; the second says nothing if every number is the same.\n";
+}
+
+Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_name) {
+    const storage::RunIdentity& identity = file.identity();
+    const auto rerun = rerun_text(file);
+    if (!rerun) {
+        return rerun.error();
+    }
+    const std::string model = std::to_string(identity.model_version);
+    const std::uint64_t left_out = tables::generations_out_of_reach(file);
+    return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
+           to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
+           " |\n| made with | evod " + identity.evod_version + ", model version " + model +
+           (identity.build.empty() ? "" : ", built from " + identity.build) + " |\n| generations that have ended | " +
+           std::to_string(file.last_generation_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
+           " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
+           std::to_string(simulation::model_version) + ", built from " + storage::build_text() +
+           " |\n\nAny evod of model version " + model +
+           " gives the same bits, on any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
+           "    evod verify " + file_name +
+           "\n\nThe first finds files that were changed; the second simulates the run again and compares all that the "
+           "run file holds: state hashes, organisms, parents, fitness, deaths, statistics.\n\n" +
+           *rerun +
+           (left_out == 0 ? ""
+                          : "\nOf " + std::to_string(left_out) +
+                                " generations nothing is in organisms.csv and lineage.csv: the run file does not hold "
+                                "them any more, and the evod that made this folder cannot simulate them again.\n");
+}
+
+Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
+    const std::string file_name = run.file.identity().name + ".evod";
+    if (auto copied = run.file.copy_to((folder / file_name).string()); !copied) {
+        return copied;
+    }
+    const auto write_text = [&](const char* name, const std::string& text) {
+        return write_file(folder / name, [&](std::ostream& out) -> Result<void> {
+            out << text;
+            return {};
+        });
+    };
+    if (auto done = write_text("experiment.json", experiment_text(run.file.identity())); !done) {
+        return done;
+    }
+    constexpr auto csv = tables::Table::Format::Csv;
+    using tables::RunTable;
+    constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
+                                                          {"organisms.csv", RunTable::Organisms},
+                                                          {"lineage.csv", RunTable::Lineage},
+                                                          {"events.csv", RunTable::Events}};
+    for (const auto& [name, table] : names) {
+        const tables::WantedTable wanted{.table = table, .format = csv};
+        if (auto done =
+                write_file(folder / name, [&](std::ostream& out) { return tables::write_table(run, wanted, out); });
+            !done) {
+            return done;
+        }
+    }
+    if (const auto& first = run.file.identity().first_population) {
+        const auto write = [&](std::ostream& out) -> Result<void> {
+            tables::write_population(*first, csv, out);
+            return {};
+        };
+        if (auto done = write_file(folder / "population.csv", write); !done) {
+            return done;
+        }
+    }
+    const auto repeat = repeat_text(run.file, file_name);
+    if (!repeat) {
+        return repeat.error();
+    }
+    if (auto done = write_text("REPEAT.md", *repeat); !done) {
+        return done;
+    }
+    return write_checksums(folder);
+}
+
+} // namespace
+
+Result<void> write_bundle(const tables::RunSource& run, const std::string& folder) {
+    std::error_code error;
+    if (!fs::create_directory(folder, error)) {
+        return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot make " + folder + ": " + error.message())
+                     : refusal(RefusalCode::AlreadyExists, "--bundle: " + folder + " is there already");
+    }
+    Result<void> filled = fill(run, folder);
+    if (!filled) {
+        fs::remove_all(folder, error);
+    }
+    return filled;
+}
+
+} // namespace evod::experiments

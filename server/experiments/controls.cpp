@@ -1,0 +1,155 @@
+#include "server/experiments/controls.h"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace evod::experiments {
+namespace {
+
+using namespace evolution; // the enumerations of its parameters
+using parameters::Parameters;
+
+/// Leaves nothing to be decided by the fitness.
+Parameters with_random_selection(Parameters p) {
+    p.selection = SelectionMethod::Random;
+    p.elite_count = 0;
+    if (p.population_model == PopulationModel::SteadyState) {
+        // It would keep the best. As many stay, but whoever they are.
+        p.population_model =
+            p.replaced_count < p.population_size ? PopulationModel::Hybrid : PopulationModel::Generational;
+        if (p.population_model == PopulationModel::Hybrid) {
+            p.survivors = static_cast<double>(p.population_size - p.replaced_count) / p.population_size;
+        }
+    }
+    if (p.migration != Topology::None && p.island_count > 1) {
+        p.emigrants = Emigrants::Random;
+        p.immigrants_replace = Replaced::Random;
+    }
+    return p;
+}
+
+bool mutates(const Parameters& p) {
+    return (p.mutation_chance > 0 && p.mutation_step > 0) || p.reset_chance > 0 || p.bit_flip_chance > 0 ||
+           (p.rearranging != Rearranging::None && p.rearrange_chance > 0);
+}
+
+Parameters without_mutation(Parameters p) {
+    p.mutation_chance = 0;
+    p.reset_chance = 0;
+    p.bit_flip_chance = 0;
+    p.rearranging = Rearranging::None;
+    return p;
+}
+
+std::string why_poison_does_nothing(const Parameters& p) {
+    if (p.fitness != parameters::FitnessFunction::Life) {
+        return "the fitness is a function of the chromosome: nobody eats";
+    }
+    if (parameters::island_plan(p).poison_count == 0) {
+        return "there is no poison";
+    }
+    return p.poison_harm == 0 ? "poison_harm is 0 already" : "";
+}
+
+std::string why_nothing_is_selected(const Parameters& p) {
+    return with_random_selection(p) == p ? "whoever breeds is drawn by chance already" : "";
+}
+
+using Names = std::span<const std::string_view>;
+
+constexpr std::string_view random_selection[] = {"selection",      "elite_count", "population_model",  "survivors",
+                                                 "replaced_count", "emigrants",   "immigrants_replace"};
+constexpr std::string_view mutation_off[] = {"mutation_chance", "reset_chance", "bit_flip_chance", "rearranging"};
+constexpr std::string_view harmless_poison[] = {"poison_harm"};
+constexpr std::string_view shuffled_fitness[] = {"shuffle_fitness"};
+constexpr std::string_view whether_it_mutates[] = {"mutation_step", "rearrange_chance"};
+constexpr std::string_view whether_there_is_poison[] = {"poison_count", "population_size", "scale_with_population"};
+
+struct NamesOfControl {
+    Names made_by;    // those that make the control
+    Names depends_on; // others that it can fail to differ for
+};
+NamesOfControl names_of(ControlKind kind) {
+    switch (kind) {
+    case ControlKind::RandomSelection:
+        return {random_selection, {}};
+    case ControlKind::MutationOff:
+        return {mutation_off, whether_it_mutates};
+    case ControlKind::HarmlessPoison:
+        return {harmless_poison, whether_there_is_poison};
+    case ControlKind::ShuffledFitness:
+        break;
+    }
+    return {shuffled_fitness, random_selection};
+}
+
+} // namespace
+
+parameters::Schedule schedule_of(parameters::Schedule world, ControlKind kind) {
+    for (const std::string_view name : names_of(kind).made_by) {
+        world.remove(name);
+    }
+    return world;
+}
+
+bool matters(const parameters::Schedule& world, ControlKind kind) {
+    const auto is_scheduled = [&](std::string_view name) { return world.holds(name); };
+    const auto [made_by, depends_on] = names_of(kind);
+    return std::ranges::any_of(made_by, is_scheduled) || std::ranges::any_of(depends_on, is_scheduled);
+}
+
+Control control_of(const Parameters& world, ControlKind kind) {
+    Control control{kind, {}, world, {}};
+    switch (kind) {
+    case ControlKind::RandomSelection:
+        control.name = "random_selection";
+        control.parameters = with_random_selection(world);
+        control.cannot_differ = why_nothing_is_selected(world);
+        break;
+    case ControlKind::MutationOff:
+        control.name = "mutation_off";
+        control.parameters = without_mutation(world);
+        control.cannot_differ = mutates(world) ? "" : "nothing mutates already";
+        break;
+    case ControlKind::HarmlessPoison:
+        control.name = "harmless_poison";
+        control.parameters.poison_harm = 0;
+        control.cannot_differ = why_poison_does_nothing(world);
+        break;
+    case ControlKind::ShuffledFitness:
+        control.name = "shuffled_fitness";
+        control.parameters.shuffle_fitness = true;
+        control.cannot_differ =
+            world.shuffle_fitness ? "shuffle_fitness is true already" : why_nothing_is_selected(world);
+        break;
+    }
+    return control;
+}
+
+Parameters of_fixed_length(Parameters world, std::uint32_t generations) {
+    world.generation_limit = generations;
+    world.stop_at_target_fitness = false;
+    world.stagnation_limit = 0;
+    world.stop_at_extinction = false;
+    return world;
+}
+
+parameters::Schedule of_fixed_length(parameters::Schedule world) {
+    for (const char* name : {"generation_limit", "stop_at_target_fitness", "stagnation_limit", "stop_at_extinction"}) {
+        world.remove(name);
+    }
+    return world;
+}
+
+std::string changes_between(const Parameters& world, const Parameters& other) {
+    std::string text;
+    for (const parameters::ParameterDescription* description : parameters::parameters_that_differ(world, other)) {
+        text += (text.empty() ? "" : " ") + std::string{description->name} + "=" +
+                parameters::to_text(description->get(other));
+    }
+    return text;
+}
+
+} // namespace evod::experiments

@@ -1,0 +1,67 @@
+#include "server/experiments/run_writer.h"
+
+#include "server/experiments/new_file.h"
+
+#include <filesystem>
+#include <utility>
+
+namespace evod::experiments {
+
+// What survives the program is enough until the file is whole: it is put on the disk before it gets its name.
+RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId& run_id,
+                     const simulation::World& world)
+    : path_{std::move(path)}
+    , unfinished_{NewFile::unfinished_name(path_)}
+    , file_{storage::RunFile::begin_new(unfinished_, storage::identity_of(std::move(name), run_id, world),
+                                        {.durability = storage::Durability::Relaxed})} {}
+
+RunWriter::~RunWriter() {
+    if (!file_ || *file_ == nullptr) {
+        return;
+    }
+    file_->reset();
+    (void)storage::RunFile::remove(unfinished_); // at worst it is left there, under a name that nobody reads
+}
+
+base::Result<void> RunWriter::follow(const simulation::World& world) {
+    if (!file_) {
+        return file_.error();
+    }
+    storage::RunFile& file = **file_;
+    news_.tell(world, [&file](const auto& record) { file.write(record); });
+    if (!world.generation_over()) {
+        return {};
+    }
+    if (auto committed = file.commit(); !committed) {
+        return committed;
+    }
+    if (auto thinned = file.thin_if_large(); !thinned) {
+        return thinned;
+    }
+    file.begin();
+    return {};
+}
+
+base::Result<void> RunWriter::finish() {
+    if (!file_) {
+        return file_.error();
+    }
+    storage::RunFile& file = **file_;
+    file.write(storage::EndMark{.tick = news_.tick()});
+    if (auto committed = file.commit(); !committed) {
+        return committed;
+    }
+    if (auto settled = file.settle(); !settled) {
+        return settled;
+    }
+    file_->reset();
+    if (auto kept = NewFile::keep(unfinished_); !kept) {
+        return kept;
+    }
+    if (auto named = storage::RunFile::rename(unfinished_, path_); !named) {
+        return named;
+    }
+    return NewFile::keep(std::filesystem::path{path_}.parent_path().string());
+}
+
+} // namespace evod::experiments

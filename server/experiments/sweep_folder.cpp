@@ -1,0 +1,315 @@
+#include "server/experiments/sweep_folder.h"
+
+#include "server/experiments/new_file.h"
+#include "server/files/regular_file.h"
+#include "server/simulation/model_version.h"
+#include "server/storage/build.h"
+#include "server/tables/columns.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+namespace evod::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+using base::RefusalCode;
+using base::Result;
+using evolution::Outcome;
+
+constexpr std::string_view end_mark = "# ended by ";
+constexpr std::size_t provenance_bytes_max = 8 << 20; // a sweep file of 1 MiB, each line as a comment, and the rest
+constexpr std::array<std::pair<Outcome, std::string_view>, 4> outcome_names{
+    {{Outcome::TargetFitness, "target_fitness"},
+     {Outcome::Extinction, "extinction"},
+     {Outcome::Stagnation, "stagnation_limit"},
+     {Outcome::GenerationLimit, "generation_limit"}}};
+
+struct Fact {
+    std::string name, text;
+};
+
+/// All that decides what the runs come to, and nothing that does not.
+std::vector<Fact> facts_of(const Sweep& sweep) {
+    std::string parameters = to_experiment_text(sweep.parameters, parameters::Written::Differences, sweep.schedule);
+    std::erase(parameters, '\n');
+    std::string text;
+    for (std::size_t i = 0; i < sweep.text.size(); ++i) {
+        const bool pair = sweep.text[i] == '\r' && i + 1 < sweep.text.size() && sweep.text[i + 1] == '\n';
+        if (!pair) {
+            text += sweep.text[i] == '\r' ? '\n' : sweep.text[i];
+        }
+    }
+    while (text.ends_with('\n')) {
+        text.pop_back();
+    }
+    return {{"evod", std::string{EVOD_VERSION} + ", " + storage::build_text()},
+            {"model", std::to_string(simulation::model_version)},
+            {"seed", std::to_string(sweep.seed.value)},
+            {"runs", std::to_string(sweep.run_count()) + ": " + std::to_string(sweep.cells.size()) + " cells of " +
+                         std::to_string(sweep.replicates) + " replicates"},
+            {"parameters", parameters},
+            {"sweep file", "\n" + text}};
+}
+
+/// As a comment, a fact a line, or several.
+std::string to_text(const Fact& fact) {
+    std::string text = "# " + fact.name + ": ";
+    for (const char c : fact.text) {
+        text += c == '\n' ? "\n#   " : std::string(1, c);
+    }
+    return text + "\n";
+}
+
+std::string provenance_of(const Sweep& sweep) {
+    std::string text = "# evod sweep: a row per run, generation and island; where they come from:\n";
+    for (const Fact& fact : facts_of(sweep)) {
+        text += to_text(fact);
+    }
+    return text;
+}
+
+/// What a folder says of itself that is not so for this sweep.
+base::Refusal other_sweep(const std::string& path, const std::string& there, const Sweep& sweep) {
+    base::Refusal refused = refusal(RefusalCode::FailedPrecondition,
+                                    path + " has the results of another sweep; give another folder with --out. Its");
+    for (const Fact& fact : facts_of(sweep)) {
+        if (there.find("\n" + to_text(fact)) != std::string::npos) {
+            continue;
+        }
+        const std::string name = "\n# " + fact.name + ": ";
+        const std::size_t begin = there.find(name);
+        std::string got = begin == std::string::npos ? "nothing" : there.substr(begin + name.size());
+        got = got.substr(0, got.find("\n# ")); // a line that goes on begins with more room
+        const bool long_text = fact.text.find('\n') != std::string::npos;
+        refused.violations.push_back({fact.name, long_text ? "the same as before" : fact.text,
+                                      long_text ? "one that has been changed" : got.substr(0, got.find('\n'))});
+    }
+    if (refused.violations.empty()) {
+        refused.message += " sweep.txt is not as it was written";
+    }
+    return refused;
+}
+
+std::string padded(std::size_t number, std::size_t count) {
+    const std::string text = std::to_string(number);
+    return std::string(std::to_string(count - 1).size() - text.size(), '0') + text;
+}
+
+Result<void> make_folder(const std::string& path) {
+    std::error_code error;
+    fs::create_directories(path, error);
+    if (!error && fs::is_directory(path, error)) {
+        return {};
+    }
+    return refusal(RefusalCode::Unavailable,
+                   path + " cannot be made: " + (error ? error.message() : "there is a file of that name"));
+}
+
+/// The last line of a part that is whole.
+std::optional<std::string> last_line(const std::string& part) {
+    std::error_code error;
+    if (!fs::is_regular_file(part, error)) {
+        return std::nullopt;
+    }
+    std::ifstream file{part, std::ios::binary | std::ios::ate};
+    if (!file) {
+        return std::nullopt;
+    }
+    constexpr std::streamoff enough = 128;
+    const std::streamoff bytes = file.tellg(), begin = std::max<std::streamoff>(bytes - enough, 0);
+    std::string text(static_cast<std::size_t>(bytes - begin), '\0');
+    file.seekg(begin);
+    file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!file || !text.ends_with('\n')) {
+        return std::nullopt;
+    }
+    const std::size_t before = text.size() < 2 ? std::string::npos : text.rfind('\n', text.size() - 2);
+    return before == std::string::npos ? text : text.substr(before + 1);
+}
+
+std::optional<RunEnd> end_from(std::string_view line) {
+    if (!line.starts_with(end_mark)) {
+        return std::nullopt;
+    }
+    line.remove_prefix(end_mark.size());
+    for (const auto& [outcome, name] : outcome_names) {
+        if (!line.starts_with(name)) {
+            continue;
+        }
+        RunEnd end{.outcome = outcome};
+        constexpr std::string_view after_name = ", rows: ";
+        const std::string_view rest = line.substr(name.size());
+        if (!rest.starts_with(after_name)) {
+            continue;
+        }
+        const char* const last = rest.data() + rest.size();
+        const auto read = std::from_chars(rest.data() + after_name.size(), last, end.rows);
+        if (read.ec == std::errc{} && std::string_view{read.ptr, last} == "\n") {
+            return end;
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::string_view name_of(Outcome outcome) {
+    for (const auto& [of, name] : outcome_names) {
+        if (of == outcome) {
+            return name;
+        }
+    }
+    return "nothing";
+}
+
+std::string to_text(const RunEnd& end) {
+    return std::string{end_mark} + std::string{name_of(end.outcome)} + ", rows: " + std::to_string(end.rows) + "\n";
+}
+
+std::vector<std::string> sweep_columns(const Sweep& sweep) {
+    std::vector<std::string> columns{"cell", "replicate", "seed"};
+    for (const parameters::ParameterDescription* parameter : sweep.swept) {
+        columns.emplace_back(parameter->name);
+    }
+    const std::vector<std::string> statistics = tables::statistics_columns();
+    columns.insert(columns.end(), statistics.begin(), statistics.end());
+    return columns;
+}
+
+Result<SweepFolder> SweepFolder::open(const std::string& path, const Sweep& sweep) {
+    const std::string of_sweep = path + "/sweep.txt", provenance = provenance_of(sweep);
+    std::error_code error;
+    std::string result; // looked for first: another task may be making all of it now, and makes sweep.txt before it
+    for (const char* name : {"/runs.csv", "/parts", "/run-files"}) {
+        if (fs::exists(path + name, error)) {
+            result = path + name;
+        }
+    }
+    if (!fs::exists(of_sweep, error)) {
+        if (!result.empty()) {
+            return refusal(RefusalCode::FailedPrecondition,
+                           result + " is there, and no sweep.txt that says whose it is; give another folder with "
+                                    "--out");
+        }
+        if (auto made = make_folder(path); !made) {
+            return made.error();
+        }
+        NewFile file{of_sweep};
+        file.write(provenance);
+        if (auto written = file.finish(); !written) {
+            return written.error();
+        }
+    }
+    const auto there = files::read_file(of_sweep, "what evod sweep wrote", provenance_bytes_max);
+    if (!there) {
+        return there.error();
+    }
+    if (*there != provenance) {
+        return other_sweep(path, *there, sweep);
+    }
+    if (auto made = make_folder(path + "/parts"); !made) {
+        return made.error();
+    }
+    return SweepFolder{path, sweep};
+}
+
+std::string SweepFolder::name_of(std::size_t run) const {
+    return "cell-" + padded(run / sweep_->replicates, sweep_->cells.size()) + "-replicate-" +
+           padded(run % sweep_->replicates, sweep_->replicates);
+}
+
+Result<void> SweepFolder::make_place_for_run_files() const {
+    return make_folder(path_ + "/run-files");
+}
+
+std::optional<RunEnd> SweepFolder::end_of(std::size_t run, Wanted wanted) const {
+    std::error_code error;
+    if (wanted == Wanted::RowsAndRunFile && !fs::exists(run_file_of(run), error)) {
+        return std::nullopt;
+    }
+    const auto line = last_line(part_of(run));
+    return line ? end_from(*line) : std::nullopt;
+}
+
+Result<void> SweepFolder::add_part(std::size_t run, NewFile& table, Gathered& gathered) const {
+    const std::string path = part_of(run);
+    const auto damaged = [&] {
+        return refusal(RefusalCode::DataLoss, path + " is not as it was written; delete it, and the same sweep makes "
+                                                     "that run again");
+    };
+    const auto line = last_line(path);
+    if (!line) {
+        return damaged();
+    }
+    const auto end = end_from(*line);
+    if (!end) {
+        return damaged();
+    }
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(path, error);
+    if (error) {
+        return damaged();
+    }
+    std::ifstream file{path, std::ios::binary};
+    std::string block(1 << 16, '\0');
+    std::uint64_t rows = 0;
+    for (std::uintmax_t left = bytes - line->size(); left > 0;) {
+        const std::size_t count = std::min<std::uintmax_t>(left, block.size());
+        if (!file.read(block.data(), static_cast<std::streamsize>(count))) {
+            return damaged();
+        }
+        const std::string_view text{block.data(), count};
+        rows += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
+        table.write(text);
+        left -= count;
+    }
+    if (rows != end->rows) {
+        return damaged();
+    }
+    gathered.rows += rows;
+    ++gathered.runs[end->outcome];
+    return {};
+}
+
+Result<SweepFolder::Gathered> SweepFolder::gather() const {
+    NewFile table{this->table()};
+    table.write(provenance_of(*sweep_));
+    std::ostringstream heading;
+    const tables::Table columns{heading, tables::Table::Format::Csv, sweep_columns(*sweep_)};
+    table.write(heading.str());
+    Gathered gathered;
+    for (std::size_t run = 0; run < sweep_->run_count() && table.trouble().empty(); ++run) {
+        if (auto added = add_part(run, table, gathered); !added) {
+            return added.error();
+        }
+    }
+    if (auto written = table.finish(); !written) {
+        return written.error();
+    }
+    tidy();
+    return gathered;
+}
+
+/// Takes away what was left by those who were killed: once all is there, nobody needs it.
+void SweepFolder::tidy() const {
+    std::error_code error;
+    std::vector<fs::path> left;
+    for (const char* folder : {"", "/parts", "/run-files"}) {
+        for (fs::directory_iterator file{path_ + folder, error}, end; !error && file != end; file.increment(error)) {
+            if (NewFile::is_unfinished(file->path().filename().string())) {
+                left.push_back(file->path());
+            }
+        }
+    }
+    for (const fs::path& path : left) {
+        fs::remove(path, error);
+    }
+}
+
+} // namespace evod::experiments

@@ -1,0 +1,51 @@
+// Exports and bundles of files that another model made.
+#include "server/commands/export.h"
+#include "tests/unit/storage/other_model.h"
+#include "tests/unit/storage/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+
+namespace evod::commands {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Bundle, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
+    const storage::TemporaryFolder folder;
+    const std::string run = folder.path() + "/w.evod", bundle = folder.path() + "/bundle";
+    storage::record_other_model(run, storage::small_world()).reset();
+    testing::internal::CaptureStderr();
+    ExportOptions options;
+    options.run = run;
+    options.bundle = bundle;
+    EXPECT_EQ(export_run(options), 0);
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are left out"));
+    const auto text_of = [&](const char* name) {
+        std::ifstream file{bundle + "/" + name};
+        return std::string{std::istreambuf_iterator<char>{file}, {}};
+    };
+    EXPECT_THAT(text_of("REPEAT.md"), HasSubstr("Of 4 generations nothing is in organisms.csv and lineage.csv"));
+    for (const char* table : {"organisms.csv", "lineage.csv"}) {
+        EXPECT_THAT(text_of(table), HasSubstr("\n7,1,11,")) << table;
+        EXPECT_THAT(text_of(table), Not(HasSubstr("\n6,1,11,"))) << table;
+    }
+}
+
+TEST(Lineage, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
+    const storage::TemporaryFolder folder;
+    const std::string run = folder.path() + "/w.evod";
+    storage::record_other_model(run, storage::small_world()).reset();
+    testing::internal::CaptureStderr();
+    ExportOptions options;
+    options.run = run;
+    options.what = "lineage";
+    options.output = folder.path() + "/lineage.csv";
+    EXPECT_EQ(export_run(options), 0);
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("4 generations are left out"));
+}
+
+} // namespace
+} // namespace evod::commands

@@ -1,0 +1,162 @@
+#include "server/experiments/controls.h"
+
+#include "server/base/inline_executor.h"
+#include "server/simulation/world.h"
+
+#include <gtest/gtest.h>
+
+#include <iterator>
+
+namespace evod::experiments {
+namespace {
+
+using parameters::Parameters;
+
+std::string changes(const Parameters& world, ControlKind kind) {
+    const Control control = control_of(world, kind);
+    EXPECT_EQ(control.cannot_differ, "");
+    EXPECT_TRUE(parameters::validate(control.parameters).empty());
+    return changes_between(world, control.parameters);
+}
+
+TEST(Controls, OfTheDefaultWorldChangeOneParameterEach) {
+    EXPECT_EQ(changes({}, ControlKind::RandomSelection), "selection=random");
+    EXPECT_EQ(changes({}, ControlKind::MutationOff), "mutation_chance=0");
+    EXPECT_EQ(changes({}, ControlKind::HarmlessPoison), "poison_harm=0");
+    EXPECT_EQ(changes({}, ControlKind::ShuffledFitness), "shuffle_fitness=true");
+}
+
+TEST(Controls, RandomSelectionLeavesNothingToTheFitness) {
+    Parameters world;
+    world.elite_count = 3;
+    world.migration = evolution::Topology::Ring;
+    EXPECT_EQ(changes(world, ControlKind::RandomSelection), "elite_count=0 selection=random");
+    world.island_count = 2; // now somebody migrates
+    EXPECT_EQ(changes(world, ControlKind::RandomSelection),
+              "elite_count=0 selection=random emigrants=random immigrants_replace=random");
+    world = {};
+    world.population_model = evolution::PopulationModel::SteadyState; // the best would stay
+    world.replaced_count = 20;
+    EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=hybrid survivors=0.6 selection=random");
+    world.replaced_count = 50;
+    EXPECT_EQ(changes(world, ControlKind::RandomSelection), "population_model=generational selection=random");
+}
+
+TEST(Controls, HaveTheWorldsScheduleButForWhatMakesThem) {
+    parameters::Schedule schedule;
+    schedule.add(30, {"mutation_chance", 0.05});
+    schedule.add(40, {"food_count", 5u});
+    const auto count = [](const parameters::Schedule& s, std::uint64_t generation) { return s.at(generation).size(); };
+    EXPECT_EQ(schedule_of(schedule, ControlKind::ShuffledFitness), schedule);
+    EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 30), 0u);
+    EXPECT_EQ(count(schedule_of(schedule, ControlKind::MutationOff), 40), 1u);
+    EXPECT_TRUE(matters(schedule, ControlKind::MutationOff)) << "it may begin without mutation";
+    EXPECT_FALSE(matters(schedule, ControlKind::HarmlessPoison));
+    schedule.add(5, {"generation_limit", 7u});
+    EXPECT_FALSE(of_fixed_length(schedule).holds("generation_limit"));
+    EXPECT_TRUE(of_fixed_length(schedule).holds("food_count"));
+}
+
+TEST(Controls, EveryParameterThatMakesOneIsKnown) {
+    // Whatever a control changes has to be taken out of schedules, too.
+    Parameters world;
+    world.population_model = evolution::PopulationModel::SteadyState;
+    world.replaced_count = 20;
+    world.elite_count = 3;
+    world.island_count = 2;
+    world.migration = evolution::Topology::Ring;
+    world.reset_chance = world.bit_flip_chance = world.rearrange_chance = 0.1;
+    world.rearranging = evolution::Rearranging::Swap;
+    for (const ControlKind kind : all_controls) {
+        const Control control = control_of(world, kind);
+        for (const parameters::ParameterDescription& description : parameters::parameter_registry()) {
+            if (description.get(control.parameters) == description.get(world)) {
+                continue;
+            }
+            parameters::Schedule schedule;
+            schedule.add(2, {std::string{description.name}, description.get(world)});
+            EXPECT_TRUE(matters(schedule, kind)) << control.name << " changes " << description.name;
+            EXPECT_FALSE(schedule_of(schedule, kind).holds(description.name));
+        }
+    }
+}
+
+TEST(Controls, RandomSelectionBreedsTheSameWhateverTheFitness) {
+    // For every model: the fitness shuffled or not, the same parents have the same children.
+    base::InlineExecutor executor;
+    for (const auto model : {evolution::PopulationModel::Hybrid, evolution::PopulationModel::Generational,
+                             evolution::PopulationModel::SteadyState}) {
+        Parameters parameters;
+        parameters.fitness = parameters::FitnessFunction::GeneSum;
+        parameters.population_model = model;
+        parameters.replaced_count = 10;
+        parameters.elite_count = 4;
+        parameters.island_count = 3;
+        parameters.migration = evolution::Topology::Ring;
+        parameters.migration_epoch = 1;
+        Parameters random = control_of(parameters, ControlKind::RandomSelection).parameters;
+        for (const bool is_control : {true, false}) {
+            Parameters& p = is_control ? random : parameters;
+            simulation::World plain{p, base::Seed{3}};
+            p.shuffle_fitness = true;
+            simulation::World shuffled{p, base::Seed{3}};
+            for (int generation = 0; generation < 4; ++generation) {
+                plain.advance_tick(executor);
+                shuffled.advance_tick(executor);
+            }
+            EXPECT_EQ(plain.hash() == shuffled.hash() &&
+                          (plain.islands()[1].born().genes == shuffled.islands()[1].born().genes).all(),
+                      is_control);
+        }
+    }
+}
+
+TEST(Controls, MutationOffTurnsOffEveryWayToANewValueOrPlace) {
+    Parameters world;
+    world.reset_chance = 0.1;
+    world.bit_flip_chance = 0.1;
+    world.rearranging = evolution::Rearranging::Swap;
+    EXPECT_EQ(changes(world, ControlKind::MutationOff),
+              "rearranging=none mutation_chance=0 reset_chance=0 bit_flip_chance=0");
+}
+
+TEST(Controls, SayWhereTheWorldIsTheControlAlready) {
+    const auto why = [](const Parameters& world, ControlKind kind) { return control_of(world, kind).cannot_differ; };
+    Parameters world;
+    world.selection = evolution::SelectionMethod::Random;
+    EXPECT_EQ(why(world, ControlKind::RandomSelection), "whoever breeds is drawn by chance already");
+    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "whoever breeds is drawn by chance already");
+    world.elite_count = 1; // chosen by fitness
+    EXPECT_EQ(why(world, ControlKind::RandomSelection), "");
+    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "");
+    world.shuffle_fitness = true;
+    EXPECT_EQ(why(world, ControlKind::ShuffledFitness), "shuffle_fitness is true already");
+
+    world = {};
+    world.mutation_step = 0;
+    world.rearrange_chance = 0;
+    world.rearranging = evolution::Rearranging::Swap;
+    EXPECT_EQ(why(world, ControlKind::MutationOff), "nothing mutates already");
+    world.bit_flip_chance = 0.01;
+    EXPECT_EQ(why(world, ControlKind::MutationOff), "");
+
+    world = {};
+    world.poison_harm = 0;
+    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "poison_harm is 0 already");
+    world.poison_count = 0;
+    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "there is no poison");
+    world.fitness = parameters::FitnessFunction::Rastrigin;
+    EXPECT_EQ(why(world, ControlKind::HarmlessPoison), "the fitness is a function of the chromosome: nobody eats");
+}
+
+TEST(Controls, AWorldOfFixedLengthHasNoOtherEnd) {
+    Parameters world;
+    world.stop_at_extinction = true;
+    world.stop_at_target_fitness = true;
+    world.stagnation_limit = 3;
+    const Parameters fixed = of_fixed_length(world, 9);
+    EXPECT_EQ(changes_between({}, fixed), "generation_limit=9");
+}
+
+} // namespace
+} // namespace evod::experiments
