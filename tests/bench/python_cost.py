@@ -55,7 +55,7 @@ def by_program(program, seed):
 
 def simulation_s(lab):
     """Processor seconds of the thread that simulates."""
-    keeper = lab._server._keeper.pid
+    keeper = lab._server._supervisor.pid
     with open(f"/proc/{keeper}/task/{keeper}/children") as children:
         tasks = pathlib.Path("/proc") / children.read().split()[0] / "task"
     (task,) = (task for task in tasks.iterdir() if (task / "comm").read_text().strip() == "simulation")
@@ -113,8 +113,8 @@ def pictures(program, organisms, seconds):
         ticks_per_s = (snapshot.tick - tick) / (time.perf_counter() - began)
         for stream in streams:
             stream.close()
-        take = core._take_picture
-        core._take_picture = lambda message: (messages.append(copy.deepcopy(message)), take(message))
+        take = core._take_snapshot
+        core._take_snapshot = lambda message: (messages.append(copy.deepcopy(message)), take(message))
         with world.snapshots(120) as snapshots:
             while len(messages) < 200:
                 next(snapshots)

@@ -15,7 +15,7 @@ class Faces(unittest.TestCase):
     def test_both_have_the_same_words(self):
         for name in ("Lab", "LocalLab", "World", "Replay", "Run", "Snapshots", "Events"):
             plain, awaited = getattr(evod, name), getattr(evod.aio, name)
-            words = {word for word in dir(plain) if not word.startswith("_")} - {"parameters"}  # attributes cannot wait
+            words = {word for word in dir(plain) if not word.startswith("_")} - {"parameters"}  # an attribute cannot be awaited
             self.assertEqual(words, {word for word in dir(awaited) if not word.startswith("_")}, name)
             for word in words:
                 ours, theirs = getattr(plain, word), getattr(awaited, word)

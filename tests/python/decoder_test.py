@@ -20,19 +20,19 @@ BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 300
 
 def recorded(lab, world, count, **options):
     """Messages of pictures as they came, while the world runs."""
-    messages, take = [], lab._link.core._take_picture
+    messages, take = [], lab._link.core._take_snapshot
 
     def keep(message):
         messages.append(copy.deepcopy(message))
         take(message)
 
-    lab._link.core._take_picture = keep
+    lab._link.core._take_snapshot = keep
     with world.snapshots(120, **options) as snapshots:
         world.run()
         for _ in range(count):
             next(snapshots)
     world.pause()
-    lab._link.core._take_picture = take
+    lab._link.core._take_snapshot = take
     return messages
 
 
@@ -77,8 +77,8 @@ class Decoder(Told):
 
             with world.snapshots(1) as snapshots:  # the same once more in columns
                 cls.same = next(snapshots)
-            found, take = [], lab._link.core._take_picture
-            lab._link.core._take_picture = lambda message: found.append(message) if message.codec == 1 else take(message)
+            found, take = [], lab._link.core._take_snapshot
+            lab._link.core._take_snapshot = lambda message: found.append(message) if message.codec == 1 else take(message)
             columns = c.SubscribeSnapshots(world=world.name, rate_hz=1)
             held = lab._link.core.subscribe(c.Request(subscribe_snapshots=columns))  # forgotten, it would be unsubscribed
             while not found:
@@ -320,9 +320,9 @@ class Streams(Told):
         stream = plans.SnapshotStream(core, subscription)
         plan = stream.set_view(c.View(detail=stream_pb2.DETAIL_DOTS))
         step = next(plan)
-        self.assertFalse(step.holds(), "the server has not accepted the subscription yet")
+        self.assertFalse(step.condition(), "the server has not accepted the subscription yet")
         self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
-        self.assertTrue(step.holds())
+        self.assertTrue(step.condition())
         request = plan.send(None)
         self.assertEqual(request.set_view.subscription_id, 4)
         with self.assertRaises(evod.Error):
@@ -345,7 +345,7 @@ class Streams(Told):
 
     def test_what_is_too_long_is_not_sent(self):
         core = self.core()
-        with self.assertRaisesRegex(evod.Error, "bytes long; the server takes 500"):
+        with self.assertRaisesRegex(evod.Error, "bytes long, allowed 500"):
             core.request(c.Request(pause=c.Pause(world="x" * 500)))
         self.assertEqual(core.outgoing(), b"")
 

@@ -91,7 +91,7 @@ class Pictures(unittest.TestCase):
                 world = lab.world()
                 told = list(world.run(4))
                 axes = world.plot_selection("body_size")
-                with self.assertRaisesRegex(evod.Error, "there is no gene 'size'; allowed: normal_speed, impulse, body_size"):
+                with self.assertRaisesRegex(evod.Error, "gene: got 'size', allowed normal_speed, impulse, body_size"):
                     world.plot_selection("size")
             with evod.open_run(folder + "/default.evod") as run:
                 from_file = run.plot_selection("body_size")

@@ -152,7 +152,7 @@ class Retries(unittest.TestCase):
         relay = Relay(self.server.port)
         lab = evod.connect(relay.address)
         self.addCleanup(lab.close)
-        lab._link.timeout_s = 0.5
+        lab._link._inner.timeout_s = 0.5
         relay.close()
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1"):
             lab.worlds()

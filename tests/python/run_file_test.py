@@ -11,7 +11,7 @@ import numpy
 import pandas
 
 import evod
-from evod.tables import frame_of
+from evod.tables import read_csv
 from support import PROGRAM, Server
 
 SMALL = {"population_size": 10, "generation_s": 3}
@@ -19,7 +19,7 @@ SMALL = {"population_size": 10, "generation_s": 3}
 
 def exported(path, *what):
     done = subprocess.run([PROGRAM, "export", str(path), "--what", *what], capture_output=True, text=True, check=True)
-    return frame_of(done.stdout)
+    return read_csv(done.stdout)
 
 
 class RunFiles(unittest.TestCase):
@@ -65,7 +65,7 @@ class RunFiles(unittest.TestCase):
             self.assertEqual((run.name, run.seed, run.first_generation, run.last_generation), ("default", 42, 1, 7))
             self.assertEqual(run.parameters["population_size"], 10)
             self.assertEqual([run.parameters_of(g)["elite_count"] for g in (1, 7)], [0, 1])
-            self.assertEqual(run.held, [1, 2, 3, 4, 5, 6, 7])
+            self.assertEqual(run.retained_generations, [1, 2, 3, 4, 5, 6, 7])
             self.assertEqual(list(run.events()["kind"][-3:]), ["run", "set_parameters", "run"])
 
     def test_genes_begin_another_world(self):
@@ -81,10 +81,10 @@ class RunFiles(unittest.TestCase):
                 lab.world().run(6).wait()
             server.end()
             with evod.open_run(os.path.join(folder, "default.evod")) as run:
-                self.assertEqual(run.held, [1, 4, 6])
+                self.assertEqual(run.retained_generations, [1, 4, 6])
                 self.assertEqual(sorted(set(run.organisms()["generation"])), [1, 4, 6])
                 self.assertEqual(len(run.generations()), 6)
-                with self.assertRaisesRegex(evod.Error, "does not hold the organisms of generation 2 any more"):
+                with self.assertRaisesRegex(evod.Error, "no longer contains the organisms of generation 2"):
                     run.genes(2)
 
     def test_what_is_no_run_file_is_told_of(self):
@@ -109,7 +109,7 @@ class RunFiles(unittest.TestCase):
             file.execute("CREATE VIEW run AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) "
                          "SELECT i AS key, i AS value FROM n")
         file.close()
-        with self.assertRaisesRegex(evod.DamagedData, "view.evod is not as evod wrote it: it has the view 'run'"):
+        with self.assertRaisesRegex(evod.DamagedData, "view.evod is not as evod wrote it: it contains the view 'run'"):
             evod.open_run(path)
 
     def test_damage_is_an_error_of_ours(self):
@@ -121,7 +121,7 @@ class RunFiles(unittest.TestCase):
             file.close()
             with evod.open_run(path) as run, self.assertRaises(evod.DamagedData):
                 run.organisms()
-        with evod.open_run(self.path) as run, self.assertRaisesRegex(evod.Error, "there are 1 to 7"):
+        with evod.open_run(self.path) as run, self.assertRaisesRegex(evod.Error, "generation: got 99, allowed in .*: 1 to 7"):
             run.genes(99)
 
     def test_nothing_is_changed(self):

@@ -2,7 +2,7 @@
 import unittest
 
 import evod
-from evod.core import PICTURES_AHEAD
+from evod.core import UNACKNOWLEDGED_MAX
 from evod.v1 import world_pb2
 
 
@@ -75,19 +75,19 @@ class Generations(unittest.TestCase):
         next(snapshots)
         snapshots.close()
         self.world.run(2).wait()
-        self.assertEqual(self.lab._link.core._sights, {})
+        self.assertEqual(self.lab._link.core._streams, {})
 
     def test_who_takes_long_is_shown_fewer_and_newer(self):
         with self.world.snapshots(120) as snapshots:
             self.world.run()
             next(snapshots)
-            while len(snapshots._stream._subscription.arrived) < PICTURES_AHEAD - 1:
+            while len(snapshots._stream._subscription.arrived) < UNACKNOWLEDGED_MAX - 1:
                 self.world.info()
             last = self.world.pause()
             behind = []
             while not behind or behind[-1].tick < last.tick:
                 behind.append(next(snapshots))
-        self.assertLessEqual(len(behind), PICTURES_AHEAD)
+        self.assertLessEqual(len(behind), UNACKNOWLEDGED_MAX)
         self.assertEqual([snapshot.tick for snapshot in behind], sorted(snapshot.tick for snapshot in behind))
 
     def test_events_of_one_world_and_of_all(self):

@@ -8,11 +8,11 @@ import tempfile
 import threading
 
 import waiting
-from evod import reach
+from evod import transport
 from waiting import until
 
 PROGRAM = os.environ["EVOD"]
-reach.CONNECT_TIMEOUT_S = 600.0  # as the machine may stand still
+transport.CONNECT_TIMEOUT_S = 600.0  # as the machine may stand still
 
 
 class Server:

@@ -67,7 +67,7 @@ class Optional(unittest.TestCase):
         self.assertEqual(done.stdout, "50\n", done.stderr)
 
     def test_what_is_missing_is_named(self):
-        for package, program in (("pandas", "evod.tables.frame_of('')"), ("matplotlib", "world.plot()")):
+        for package, program in (("pandas", "evod.tables.read_csv('')"), ("matplotlib", "world.plot()")):
             done = self.run_without(package, program)
             self.assertIn(f"need the package {package}: install it, python3-{package} on Debian", done.stderr)
 

@@ -63,6 +63,7 @@ async def walk_all(lab):
     assert planned.planned == (planned.change,)
     later = (await there(world.set(food_health=9.0, at_tick=10**6))).change
     assert later.tick == 10**6 and later.generation is None
+    assert await there(world.planned_changes()) == (planned.change, later)
     assert await there(world.cancel(planned.change)) == planned.change
     assert await there(world.cancel(later.id)) == later
 

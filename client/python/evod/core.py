@@ -1,14 +1,14 @@
-"""Core: a client's side of the protocol, without a socket, a clock or a thread.
+"""The client's side of the protocol as a state machine without a socket, a clock or a thread.
 
-It is told what happens to the line (opened, received, lost) and what is wanted (request, subscribe), and says what is to be
-sent (outgoing) and what has come (Pending, Subscription). When a line is lost and another one opened, it says hello again,
-asks for what was subscribed before, and sends every request that has no answer again, with the same client_key and
-request_id: so a command happens once.
+The connection reports what happens to it (opened, received, lost) and sends what outgoing() returns. Callers hand in
+requests and subscriptions, and find answers, events and snapshots in Pending and Subscription. After a reconnect the core
+sends its Hello, subscribes again, and repeats every unanswered request with the same client_key and request_id. The server's
+reply cache makes that idempotent: each command is applied once.
 
-Threads      none; whoever shares a Core between threads lets one in at a time.
-Bounded      requests beyond the server's limit wait here for their turn; of events each subscription keeps the newest
-             EVENTS_KEPT, and the loss is told in an EventsDropped; pictures are acknowledged when they are taken, so no
-             more than PICTURES_AHEAD of an island are ever on their way.
+Threads      none of its own; one thread at a time may call a Core.
+Bounds       requests beyond the server's limit are queued here; a subscription keeps the newest EVENTS_KEPT events and
+             reports the others in an EventsDropped; a snapshot is acknowledged when the caller takes it, so that at most
+             UNACKNOWLEDGED_MAX snapshots of an island are in flight.
 """
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from evod.version import __version__
 
 PROTOCOL_VERSION = 1
 EVENTS_KEPT = 10_000
-PICTURES_AHEAD = 8
-_KEYFRAME_REQUESTS_MAX = 3  # for one damaged picture after another
+UNACKNOWLEDGED_MAX = 8  # snapshots of an island
+_KEYFRAME_REQUESTS_MAX = 3  # while no snapshot could be decoded
 
-#: For the answer to these, generations may have to be simulated again: it may take so many times as long as others.
-_REPLAYING = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
-_REPLAYING_TIMES = 20
+#: Requests for which the server may have to simulate generations again: their timeout is this many times longer.
+_REPLAY_REQUESTS = frozenset(("open_replay", "seek", "get_breeding", "export_run", "continue_export"))
+_REPLAY_TIMEOUT_FACTOR = 20
 
-#: Of these, a session that has ended leaves nothing that could be asked for again.
-_OF_THE_SESSION = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
+#: Requests about ids that end with their session: they fail with it instead of being repeated.
+_SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
 
 class Pending:
-    """A request that was asked; in the end it has a response, or an error: nothing was heard, and nothing will be."""
+    """A request, and once it is done its response, or the error that it will never have one."""
 
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
@@ -53,25 +53,25 @@ class Pending:
     def done(self) -> bool:
         return self.response is not None or self.error is not None
 
-    def patience_s(self, timeout_s: float) -> float:
-        """How long to wait for the answer, where others may take timeout_s."""
-        return timeout_s * _REPLAYING_TIMES if self.kind in _REPLAYING else timeout_s
+    def timeout_s(self, usual_s: float) -> float:
+        """How long the answer may take, given the timeout of requests that need no replay."""
+        return usual_s * _REPLAY_TIMEOUT_FACTOR if self.kind in _REPLAY_REQUESTS else usual_s
 
 
 class Subscription:
-    """What is subscribed to, for as long as somebody holds it, across sessions."""
+    """A subscription across sessions. It ends with unsubscribe(), or when it is garbage collected."""
 
     def __init__(self, request: commands_pb2.Request) -> None:
         self.request = request
         self.world: str = getattr(request, request.WhichOneof("kind") or "").world
         self.server_id: int | None = None  # in this session, once accepted
         self.pending: Pending | None = None
-        self.refused: Error | None = None  # the server's last word
-        self.sessions = 0  # in which it was accepted
-        self.rate_hz = 0.0  # pictures: that holds
+        self.refused: Error | None = None  # the server refused it, in this session or a later one
+        self.sessions = 0  # number of sessions in which the server accepted it
+        self.rate_hz = 0.0  # of snapshots, as the server granted it
         self.ended = False
-        self.arrived: collections.deque[Any] = collections.deque()  # events or Snapshot, the oldest first
-        self._lost = 0  # events that were not kept
+        self.arrived: collections.deque[Any] = collections.deque()  # Event or Snapshot, the oldest first
+        self._lost = 0  # number of events dropped here since the last EventsDropped
 
     def take_event(self) -> stream_pb2.Event | None:
         if self._lost:
@@ -79,28 +79,28 @@ class Subscription:
             return stream_pb2.Event(events_dropped=stream_pb2.EventsDropped(dropped_count=lost))
         return self.arrived.popleft() if self.arrived else None
 
-    def keep_event(self, event: stream_pb2.Event) -> None:
+    def add_event(self, event: stream_pb2.Event) -> None:
         self.arrived.append(event)
         if len(self.arrived) > EVENTS_KEPT:
             self.arrived.popleft()
             self._lost += 1
 
     @property
-    def has_any(self) -> bool:
+    def has_event(self) -> bool:
         return bool(self.arrived or self._lost)
 
 
 @dataclasses.dataclass
-class _Sight:
-    """What is seen of one island for one subscription of this session."""
+class _StreamState:
+    """The snapshot stream of one island of one subscription in this session."""
 
     decoder: picture_decoder.FrameDecoder = dataclasses.field(default_factory=picture_decoder.FrameDecoder)
     keyframe_needed: bool = False
-    keyframe_requests: int = 0  # since a picture could be decoded
+    keyframe_requests: int = 0  # since the last snapshot that could be decoded
 
 
 class Core:
-    """See above."""
+    """One client; the comment above describes it. `server` is shown in error messages."""
 
     def __init__(self, *, token: str, client_name: str, server: object) -> None:
         self._hello = session_pb2.ClientMessage(
@@ -108,43 +108,43 @@ class Core:
                 protocol_version=PROTOCOL_VERSION, client_name=client_name, client_version=__version__, token=token
             )
         )
-        self._server = server  # where it is, for people
+        self._server = server
         self.client_key = secrets.token_hex(16)
-        self.welcome: session_pb2.Welcome | None = None  # of the last server
-        self.connected = False  # welcomed, on the line there is now
-        self.failed: Error | None = None  # why there will be no other session
-        self.loss: Error | None = None  # why there is no line, after one was lost
-        self.damaged_snapshot_count = 0  # thrown away because they could not be decoded
+        self.welcome: session_pb2.Welcome | None = None  # of the current or the last session
+        self.connected = False  # the server has sent its Welcome on the current connection
+        self.failed: Error | None = None  # final: there is no point in connecting again
+        self.loss: Error | None = None  # why there is no session at present
+        self.damaged_snapshot_count = 0  # dropped because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
         self._last_request_id = 0
-        self._pending: dict[int, Pending] = {}  # by request_id, in the order in which they were asked
-        self._first: set[int] = set()  # of those: go before the others
-        self._in_flight: set[int] = set()  # sent in this session and not answered, nobody may wait any more
-        self._late_pasts: set[int] = set()  # requests for one in this session that nobody waits for any more
+        self._pending: dict[int, Pending] = {}  # by request_id, in the order of the calls
+        self._first: set[int] = set()  # ids of those to send before the others
+        self._in_flight: set[int] = set()  # sent in this session and unanswered, also of callers that gave up
+        self._abandoned_replays: set[int] = set()  # OpenReplay requests of this session whose callers gave up
         self._subscriptions: list[weakref.ref[Subscription]] = []
         self._of_server_id: dict[int, weakref.ref[Subscription]] = {}
-        self._sights: dict[tuple[int, int], _Sight] = {}  # by server_id and island
+        self._streams: dict[tuple[int, int], _StreamState] = {}  # by server_id and island
 
-    # ---- the line -------------------------------------------------------------------------------------------------
+    # ---- the connection -------------------------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """There is a new line."""
+        """A new connection was opened."""
         self._outgoing.clear()
         self._reader = framing.FrameReader()
         self._send(self._hello)
 
     def received(self, data: bytes | bytearray | memoryview) -> None:
-        """What came. NoConnection, DamagedData: the line is of no use any more; tell lost() of it."""
+        """Takes bytes from the server. On NoConnection or DamagedData close the connection and call lost()."""
         self._reader.feed(data)
         try:
             for channel, body in self._reader.frames():
                 if channel == framing.CONTROL:
                     self._take_control(session_pb2.ServerMessage.FromString(body))
                 elif self.connected:
-                    self._take_picture(stream_pb2.SnapshotFrame.FromString(body))
+                    self._take_snapshot(stream_pb2.SnapshotFrame.FromString(body))
                 else:
-                    raise DamagedData("it began with a picture")
+                    raise DamagedData("it began with a snapshot")
         except (google.protobuf.message.DecodeError, DamagedData) as error:
             what = error.message if isinstance(error, DamagedData) else "a message cannot be read"
             if self.connected:
@@ -153,32 +153,32 @@ class Core:
             raise self.failed from None
 
     def lost(self, error: Error) -> None:
-        """The line has ended; or one that was to be opened was not. If `failed` is not set now, open another."""
+        """The connection was lost, or could not be opened. Connect again unless `failed` is set."""
         self.connected, self.loss = False, error
         self._outgoing.clear()
         self._in_flight.clear()
-        self._late_pasts.clear()
+        self._abandoned_replays.clear()
         self._of_server_id.clear()
-        self._sights.clear()
+        self._streams.clear()
         for subscription in self._live_subscriptions():
             subscription.server_id = subscription.pending = None
             if subscription.request.HasField("subscribe_snapshots"):
-                subscription.arrived.clear()  # to acknowledge them in another session would mean others
+                subscription.arrived.clear()  # their sequence numbers have no meaning in another session
         for request_id, pending in list(self._pending.items()):
             subscribing = pending.kind.startswith("subscribe_")
-            if self.failed is not None or subscribing or pending.sent and pending.kind in _OF_THE_SESSION:
+            if self.failed is not None or subscribing or pending.sent and pending.kind in _SESSION_REQUESTS:
                 del self._pending[request_id]
                 self._first.discard(request_id)
                 pending.error = NoConnection(error.message, error.code, error.violations)
             pending.sent = False
 
     def close(self) -> None:
-        """Nothing is wanted any more."""
+        """The caller closes the client."""
         self.failed = NoConnection("the connection was closed here")
         self.lost(self.failed)
 
     def outgoing(self) -> bytes:
-        """What is to be sent now; taken."""
+        """Takes the bytes to send now."""
         data = bytes(self._outgoing)
         self._outgoing.clear()
         return data
@@ -186,7 +186,10 @@ class Core:
     # ---- requests -------------------------------------------------------------------------------------------------
 
     def request(self, request: commands_pb2.Request, *, first: bool = False) -> Pending:
-        """Asks, now or once there is a session. request_id and client_key are set here. Error: it cannot be sent."""
+        """Sends a request now or once there is a session; sets its request_id and client_key.
+
+        Raises Error if the client is closed or has failed, or if the request is longer than the server allows.
+        """
         if self.failed is not None:
             raise NoConnection(self.failed.message, self.failed.code, self.failed.violations)
         request_id = self._last_request_id + 1
@@ -195,7 +198,7 @@ class Core:
         limits = self.welcome.limits if self.welcome else None
         most = limits.control_frame_bytes_max if limits else 1 << 20
         if len(body) > most:
-            raise Error(f"the request is {len(body)} bytes long; the server takes {most}")
+            raise Error(f"the request is {len(body)} bytes long, allowed {most}")
         self._last_request_id = request_id
         pending = self._pending[request_id] = Pending(request, framing.encode(body))
         if first:
@@ -204,22 +207,22 @@ class Core:
         return pending
 
     def forget(self, pending: Pending) -> None:
-        """Nobody waits for it any more. A past that it opens all the same is closed when its name is known."""
+        """The caller no longer waits. A replay that the server opens all the same is closed once its name is known."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
         if pending.kind == "open_replay" and pending.sent and not pending.done:
-            self._late_pasts.add(pending.request.request_id)
+            self._abandoned_replays.add(pending.request.request_id)
 
     # ---- subscriptions --------------------------------------------------------------------------------------------
 
     def subscribe(self, request: commands_pb2.Request) -> Subscription:
-        """Asks now or once there is a session, and again in each new one, until unsubscribe() or nobody holds it."""
+        """Subscribes now or once there is a session, and again in each new session, until the subscription ends."""
         if self.failed is not None:
             raise NoConnection(self.failed.message, self.failed.code, self.failed.violations)
         subscription = Subscription(request)
         self._subscriptions.append(weakref.ref(subscription))
         if self.connected:
-            self._ask_for(subscription)
+            self._resubscribe(subscription)
         return subscription
 
     def unsubscribe(self, subscription: Subscription) -> None:
@@ -229,7 +232,7 @@ class Core:
             self._unsubscribe_from(subscription.server_id)
 
     def acknowledge(self, subscription: Subscription, snapshot: Snapshot) -> None:
-        """The picture has been dealt with: another one may come."""
+        """The caller is done with the snapshot; the server may send another."""
         if subscription.server_id is not None and snapshot.sequence:
             self._send(
                 session_pb2.ClientMessage(
@@ -239,22 +242,22 @@ class Core:
                 )
             )
 
-    # ---- within ---------------------------------------------------------------------------------------------------
+    # ---- private --------------------------------------------------------------------------------------------------
 
     def _send(self, message: session_pb2.ClientMessage) -> None:
         self._outgoing += framing.encode(message.SerializeToString())
 
     def _send_waiting(self) -> None:
-        """Sends what has not been sent, as far as the server's limit on unanswered requests goes."""
+        """Sends queued requests, up to half the server's limit on unanswered ones."""
         if not self.connected or self.welcome is None:
             return
-        # An answer counts for the server until it knows that it has been sent: we may have it, and ask again, before that.
+        # The server counts a request until its answer has left. We may have the answer, and send the next request, before that.
         most = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
-        for of_first in (True, False) if self._first else (False,):
+        for urgent in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
                 if len(self._in_flight) >= most:
                     return
-                if not pending.sent and (request_id in self._first) == of_first:
+                if not pending.sent and (request_id in self._first) == urgent:
                     pending.sent = True
                     self._in_flight.add(request_id)
                     self._outgoing += pending.frame
@@ -262,7 +265,7 @@ class Core:
     def _take_control(self, message: session_pb2.ServerMessage) -> None:
         kind = message.WhichOneof("kind")
         if not self.connected:
-            self._take_first(message, kind)
+            self._take_welcome(message, kind)
         elif kind == "response":
             self._take_response(message.response)
         elif kind == "event":
@@ -273,11 +276,11 @@ class Core:
                 self.failed = NoConnection(error.message, error.code, error.violations)
             raise NoConnection(error.message, error.code, error.violations)
 
-    def _take_first(self, message: session_pb2.ServerMessage, kind: str | None) -> None:
+    def _take_welcome(self, message: session_pb2.ServerMessage, kind: str | None) -> None:
         if kind == "goodbye":
             error = refusal(message.goodbye.status)
             refused = NoConnection(
-                f"the server at {self._server} refused us: {error.message}", error.code, error.violations
+                f"the server at {self._server} refused this client: {error.message}", error.code, error.violations
             )
             if error.code not in (commands_pb2.CODE_RESOURCE_EXHAUSTED, commands_pb2.CODE_UNAVAILABLE):
                 self.failed = refused
@@ -286,21 +289,21 @@ class Core:
             raise DamagedData("it did not begin with a welcome")
         if message.welcome.protocol_version != PROTOCOL_VERSION:
             self.failed = NoConnection(
-                f"the server at {self._server} speaks protocol version {message.welcome.protocol_version}, this package "
-                f"version {PROTOCOL_VERSION}: use a package of the server's version"
+                f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, this package version "
+                f"{PROTOCOL_VERSION}: install the package of the server's version"
             )
             raise self.failed
         self.welcome, self.connected, self.loss = message.welcome, True, None
-        # What was subscribed before comes first, so that nobody misses what the requests bring about.
+        # Subscribing first lets subscribers see the events of the requests that follow.
         for subscription in self._live_subscriptions():
-            self._ask_for(subscription)
+            self._resubscribe(subscription)
         self._send_waiting()
 
     def _take_response(self, response: commands_pb2.Response) -> None:
         self._in_flight.discard(response.request_id)
         self._first.discard(response.request_id)
-        if response.request_id in self._late_pasts:
-            self._late_pasts.discard(response.request_id)
+        if response.request_id in self._abandoned_replays:
+            self._abandoned_replays.discard(response.request_id)
             if response.HasField("world"):
                 self.request(commands_pb2.Request(close_replay=commands_pb2.CloseReplay(world=response.world.name)))
         pending = self._pending.get(response.request_id)
@@ -317,7 +320,7 @@ class Core:
         self._subscriptions = [known for known in self._subscriptions if known() is not None]
         return (subscription for known in self._subscriptions if (subscription := known()) is not None)
 
-    def _ask_for(self, subscription: Subscription) -> None:
+    def _resubscribe(self, subscription: Subscription) -> None:
         request = commands_pb2.Request()
         request.CopyFrom(subscription.request)
         subscription.pending = self.request(request, first=True)
@@ -337,12 +340,12 @@ class Core:
             subscription.sessions += 1
             self._of_server_id[server_id] = weakref.ref(subscription)
             if subscription.sessions > 1 and pending.kind == "subscribe_events":
-                # Nobody can tell how many there were meanwhile.
-                subscription.keep_event(stream_pb2.Event(events_dropped=stream_pb2.EventsDropped()))
+                # How many events were missed in between is not known: a count of 0 says so.
+                subscription.add_event(stream_pb2.Event(events_dropped=stream_pb2.EventsDropped()))
 
     def _unsubscribe_from(self, server_id: int) -> None:
         self._of_server_id.pop(server_id, None)
-        self._sights = {key: sight for key, sight in self._sights.items() if key[0] != server_id}
+        self._streams = {key: stream for key, stream in self._streams.items() if key[0] != server_id}
         if self.connected:
             self.request(commands_pb2.Request(unsubscribe=commands_pb2.Unsubscribe(subscription_id=server_id)))
 
@@ -352,33 +355,33 @@ class Core:
             if subscription is None:
                 self._unsubscribe_from(server_id)
             elif subscription.request.HasField("subscribe_events"):
-                of_all = not subscription.request.subscribe_events.HasField("world")
-                if of_all or event.world in ("", subscription.world):
-                    subscription.keep_event(event)
+                all_worlds = not subscription.request.subscribe_events.HasField("world")
+                if all_worlds or event.world in ("", subscription.world):
+                    subscription.add_event(event)
 
-    def _take_picture(self, message: stream_pb2.SnapshotFrame) -> None:
+    def _take_snapshot(self, message: stream_pb2.SnapshotFrame) -> None:
         server_id = message.subscription_id
         known = self._of_server_id.get(server_id)
         if known is None:
-            return  # unsubscribed while it was on its way
+            return  # unsubscribed while the snapshot was in flight
         subscription = known()
         if subscription is None:
             self._unsubscribe_from(server_id)
             return
-        sight = self._sights.setdefault((server_id, message.island), _Sight())
-        told_from_others = message.codec == stream_pb2.CODEC_DELTA and (
+        stream = self._streams.setdefault((server_id, message.island), _StreamState())
+        is_delta = message.codec == stream_pb2.CODEC_DELTA and (
             message.base_sequence or any(tile.base_sequence for tile in message.tiles)
         )
         snapshot = None
-        if not (told_from_others and sight.keyframe_needed):
+        if not (is_delta and stream.keyframe_needed):
             try:
-                snapshot = sight.decoder.decode(message)
+                snapshot = stream.decoder.decode(message)
             except DamagedData:
                 self.damaged_snapshot_count += 1
-                sight.keyframe_needed = True
-                # A server whose keyframes are damaged too is not asked again and again.
-                if message.codec == stream_pb2.CODEC_DELTA and sight.keyframe_requests < _KEYFRAME_REQUESTS_MAX:
-                    sight.keyframe_requests += 1
+                stream.keyframe_needed = True
+                # The limit ends an endless exchange with a server whose keyframes are damaged, too.
+                if message.codec == stream_pb2.CODEC_DELTA and stream.keyframe_requests < _KEYFRAME_REQUESTS_MAX:
+                    stream.keyframe_requests += 1
                     self.request(
                         commands_pb2.Request(request_keyframe=commands_pb2.RequestKeyframe(subscription_id=server_id)),
                         first=True,
@@ -392,5 +395,5 @@ class Core:
                 )
             )
             return
-        sight.keyframe_needed, sight.keyframe_requests = False, 0
+        stream.keyframe_needed, stream.keyframe_requests = False, 0
         subscription.arrived.append(snapshot)

@@ -1,4 +1,4 @@
-"""Where a server is, and who we come to it as."""
+"""A server's address, the token and the TLS settings to connect with."""
 from __future__ import annotations
 
 import dataclasses
@@ -12,12 +12,14 @@ DEFAULT_PORT = 7744
 
 @dataclasses.dataclass(frozen=True)
 class Endpoint:
+    """The address of a server."""
+
     host: str = "localhost"  #: without brackets
     port: int = DEFAULT_PORT
 
     @classmethod
     def parse(cls, text: str) -> Endpoint:
-        """HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; an IPv6 address without a port may stand without brackets.
+        """Reads HOST, HOST:PORT, [IPV6] or [IPV6]:PORT; an IPv6 address without a port needs no brackets.
 
         >>> Endpoint.parse("lab.example:7000")
         Endpoint(host='lab.example', port=7000)
@@ -25,15 +27,15 @@ class Endpoint:
         Endpoint(host='::1', port=7744)
         >>> Endpoint.parse("lab:x")
         Traceback (most recent call last):
-        evod.errors.Error: 'lab:x' is not a server's address: a port is a number from 1 to 65535 (HOST, HOST:PORT or [IPV6]:PORT)
+        evod.errors.Error: server: got 'lab:x', allowed HOST, HOST:PORT or [IPV6]:PORT: the port is not a number from 1 to 65535
         """
         host, port = text, None
         if text.startswith("["):
             host, bracket, rest = text[1:].partition("]")
             if not bracket:
-                raise _malformed(text, "']' is missing")
+                raise _malformed(text, "there is no ']'")
             if rest and not rest.startswith(":"):
-                raise _malformed(text, "after ']' comes ':' and a port")
+                raise _malformed(text, "after ']' there is no ':' and port")
             port = rest[1:] if rest else None
         elif text.count(":") == 1:
             host, port = text.split(":")
@@ -42,7 +44,7 @@ class Endpoint:
         if port is None:
             return cls(host)
         if not (port.isascii() and port.isdigit() and len(port) <= 5 and 1 <= int(port) <= 65535):
-            raise _malformed(text, "a port is a number from 1 to 65535")
+            raise _malformed(text, "the port is not a number from 1 to 65535")
         return cls(host, int(port))
 
     def __str__(self) -> str:
@@ -50,40 +52,43 @@ class Endpoint:
 
 
 def _malformed(text: str, why: str) -> Error:
-    return Error(f"'{text}' is not a server's address: {why} (HOST, HOST:PORT or [IPV6]:PORT)")
+    return Error(f"server: got '{text}', allowed HOST, HOST:PORT or [IPV6]:PORT: {why}")
 
 
-def token_of(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
-    """The token as given, else the file's, else the environment's EVOD_TOKEN, else none. Files must be the owner's alone."""
+def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> str:
+    """The token given, or the first word of the file, or the environment variable EVOD_TOKEN, or "".
+
+    A file that others than its owner may read is refused.
+    """
     if token is not None:
         if token_file is not None:
-            raise Error("token and token_file are both given: one of them says who comes")
+            raise Error("token and token_file are both given: use one of them")
         return token
     if token_file is None:
         return os.environ.get("EVOD_TOKEN", "")
     try:
         with open(token_file, encoding="utf-8") as file:
             if os.fstat(file.fileno()).st_mode & 0o077:
-                raise Error(f"token_file: {os.fspath(token_file)}: others can read it: chmod 600 it")
+                raise Error(f"token_file: {os.fspath(token_file)}: other users can read it: chmod 600 it")
             words = file.read(4096).split()
     except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "it is not text"
+        why = error.strerror if isinstance(error, OSError) else "the file is not text"
         raise Error(f"token_file: {os.fspath(token_file)}: {why}") from None
     if not words:
-        raise Error(f"token_file: {os.fspath(token_file)}: there is no token in it")
+        raise Error(f"token_file: {os.fspath(token_file)}: the file contains no token")
     return words[0]
 
 
 def tls_context(
     tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None, key: str | os.PathLike[str] | None
 ) -> ssl.SSLContext | None:
-    """None: in the clear. TLS with `tls`, and wherever a file is named.
+    """The TLS settings; None without TLS. TLS is used with `tls`, and whenever one of the files is given.
 
-    ca         PEM file of who vouches for the server; else the environment's EVOD_CA, else those that the system trusts.
-    cert, key  PEM files of a certificate of ours, for servers that want one; the key may be in the same file.
+    ca         PEM file of trusted certificates; without it the environment variable EVOD_CA, or those that the system trusts.
+    cert, key  PEM files of the client certificate and its key; the key may be in the same file.
     """
     if key is not None and cert is None:
-        raise Error("key is given without cert: a key is of a certificate")
+        raise Error("key is given without cert: name the file of the certificate, too")
     ca = (os.environ.get("EVOD_CA") if ca is None else ca) or None
     if not tls and ca is None and cert is None:
         return None

@@ -1,13 +1,16 @@
-"""What goes wrong: one sentence, and every field that is at fault."""
+"""Errors: a sentence for people, a code for programs, and every field with a wrong value."""
 from __future__ import annotations
 
-from typing import Iterable, NamedTuple
+from typing import Iterable, NamedTuple, TypeVar
 
 from evod.v1 import commands_pb2
 
 
+E = TypeVar("E", bound="Error")
+
+
 class Violation(NamedTuple):
-    """What is wrong with one field of a request."""
+    """A field of a request whose value is not allowed."""
 
     field: str  #: path in the request: "set_parameters.mutation_chance"
     allowed: str  #: "0 to 1"
@@ -15,8 +18,10 @@ class Violation(NamedTuple):
 
 
 class Error(Exception):
-    """Something was refused, here or by the server; nothing has been changed.
+    """A call was refused, here or by the server; nothing was changed.
 
+    Examples
+    --------
     >>> import evod
     >>> with evod.local() as lab:
     ...     try:
@@ -28,13 +33,13 @@ class Error(Exception):
       set_parameters.survivors: got -1, allowed 0 to 1
     """
 
-    #: The server's ``evod.v1`` Code, or what it would have said; None where no server was heard.
+    #: ``evod.v1.Code``, of the server or as the server would have answered; None if no server was involved.
     code: int | None
-    #: The server's ``evod.v1`` Reason: which documented situation it was; 0 where none was given.
+    #: ``evod.v1.Reason``: which documented case of the code it is; 0 if none was given.
     reason: int = 0
-    #: One sentence.
+    #: One sentence, without code and violations.
     message: str
-    #: Every field that is at fault, not only the first.
+    #: Every field whose value is not allowed, not only the first.
     violations: tuple[Violation, ...]
 
     def __init__(self, message: str, code: int | None = None, violations: Iterable[Violation] = ()) -> None:
@@ -43,7 +48,7 @@ class Error(Exception):
 
     @property
     def code_name(self) -> str:
-        """ "INVALID_ARGUMENT", "NOT_FOUND", …; empty where no server was heard."""
+        """The name of `code`: "INVALID_ARGUMENT", "NOT_FOUND", …; "" if there is none."""
         if self.code is None:
             return ""
         try:
@@ -57,24 +62,34 @@ class Error(Exception):
 
 
 class NoConnection(Error):
-    """There is no server there, it does not want us, or the line broke and did not come back in time."""
+    """There is no server, it refuses this client, or the connection was lost and not restored within the timeout."""
 
 
 class Timeout(Error):
-    """No answer came in time. A command may have been done all the same."""
+    """No answer came within the timeout. A command may have been applied all the same."""
 
 
 class DamagedData(Error):
-    """What came is no evod's, or was damaged on the way."""
+    """The data is not evod's, or was damaged: bytes from a connection, or a run file."""
 
 
 def refusal(status: commands_pb2.Status) -> Error:
-    """The error that a status which is not OK tells of."""
+    """The error for a response whose status is not OK."""
     error = Error(status.message, status.code, (Violation(v.field, v.allowed, v.got) for v in status.violations))
     error.reason = status.reason
     return error
 
 
+def copy_of(error: E) -> E:
+    """A new exception with the same content.
+
+    Each caller gets its own: the traceback of the first holds the frames of the task that keeps the connection.
+    """
+    copy = type(error)(error.message, error.code, error.violations)
+    copy.reason = error.reason
+    return copy
+
+
 def wrong_argument(field: str, allowed: str, got: object, message: str = "the request is wrong") -> Error:
-    """An error that the server would tell, too."""
+    """The error that the server, too, would answer to this value of a field."""
     return Error(message, commands_pb2.CODE_INVALID_ARGUMENT, [Violation(field, allowed, str(got))])

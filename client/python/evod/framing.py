@@ -1,4 +1,4 @@
-"""Bytes to frames and back: an 8-byte header and a body (docs/PROTOCOL.md, Frames)."""
+"""Wire frames: an 8-byte header and a body (docs/PROTOCOL.md, Frames)."""
 from __future__ import annotations
 
 import struct
@@ -7,32 +7,33 @@ from typing import Iterator
 from evod.errors import DamagedData
 
 CONTROL, STREAM = 1, 2
-BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # what a client takes
+BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # as clients accept them
 HEADER_BYTES = 8
 
 _header = struct.Struct("<2sBBI")
 
 
 def encode(body: bytes) -> bytes:
-    """A control frame."""
+    """Returns a control frame with this body."""
     return _header.pack(b"EV", 1, CONTROL, len(body)) + body
 
 
 class FrameReader:
-    """Puts frames together from bytes as they come."""
+    """Splits a stream of bytes into frames."""
 
     def __init__(self) -> None:
         self._data = bytearray()
-        self._offset = 0  # what comes before has been taken
+        self._offset = 0  # of the first byte that belongs to no returned frame
 
     def feed(self, data: bytes | bytearray | memoryview) -> None:
+        """Appends bytes in the order in which they arrived."""
         if self._offset:
             del self._data[: self._offset]
             self._offset = 0
         self._data += data
 
     def frames(self) -> Iterator[tuple[int, bytes]]:
-        """(channel, body) of each that is whole. DamagedData: there is no telling where the next one begins."""
+        """Yields (channel, body) of each complete frame. After DamagedData the stream cannot be read any further."""
         while len(self._data) - self._offset >= HEADER_BYTES:
             magic, version, channel, length = _header.unpack_from(self._data, self._offset)
             if magic != b"EV":

@@ -1,4 +1,4 @@
-"""What one generation came to."""
+"""The results of a generation, and the population of the current one."""
 from __future__ import annotations
 
 import dataclasses
@@ -14,14 +14,18 @@ ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 def account_part(gene: world_pb2.GeneStatistics, part: str) -> float:
-    """One of ACCOUNT_PARTS; nan where there is no account."""
+    """The part of the gene's change named by ACCOUNT_PARTS; nan where the server sent none."""
     return float(getattr(gene.account, part)) if gene.HasField("account") else numpy.nan
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Generation:
-    """What one generation came to on all islands together.
+    """The results of one generation over all islands.
 
+    Means over islands are weighted by their number of organisms.
+
+    Examples
+    --------
     >>> import evod
     >>> with evod.local(seed=42) as lab:
     ...     for g in lab.world().run(generations=2):
@@ -31,20 +35,21 @@ class Generation:
     """
 
     number: int  #: 1 for the first
-    islands: tuple[world_pb2.GenerationStatistics, ...]  #: the same of each island, and more
+    islands: tuple[world_pb2.GenerationStatistics, ...]  #: all statistics of each island, in index order
 
     @property
     def end_tick(self) -> int:
-        """Ticks since the run began, when it had ended."""
+        """The tick at which it ended, counted from the beginning of the run."""
         return self.islands[0].end_tick
 
     @property
     def organism_count(self) -> int:
+        """How many organisms it had."""
         return sum(island.organism_count for island in self.islands)
 
     @property
     def alive_count(self) -> int:
-        """Alive at the end."""
+        """How many of them were alive at its end."""
         return sum(island.alive_count for island in self.islands)
 
     @property
@@ -59,25 +64,29 @@ class Generation:
 
     @property
     def worst(self) -> float:
+        """The least fitness."""
         return min(island.fitness_worst for island in self.islands)
 
     @property
     def diversity(self) -> float:
-        """Mean over genes of the deviation divided by the width of the gene's bounds; mean over islands."""
+        """Standard deviation of a gene divided by the width of its bounds; mean over genes and islands; 0 to 1."""
         return self._mean([island.diversity for island in self.islands])
 
     @property
     def genes(self) -> numpy.typing.NDArray[Any]:
-        """The mean of each gene, in the order of WorldInfo.gene_names."""
+        """The mean of each gene, shape (6,), in the order of `evod.GENE_NAMES`."""
         means = numpy.array([[gene.mean for gene in island.genes] for island in self.islands])
         return numpy.asarray(numpy.average(means, axis=0, weights=self._weights()))
 
     @property
     def selection(self) -> numpy.typing.NDArray[Any]:
-        """How far selection moved the mean of each gene since the generation before: those with other genes than the mean
-        had more descendants, or fewer. Gene units, in the order of WorldInfo.gene_names; nan in the first generation, and
-        where nobody knows. With transmission and migration it is the change.
+        """The part of `change` due to selection: organisms with some genes had more descendants than others.
 
+        Shape (6,), in gene units, in the order of `evod.GENE_NAMES`; nan in the first generation, and in runs stored by
+        versions that did not record it. selection + transmission + migration = change (docs/MODEL.md).
+
+        Examples
+        --------
         >>> import evod
         >>> with evod.local(seed=42) as lab:
         ...     first, second = lab.world().run(generations=2)
@@ -86,25 +95,25 @@ class Generation:
         >>> numpy.allclose(second.selection + second.transmission + second.migration, second.genes - first.genes)
         True
         """
-        return self._moved("selection")
+        return self._mean_part("selection")
 
     @property
     def transmission(self) -> numpy.typing.NDArray[Any]:
-        """How far it moved because descendants are not as their parents: crossover, mutation, bounds."""
-        return self._moved("transmission")
+        """The part of `change` due to differences between parents and descendants: crossover, mutation, bounds."""
+        return self._mean_part("transmission")
 
     @property
     def migration(self) -> numpy.typing.NDArray[Any]:
-        """How far migrants moved it."""
-        return self._moved("migration")
+        """The part of `change` due to migrants between islands."""
+        return self._mean_part("migration")
 
     @property
     def change(self) -> numpy.typing.NDArray[Any]:
-        """How far the mean of each gene is from that of the generation before."""
-        return self._moved("change")
+        """The mean of each gene minus that of the generation before; shape (6,), nan in the first generation."""
+        return self._mean_part("change")
 
-    def _moved(self, by: str) -> numpy.typing.NDArray[Any]:
-        parts = [[account_part(gene, by) for gene in island.genes] for island in self.islands]
+    def _mean_part(self, name: str) -> numpy.typing.NDArray[Any]:
+        parts = [[account_part(gene, name) for gene in island.genes] for island in self.islands]
         return numpy.asarray(numpy.average(numpy.array(parts), axis=0, weights=self._weights()))
 
     def _weights(self) -> list[int]:
@@ -124,7 +133,7 @@ class Generation:
 
 
 def generations_of(rows: Sequence[world_pb2.GenerationStatistics]) -> list[Generation]:
-    """Rows ordered by generation and island."""
+    """Groups rows that are ordered by generation and island."""
     by_number: dict[int, list[world_pb2.GenerationStatistics]] = {}
     for row in rows:
         by_number.setdefault(row.generation, []).append(row)
@@ -133,23 +142,23 @@ def generations_of(rows: Sequence[world_pb2.GenerationStatistics]) -> list[Gener
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Population:
-    """The organisms of the generation that runs on one island, alive and dead; row i is the organism with the id i."""
+    """The organisms of the current generation on one island, alive and dead; row i is the organism with the id i."""
 
     generation: int
-    generation_tick: int
-    genes: numpy.typing.NDArray[numpy.float32]  #: shape (count, 6), in the order of WorldInfo.gene_names
-    parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids in the generation before; (0, 2) in the first
-    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count), or (0) where nobody knows
-    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count): evod.v1's Choice, what each is about to do
-    forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): what it is about to push with, kg px/s2
-    targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): px
+    generation_tick: int  #: ticks since the generation began
+    genes: numpy.typing.NDArray[numpy.float32]  #: shape (count, 6), in the order of evod.GENE_NAMES
+    parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids in the generation before; (0, 2) in the first generation
+    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): family of each, by its first ancestor; (0,) if unknown
+    choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.v1.Choice, what each is about to do
+    forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the force that each is about to exert, kg px/s²
+    targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the position that each is heading for, px
 
     def __len__(self) -> int:
         return len(self.genes)
 
 
 def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
-    """Parts of one population, one after another."""
+    """Joins the consecutive parts of one population."""
 
     def rows(field: str, kind: str, columns: int) -> Any:
         whole = [

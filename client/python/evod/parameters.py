@@ -1,4 +1,4 @@
-"""Parameters: what the registry tells of each, and what a world has set; checked here before anything is sent."""
+"""Parameters: their descriptions in the registry, their values in a world, and the checks before a value is sent."""
 from __future__ import annotations
 
 import dataclasses
@@ -29,21 +29,21 @@ _EFFECTS = {
 
 @dataclasses.dataclass(frozen=True)
 class Description:
-    """What the registry tells of a parameter."""
+    """The description of a parameter."""
 
     name: str
     kind: str  #: "real", "count", "flag" or "choice"
-    unit: str  #: "px", "s", "chance"; empty for none
-    min: float  #: least and greatest value allowed; real and count
-    max: float
-    choices: tuple[str, ...]  #: choice: what it may be
+    unit: str  #: "px", "s", "chance", …; "" for none
+    min: float  #: kinds "real" and "count": the least value allowed
+    max: float  #: and the greatest
+    choices: tuple[str, ...]  #: kind "choice": the values allowed
     default: Value
-    effect: str  #: when a change begins to hold: "next tick", "next generation" or "reset"
+    effect: str  #: when a change takes effect: "next tick", "next generation" or "reset"
     help: str  #: one sentence
 
     @property
     def allowed(self) -> str:
-        """ "0 to 1", "a whole number, 1 to 4096", "true or false", "ring, none"."""
+        """The values allowed, in words: "0 to 1", "a whole number, 1 to 4096", "true or false", "ring, none"."""
         if self.kind == "real":
             return f"{number_text(self.min)} to {number_text(self.max)}"
         if self.kind == "count":
@@ -51,13 +51,13 @@ class Description:
         return "true or false" if self.kind == "flag" else ", ".join(self.choices)
 
     def got(self, value: object) -> str:
-        """A value that is not allowed: as the server writes it if it is of the right kind, otherwise as Python does."""
+        """A refused value in words: as the server writes it if the type is right, otherwise as Python does."""
         kinds = {"real": (int, float, numpy.number), "count": (int, numpy.integer), "choice": (str,)}
         right_kind = isinstance(value, kinds.get(self.kind, ())) and not isinstance(value, (bool, numpy.bool_))
         return text_of(value) if right_kind else repr(value)
 
     def message(self, value: object) -> world_pb2.ParameterValue | None:
-        """The value as it is sent; None if it is not allowed."""
+        """The message to send for a value; None if the value is not allowed."""
         if self.kind == "choice":
             return world_pb2.ParameterValue(choice=value) if isinstance(value, str) and value in self.choices else None
         is_flag = isinstance(value, (bool, numpy.bool_))
@@ -77,39 +77,41 @@ class Description:
 
 @dataclasses.dataclass(frozen=True)
 class Parameter(Description):
-    """A parameter of a world."""
+    """A parameter of a world: its description and its value."""
 
-    value: Value  #: what holds now
-    pending: Value | None  #: what will hold from the next generation or reset; None if that is `value`
+    value: Value  #: the current value
+    pending: Value | None  #: the value from the next generation or reset on; None if it does not change
 
 
 @dataclasses.dataclass(frozen=True)
 class Actor:
-    """Who, or what, caused something. Viewers are told kind and user only."""
+    """The cause of an event or a command. Clients with the role viewer receive kind and user only."""
 
     kind: str  #: "client", "schedule", "goal" or "server"
-    user: str  #: to whom the client's token was given; empty: the client has none
-    client: str  #: the program
+    user: str  #: the user of the client's token; "" without a token
+    client: str  #: the name of the client program
     address: str  #: "127.0.0.1:51234"
 
     @classmethod
     def of(cls, message: world_pb2.Actor) -> Actor:
+        """Reads the message of the protocol."""
         kind = world_pb2.ActorKind.Name(message.kind).removeprefix("ACTOR_KIND_").lower()
         return cls(kind=kind, user=message.user, client=message.client, address=message.address)
 
 
 @dataclasses.dataclass(frozen=True)
 class PlannedChange:
-    """A change of parameters that waits for its moment. There it is looked at anew: it is made, all of it, or dropped."""
+    """A planned change of parameters. When it is due the server checks it again, and makes all of it or drops it."""
 
-    id: int  #: 0: it was only asked whether it would be accepted
-    generation: int | None  #: from its first tick on
-    tick: int | None  #: right after this tick since the run began
-    values: Mapping[str, Value]
-    by: Actor  #: who planned it
+    id: int  #: 0 for a dry run
+    generation: int | None  #: due at the first tick of this generation; or None
+    tick: int | None  #: due after this tick of the run; or None
+    values: Mapping[str, Value]  #: by parameter name
+    by: Actor  #: the client that planned it
 
     @classmethod
     def of(cls, message: world_pb2.PlannedChange) -> PlannedChange:
+        """Reads the message of the protocol."""
         return cls(
             id=message.id,
             generation=message.generation if message.HasField("generation") else None,
@@ -120,8 +122,10 @@ class PlannedChange:
 
 
 class Registry(Mapping[str, Description]):
-    """Every parameter there is, by name.
+    """The descriptions of all parameters, by name.
 
+    Examples
+    --------
     >>> import evod
     >>> with evod.local() as lab:
     ...     registry = lab.registry()
@@ -134,6 +138,7 @@ class Registry(Mapping[str, Description]):
 
     @classmethod
     def of(cls, message: commands_pb2.Description) -> Registry:
+        """Reads the message of the protocol."""
         return cls({parameter.name: _description(parameter) for parameter in message.parameters})
 
     def __getitem__(self, name: str) -> Description:
@@ -146,12 +151,15 @@ class Registry(Mapping[str, Description]):
         return len(self._descriptions)
 
     def assignments(self, values: Mapping[str, object], field_prefix: str) -> list[world_pb2.ParameterAssignment]:
-        """The values as they are sent. Error: every one that is not allowed, as the server would tell."""
+        """The messages to send for values by name.
+
+        Raises Error with every value that is not allowed, in the words of the server.
+        """
         made, violations = [], []
         for name, value in values.items():
             description = self._descriptions.get(name)
             if description is None:
-                violations.append(Violation(field_prefix + name, self._instead_of(name), "an unknown name"))
+                violations.append(Violation(field_prefix + name, self._allowed_instead_of(name), "an unknown name"))
             elif (message := description.message(value)) is None:
                 violations.append(Violation(field_prefix + name, description.allowed, description.got(value)))
             else:
@@ -165,7 +173,10 @@ class Registry(Mapping[str, Description]):
     def planned(
         self, values: Mapping[str, object], field_prefix: str
     ) -> tuple[list[world_pb2.ParameterAssignment], list[world_pb2.ScheduledValue]]:
-        """Values, or values by generation, as they are sent: those of generation 1, and those of later ones."""
+        """The messages to send for values, or schedules of values by generation, by name.
+
+        Returns those of generation 1 and those of later generations. Raises Error with every value that is not allowed.
+        """
         first: dict[str, object] = {}
         later, violations = [], []
         for name, value in values.items():
@@ -174,7 +185,7 @@ class Registry(Mapping[str, Description]):
                 continue
             description = self._descriptions[name]
             if description.effect == "reset":
-                allowed = "one value, as it can only change when a world is reset"
+                allowed = "one value: it can change only at a reset"
                 violations.append(Violation(field_prefix + name, allowed, repr(value)))
                 continue
             for generation, of_generation in value.items():
@@ -199,7 +210,7 @@ class Registry(Mapping[str, Description]):
             raise Error("some parameters cannot have these values", commands_pb2.CODE_INVALID_ARGUMENT, violations)
         return assignments, later
 
-    def _instead_of(self, name: str) -> str:
+    def _allowed_instead_of(self, name: str) -> str:
         similar = difflib.get_close_matches(name, self._descriptions, n=3)
         return "a parameter of the registry" + (f"; did you mean {', '.join(similar)}" if similar else "")
 
@@ -207,14 +218,16 @@ class Registry(Mapping[str, Description]):
         return f"<registry of {len(self)} parameters>"
 
     def _repr_html_(self) -> str:
-        return _table_html(("name", "default", "allowed", "unit", "holds from", "meaning"), (
+        return _table_html(("name", "default", "allowed", "unit", "takes effect", "meaning"), (
             (d.name, text_of(d.default), d.allowed, d.unit, d.effect, d.help) for d in self.values()
         ))
 
 
 class Parameters(Mapping[str, Parameter]):
-    """What a world's parameters were at a moment: values as attributes, all there is to tell of one by its name.
+    """The parameters of a world at one moment: values as attributes, `Parameter` objects by name.
 
+    Examples
+    --------
     >>> import evod
     >>> with evod.local() as lab:
     ...     parameters = lab.world().get_parameters()
@@ -238,24 +251,28 @@ class Parameters(Mapping[str, Parameter]):
 
     @property
     def schedule(self) -> Mapping[int, Mapping[str, Value]]:
-        """What the experiment plans for generations to come: from the first tick of each, what will hold.
+        """The experiment's schedule: for each later generation the values that take effect at its first tick.
 
-        Only get_parameters() tells it."""
+        Only the result of get_parameters() contains it.
+        """
         return self._schedule
 
     @property
     def planned(self) -> tuple[PlannedChange, ...]:
-        """What waits, in order of ids; only get_parameters() tells it, and what has planned something."""
+        """The planned changes that are not due yet, in order of ids.
+
+        Only the results of get_parameters(), and of set() with at_generation or at_tick, contain them.
+        """
         return self._planned
 
     @property
     def change(self) -> PlannedChange | None:
-        """What World.set() with at_generation or at_tick has planned."""
+        """The change planned by this call of World.set(); None without at_generation and at_tick."""
         return self._change
 
     @property
     def revision(self) -> int:
-        """Rises with every accepted change."""
+        """A number that increases with every accepted change."""
         return self._revision
 
     def __getitem__(self, name: str) -> Parameter:
@@ -276,7 +293,7 @@ class Parameters(Mapping[str, Parameter]):
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._states:
-            raise AttributeError(_no_such(name, self._states))
+            raise AttributeError(_unknown_name(name, self._states))
         return value_of(self._states[name].value)
 
     def __dir__(self) -> list[str]:
@@ -286,13 +303,14 @@ class Parameters(Mapping[str, Parameter]):
         return f"<{len(self)} parameters, revision {self.revision}>"
 
     def _repr_html_(self) -> str:
-        return _table_html(("name", "value", "pending", "allowed", "unit", "holds from", "meaning"), (
+        return _table_html(("name", "value", "pending", "allowed", "unit", "takes effect", "meaning"), (
             (p.name, text_of(p.value), "" if p.pending is None else text_of(p.pending), p.allowed, p.unit, p.effect, p.help)
             for p in self.values()
         ))
 
 
 def value_of(message: world_pb2.ParameterValue) -> Value:
+    """The value in a message."""
     value: Value = getattr(message, message.WhichOneof("kind") or "real")
     return value
 
@@ -307,7 +325,7 @@ def text_of(value: object) -> str:
 
 
 def number_text(number: float) -> str:
-    """With the fewest digits that read back the same.
+    """A number in the fewest digits that give the same number when read again.
 
     >>> number_text(1.0), number_text(0.001), number_text(5e5)
     ('1', '0.001', '5e+05')
@@ -333,7 +351,7 @@ def _description(message: world_pb2.ParameterDescription) -> Description:
     )
 
 
-def _no_such(name: str, known: Mapping[str, object]) -> str:
+def _unknown_name(name: str, known: Mapping[str, object]) -> str:
     similar = difflib.get_close_matches(name, known, n=3)
     return f"there is no parameter '{name}'" + (f"; did you mean {', '.join(similar)}" if similar else "")
 

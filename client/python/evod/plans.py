@@ -1,7 +1,7 @@
-"""Plans: everything a client does that takes more than one step, written once for both faces.
+"""Plans: the operations of a client that take several requests, without any I/O.
 
-A plan is a generator. It yields what has to happen next, a request that is to be answered or a condition that is to come
-true, and gets the response; whoever carries it out sends, receives and waits in its own way (link.py, aio/link.py).
+A plan is a generator. It yields a request and receives the response, or it yields Until and is resumed once the condition
+holds; its return value is the result of the operation. Link.perform() (aio/link.py) carries it out.
 """
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy
 import numpy.typing
 
 from evod import picture_decoder
-from evod.core import PICTURES_AHEAD, Core, Subscription
+from evod.core import UNACKNOWLEDGED_MAX, Core, Subscription
 from evod.errors import DamagedData, Error, Violation, refusal, wrong_argument
 from evod.generations import Generation, Population, generations_of, population_of
 from evod.parameters import Parameters, PlannedChange, Registry
@@ -27,10 +27,10 @@ M = TypeVar("M", bound=google.protobuf.message.Message)
 
 @dataclasses.dataclass(frozen=True)
 class Until:
-    """Wait until it holds. in_time: within the time an answer may take; otherwise for as long as there is a server."""
+    """Wait until the condition holds: for at most the timeout of an answer, or as long as the server can be reached."""
 
-    holds: Callable[[], object]
-    in_time: bool = False
+    condition: Callable[[], object]
+    within_timeout: bool = False
 
 
 Step = Union[c.Request, Until]
@@ -56,56 +56,57 @@ FORMATS = {"csv": c.TEXT_FORMAT_CSV, "jsonl": c.TEXT_FORMAT_JSON_LINES}
 DETAILS = {"full": stream_pb2.DETAIL_FULL, "dots": stream_pb2.DETAIL_DOTS, "density": stream_pb2.DETAIL_DENSITY}
 
 
-def answer_to(request: c.Request) -> Plan[c.Response]:
-    """Error: it was refused."""
-    response: c.Response = yield request
+def execute(message: c.Request) -> Plan[c.Response]:
+    """Sends a request. Raises Error if the server refuses it."""
+    response: c.Response = yield message
     if response.status.code != c.CODE_UNSPECIFIED:
         raise refusal(response.status)
     return response
 
 
-def ask(kind: str, /, **fields: Any) -> Plan[c.Response]:
-    """A request by its name in the protocol. Error: a field cannot have such a value, or it was refused."""
-    message = made(type(getattr(c.Request(), kind)), f"{kind}.", **fields)
-    return (yield from answer_to(c.Request(**{kind: message})))
+def request(kind: str, /, **fields: Any) -> Plan[c.Response]:
+    """Sends a request by its field in evod.v1.Request. Raises Error for values of a wrong type, or if the server refuses."""
+    message = build(type(getattr(c.Request(), kind)), f"{kind}.", **fields)
+    return (yield from execute(c.Request(**{kind: message})))
 
 
-def ask_for_world(kind: str, /, **fields: Any) -> Plan[world_pb2.WorldInfo]:
-    return (yield from ask(kind, **fields)).world
+def request_world(kind: str, /, **fields: Any) -> Plan[world_pb2.WorldInfo]:
+    """The same for requests that the server answers with the state of a world."""
+    return (yield from request(kind, **fields)).world
 
 
-class Desk:
-    """What the plans of one connection share."""
+class LabPlans:
+    """The plans that need the core, the parameter registry or the speed of new worlds; one object for each connection."""
 
     def __init__(self, core: Core) -> None:
         self.core = core
         self._registry: Registry | None = None
-        self._registry_of = ""  # the server's instance_id
-        self.speed_of_new_worlds: float | str | None = None  # of those created without one; None: that of the clock
+        self._registry_instance = ""  # instance_id of the server that sent it
+        self.speed_of_new_worlds: float | str | None = None  # None: real time
 
     # ---- the server -------------------------------------------------------------------------------------------------
 
     def registry(self) -> Plan[Registry]:
         instance = self.core.welcome.instance_id if self.core.welcome else ""
-        if self._registry is None or self._registry_of != instance:
-            description = (yield from ask("describe")).description
-            self._registry, self._registry_of = Registry.of(description), instance
+        if self._registry is None or self._registry_instance != instance:
+            description = (yield from request("describe")).description
+            self._registry, self._registry_instance = Registry.of(description), instance
         return self._registry
 
-    def name_of(self, name: str | None) -> Plan[str]:
-        """Of the world that a request without a name would mean."""
+    def world_name(self, name: str | None) -> Plan[str]:
+        """Checks a name; without one returns the world that a request without a name is for."""
         known = [info.name for info in (yield from worlds())]
         if name is None:
             name = known[0] if len(known) == 1 else "default"
         if name not in known:
-            raise Error(f"there is no world '{name}': there are {', '.join(known) or 'none'}", c.CODE_NOT_FOUND)
+            raise Error(f"there is no world '{name}'; the worlds are: {', '.join(known) or 'none'}", c.CODE_NOT_FOUND)
         return name
 
     # ---- parameters -------------------------------------------------------------------------------------------------
 
     def parameters(self, world: str) -> Plan[Parameters]:
         registry = yield from self.registry()
-        return Parameters(registry, (yield from ask("get_parameters", world=world)).parameters)
+        return Parameters(registry, (yield from request("get_parameters", world=world)).parameters)
 
     def set_parameters(
         self,
@@ -119,7 +120,7 @@ class Desk:
         registry = yield from self.registry()
         if at_generation is not None or at_tick is not None:
             self._need_planned_changes()
-        response = yield from ask(
+        response = yield from request(
             "set_parameters",
             world=world,
             parameters=registry.assignments(values, "set_parameters."),
@@ -131,20 +132,20 @@ class Desk:
         if not response.HasField("planned_change"):
             return Parameters(registry, response.parameters)
         change = PlannedChange.of(response.planned_change)
-        return Parameters(registry, (yield from ask("get_parameters", world=world)).parameters, change)
+        return Parameters(registry, (yield from request("get_parameters", world=world)).parameters, change)
 
     def cancel_change(self, world: str, change: int | PlannedChange) -> Plan[PlannedChange]:
         yield from self.registry()
         self._need_planned_changes()
         identity = change.id if isinstance(change, PlannedChange) else change
-        response = yield from ask("cancel_change", world=world, id=identity)
+        response = yield from request("cancel_change", world=world, id=identity)
         return PlannedChange.of(response.planned_change)
 
     def _need_planned_changes(self) -> None:
-        """An older server would make them at once, or not at all."""
+        """A server without the feature would ignore at_generation and change the parameters at once."""
         welcome = self.core.welcome
         if welcome is not None and "planned_changes" not in welcome.features:
-            raise Error(f"the server, evod {welcome.server_version}, cannot plan changes", c.CODE_UNIMPLEMENTED)
+            raise Error(f"the server, evod {welcome.server_version}, does not support planned changes: update it", c.CODE_UNIMPLEMENTED)
 
     def create_world(
         self,
@@ -155,12 +156,12 @@ class Desk:
         speed: float | str | None,
     ) -> Plan[str]:
         speed = self.speed_of_new_worlds if speed is None else speed
-        pace = None if speed is None else speed_of(speed)
+        requested = None if speed is None else speed_message(speed)
         registry = yield from self.registry()
         first, later = registry.planned(parameters, "create_world.")
         if later:
             self._need_planned_changes()
-        info = yield from ask_for_world(
+        info = yield from request_world(
             "create_world",
             name=name,
             parameters=first,
@@ -169,11 +170,11 @@ class Desk:
             population=[c.IslandPopulation(genes=numpy.asarray(genes, "<f4").ravel()) for genes in population or ()],
         )
         world = info.name
-        if pace is not None:
-            yield from ask("set_speed", world=world, speed=pace)
+        if requested is not None:
+            yield from request("set_speed", world=world, speed=requested)
         return world
 
-    # ---- what goes on -----------------------------------------------------------------------------------------------
+    # ---- subscriptions ----------------------------------------------------------------------------------------------
 
     def subscribe_events(self, world: str | None) -> Plan[Subscription]:
         request = c.Request(subscribe_events=c.SubscribeEvents(world=world))
@@ -182,7 +183,7 @@ class Desk:
     def subscribe_snapshots(
         self, world: str, island: int | None, rate_hz: float, view: c.View | None
     ) -> Plan[Subscription]:
-        snapshots = made(
+        snapshots = build(
             c.SubscribeSnapshots,
             "subscribe_snapshots.",
             world=world,
@@ -190,14 +191,14 @@ class Desk:
             rate_hz=rate_hz,
             codec=stream_pb2.CODEC_DELTA,
             compression=stream_pb2.COMPRESSION_ZSTD if picture_decoder.can_unpack else stream_pb2.COMPRESSION_NONE,
-            unacknowledged_max=PICTURES_AHEAD,
+            unacknowledged_max=UNACKNOWLEDGED_MAX,
             view=view,
         )
         return (yield from self._subscribe(c.Request(subscribe_snapshots=snapshots)))
 
     def _subscribe(self, request: c.Request) -> Plan[Subscription]:
         subscription = self.core.subscribe(request)
-        yield Until(lambda: subscription.sessions or subscription.refused, in_time=True)
+        yield Until(lambda: subscription.sessions or subscription.refused, within_timeout=True)
         if subscription.refused:
             self.core.unsubscribe(subscription)
             raise subscription.refused
@@ -206,9 +207,9 @@ class Desk:
     def run(self, world: str, generations: int | None) -> Plan[GenerationStream]:
         stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
         try:
-            # A world that waits stands at the end of a generation, which has been told before.
-            last = (yield from ask("get_statistics", world=world)).statistics.last
-            info = yield from ask_for_world("run", world=world, generations=generations)
+            # A waiting world is at the end of a generation whose event was sent earlier: begin with the next one.
+            last = (yield from request("get_statistics", world=world)).statistics.last
+            info = yield from request_world("run", world=world, generations=generations)
         except BaseException:
             stream.close()
             raise
@@ -216,11 +217,11 @@ class Desk:
         return stream
 
     def wait(self, world: str) -> Plan[world_pb2.WorldInfo]:
-        """Until it does not run."""
+        """Waits until the world no longer runs."""
         subscription = yield from self.subscribe_events(world)
         try:
             while True:
-                info = yield from info_of(world)
+                info = yield from world_info(world)
                 if info.state != world_pb2.RUN_STATE_RUNNING:
                     return info
                 changed = False
@@ -231,9 +232,9 @@ class Desk:
             self.core.unsubscribe(subscription)
 
     def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
-        ticks = made(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
-        tick = (yield from info_of(world)).tick + ticks
-        yield from ask("run_until_tick", world=world, tick=tick)
+        ticks = build(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
+        tick = (yield from world_info(world)).tick + ticks
+        yield from request("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
     def snapshot(self, world: str, island: int) -> Plan[Snapshot]:
@@ -244,11 +245,11 @@ class Desk:
             stream.close()
 
 
-# ---- one after another ------------------------------------------------------------------------------------------------
+# ---- streams ----------------------------------------------------------------------------------------------------------
 
 
 class EventStream:
-    """Events as they happen."""
+    """Events as they arrive."""
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
@@ -261,11 +262,11 @@ class EventStream:
 
 
 class SnapshotStream:
-    """Pictures as they come; the next one is let come by taking it."""
+    """Snapshots as they arrive. Taking one acknowledges the one before."""
 
     def __init__(self, core: Core, subscription: Subscription) -> None:
         self._core, self._subscription = core, subscription
-        self._taken: tuple[int, Snapshot] | None = None  # and in which session
+        self._taken: tuple[int, Snapshot] | None = None  # session number and snapshot
 
     def next(self) -> Plan[Snapshot]:
         subscription = self._subscription
@@ -276,19 +277,19 @@ class SnapshotStream:
                 self._core.acknowledge(subscription, taken)
         yield Until(lambda: subscription.arrived or subscription.refused)
         if not subscription.arrived:
-            raise subscription.refused or DamagedData("no picture came")
+            raise subscription.refused or DamagedData("no snapshot came")
         snapshot: Snapshot = subscription.arrived.popleft()
         self._taken = subscription.sessions, snapshot
         return snapshot
 
     def set_view(self, view: c.View) -> Plan[None]:
         subscription_id = yield from self._server_id()
-        yield from ask("set_view", subscription_id=subscription_id, view=view)
-        # Only once the server has accepted it: it is asked for again in each new session.
+        yield from request("set_view", subscription_id=subscription_id, view=view)
+        # Kept for the next sessions, but only once the server has accepted it.
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
 
     def _server_id(self) -> Plan[int]:
-        """The subscription's id in this session, once there is one."""
+        """Waits for the id of the subscription in this session."""
         subscription = self._subscription
         yield Until(lambda: subscription.server_id is not None or subscription.refused)
         if subscription.server_id is None:
@@ -301,22 +302,25 @@ class SnapshotStream:
 
     def request_keyframe(self) -> Plan[None]:
         subscription_id = yield from self._server_id()
-        yield from ask("request_keyframe", subscription_id=subscription_id)
+        yield from request("request_keyframe", subscription_id=subscription_id)
 
     def close(self) -> None:
         self._core.unsubscribe(self._subscription)
 
 
 class GenerationStream:
-    """The generations of a run as they end, each once, also those that ended while there was no line."""
+    """The generations of a run as they end, each once.
+
+    Events report them. Where events were dropped, or missed while reconnecting, the history fills the gap.
+    """
 
     def __init__(self, core: Core, world: str, subscription: Subscription) -> None:
         self._core, self._world, self._subscription = core, world, subscription
-        self.info = world_pb2.WorldInfo()  # as it was told to run
-        self._next = 0  # generation to tell of
-        self._goal: int | None = None  # the first one not to tell of
-        self._ready: list[Generation] = []  # that come before what events tell
-        self._began = False  # the event of our own command was there: what is told from now on came of it
+        self.info = world_pb2.WorldInfo()  # when the run began
+        self._next = 0  # number of the next generation to return
+        self._goal: int | None = None  # the first generation beyond the run
+        self._ready: list[Generation] = []  # to return before those of later events
+        self._began = False  # the event of our own command has arrived; later events are consequences of it
         self._over = False
 
     def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
@@ -324,7 +328,7 @@ class GenerationStream:
         self._goal = _goal_of(info)
 
     def next(self) -> Plan[Generation | None]:
-        """None: the run is over."""
+        """Waits for the next generation; None after the last."""
         while True:
             if self._ready:
                 generation = self._ready.pop(0)
@@ -338,7 +342,7 @@ class GenerationStream:
     def _take(self, event: stream_pb2.Event) -> Plan[None]:
         kind = event.WhichOneof("kind")
         if kind == "events_dropped":
-            yield from self._look()
+            yield from self._catch_up()
         elif event.run_id != self.info.run_id:
             if kind in ("world_reset", "world_deleted") and self._began:
                 raise self._gone(kind.removeprefix("world_"))
@@ -356,15 +360,15 @@ class GenerationStream:
                 if self._over:
                     yield from self._fill()
         elif kind == "run_terminated":
-            yield from self._look()
+            yield from self._catch_up()
             self._over = True
         elif kind in ("world_reset", "world_deleted"):
             raise self._gone(kind.removeprefix("world_"))
 
-    def _look(self) -> Plan[None]:
-        """Some events are not there: how does it stand?"""
+    def _catch_up(self) -> Plan[None]:
+        """Events are missing: queries the world's state and the generations that ended."""
         try:
-            info = yield from info_of(self._world)
+            info = yield from world_info(self._world)
         except Error as error:
             raise self._gone("deleted") if error.code == c.CODE_NOT_FOUND else error
         if info.run_id != self.info.run_id:
@@ -381,7 +385,7 @@ class GenerationStream:
             self._goal = goal
 
     def _fill(self, last: int | None = None) -> Plan[None]:
-        """With what has ended, as far as the goal."""
+        """Queues the generations that have ended, up to `last` and to the goal."""
         first = max(self._next, self._ready[-1].number + 1 if self._ready else 0)
         if last is None or first <= last:
             ended = yield from history(self._world, first, last, None)
@@ -397,7 +401,7 @@ class GenerationStream:
 
 
 def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
-    yield Until(lambda: subscription.has_any or subscription.refused)
+    yield Until(lambda: subscription.has_event or subscription.refused)
     event = subscription.take_event()
     if event is None:
         raise subscription.refused or DamagedData("no event came")
@@ -410,9 +414,9 @@ def _goal_of(info: world_pb2.WorldInfo) -> int | None:
 
 def close_replay(world: str) -> Plan[None]:
     try:
-        yield from ask("close_replay", world=world)
+        yield from request("close_replay", world=world)
     except Error as error:
-        if error.code != c.CODE_NOT_FOUND:  # gone with the session that it belonged to
+        if error.code != c.CODE_NOT_FOUND:  # the replay ended with its session
             raise
 
 
@@ -420,20 +424,20 @@ def close_replay(world: str) -> Plan[None]:
 
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
-    known: Sequence[world_pb2.WorldInfo] = (yield from ask("list_worlds")).worlds.worlds
+    known: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
     return known
 
 
-def info_of(world: str) -> Plan[world_pb2.WorldInfo]:
-    # ListWorlds does not tell of worlds that show the past.
-    return (yield from ask("get_statistics", world=world)).statistics.world
+def world_info(world: str) -> Plan[world_pb2.WorldInfo]:
+    # ListWorlds does not contain replays.
+    return (yield from request("get_statistics", world=world)).statistics.world
 
 
 def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
     rows: list[world_pb2.GenerationStatistics] = []
     while True:
-        told = yield from ask("get_history", world=world, first_generation=first, last_generation=last, island=island)
-        answer = told.history
+        response = yield from request("get_history", world=world, first_generation=first, last_generation=last, island=island)
+        answer = response.history
         rows += answer.generations
         if not answer.HasField("next_generation"):
             return generations_of(rows)
@@ -444,8 +448,8 @@ def population(world: str, island: int) -> Plan[Population]:
     parts: list[c.Population] = []
     first = 0
     while True:
-        part = (yield from ask("get_population", world=world, island=island, first_organism=first)).population
-        if parts and part.generation != parts[-1].generation:  # another one has begun meanwhile
+        part = (yield from request("get_population", world=world, island=island, first_organism=first)).population
+        if parts and part.generation != parts[-1].generation:  # the next generation has begun: start again
             parts, first = [], 0
             continue
         parts.append(part)
@@ -459,8 +463,8 @@ def export(
 ) -> Plan[str]:
     organism = None
     if of is not None:
-        organism = made(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
-    response = yield from ask(
+        organism = build(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
+    response = yield from request(
         "export_run",
         world=world,
         table=_choice("export_run.table", table, TABLES),
@@ -471,7 +475,7 @@ def export(
     part = response.export_part
     text = [part.text]
     while not part.last:
-        part = (yield from ask("continue_export", export_id=part.export_id)).export_part
+        part = (yield from request("continue_export", export_id=part.export_id)).export_part
         text.append(part.text)
     return b"".join(text).decode()
 
@@ -479,8 +483,8 @@ def export(
 # ---- arguments ----------------------------------------------------------------------------------------------------------
 
 
-def made(message: type[M], field_prefix: str, /, **fields: Any) -> M:
-    """A message of those fields; what is None is absent. Error: every field that cannot have its value."""
+def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
+    """Builds a message; fields that are None stay unset. Raises Error with every field whose value has a wrong type."""
     try:
         whole: M = message(**fields)
         return whole
@@ -495,22 +499,22 @@ def made(message: type[M], field_prefix: str, /, **fields: Any) -> M:
     raise Error("the request is wrong", c.CODE_INVALID_ARGUMENT, violations)
 
 
-def speed_of(speed: float | str) -> world_pb2.Speed:
+def speed_message(speed: float | str) -> world_pb2.Speed:
     if speed == "max":
         return world_pb2.Speed(max=True)
     if isinstance(speed, str):
         raise wrong_argument("set_speed.speed", "0.001 to 10000, or max", speed)
-    return made(world_pb2.Speed, "set_speed.speed.", real_time_factor=speed)
+    return build(world_pb2.Speed, "set_speed.speed.", real_time_factor=speed)
 
 
-def moment_of(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
-    return made(c.RunMoment, field_prefix, generation=generation, tick=tick)
+def moment_message(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
+    return build(c.RunMoment, field_prefix, generation=generation, tick=tick)
 
 
-def view_of(
+def view_message(
     region: tuple[float, float, float, float] | None, detail: str | None, bytes_per_s_max: int | None
 ) -> c.View | None:
-    """None if nothing is said."""
+    """None if no argument is given: then snapshots are not tiled."""
     if region is None and detail is None and bytes_per_s_max is None:
         return None
     part = None
@@ -518,9 +522,9 @@ def view_of(
         names = ("left_px", "top_px", "width_px", "height_px")
         if len(region) != len(names):
             raise wrong_argument("view.region", "left, top, width and height in px", region)
-        part = made(c.Region, "view.region.", **dict(zip(names, region)))
+        part = build(c.Region, "view.region.", **dict(zip(names, region)))
     wanted = None if detail is None else _choice("view.detail", detail, DETAILS)
-    return made(c.View, "view.", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
+    return build(c.View, "view.", region=part, detail=wanted, bytes_per_s_max=bytes_per_s_max)
 
 
 def _choice(field: str, word: str, choices: Mapping[str, Any]) -> Any:

@@ -1,46 +1,94 @@
-"""Pictures of worlds and runs with matplotlib: every function draws into the axes it is given, or into new ones, and returns
-them."""
+"""Plots of islands and runs. Every function draws into the matplotlib axes given, or into new ones, and returns them.
+
+matplotlib is imported on first use: the package works without it.
+"""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Mapping, Sequence
+from typing import Any, Mapping, Protocol, Sequence
 
 import numpy
 import numpy.typing
 
 from evod.errors import Error
-from evod.generations import ACCOUNT_PARTS, account_part
-
-if TYPE_CHECKING:
-    from evod.generations import Generation
-    from evod.snapshots import Snapshot
+from evod.generations import ACCOUNT_PARTS, Generation, account_part
 
 Array = numpy.typing.NDArray[Any]
 
 _FOOD, _POISON, _WALL, _CRATE = "#2e8b57", "#b03060", "#555555", "#b8865b"
-_HEALTH_SHOWN = 150.0  # and more has the last colour
+_HEALTH_SHOWN = 150.0  # organisms with more have the last colour
 
 
 def pyplot() -> Any:
+    """The module matplotlib.pyplot. Raises Error if matplotlib is not installed."""
     try:
         from matplotlib import pyplot as module
     except ImportError:
-        raise Error("pictures need the package matplotlib: install it, python3-matplotlib on Debian") from None
+        raise Error("plots need the package matplotlib: install it, python3-matplotlib on Debian") from None
     return module
 
 
-def axes_of(ax: Any, **how: Any) -> Any:
-    return ax if ax is not None else pyplot().subplots(**how)[1]
+def _axes(ax: Any, **options: Any) -> Any:
+    return ax if ax is not None else pyplot().subplots(**options)[1]
 
 
-# ---- a world ------------------------------------------------------------------------------------------------------------
+# ---- an island ----------------------------------------------------------------------------------------------------------
 
 
-class WorldPicture:
-    """A picture of an island that can be brought up to date: an organism is as large as it is, its colour is its health."""
+class _Items(Protocol):
+    def __len__(self) -> int: ...
+    @property
+    def x_px(self) -> Array: ...
+    @property
+    def y_px(self) -> Array: ...
 
-    def __init__(self, snapshot: Snapshot, ax: Any = None) -> None:
+
+class _Organisms(_Items, Protocol):
+    @property
+    def radius_px(self) -> Array: ...
+    @property
+    def health(self) -> Array: ...
+
+
+class _Boxes(_Items, Protocol):
+    @property
+    def half_width_px(self) -> Array: ...
+    @property
+    def half_height_px(self) -> Array: ...
+
+
+class Island(Protocol):
+    """What is plotted of a Snapshot. As a protocol it keeps this module independent of evod.snapshots, which imports it."""
+
+    @property
+    def world(self) -> str: ...
+    @property
+    def generation(self) -> int: ...
+    @property
+    def simulated_s(self) -> float: ...
+    @property
+    def width_px(self) -> float: ...
+    @property
+    def height_px(self) -> float: ...
+    @property
+    def item_radius_px(self) -> float: ...
+    @property
+    def organisms(self) -> _Organisms: ...
+    @property
+    def food(self) -> _Items: ...
+    @property
+    def poison(self) -> _Items: ...
+    @property
+    def crates(self) -> _Boxes: ...
+    @property
+    def obstacles(self) -> _Boxes: ...
+
+
+class IslandPlot:
+    """A plot of an island, true to scale, that can be updated with later snapshots. An organism's colour is its health."""
+
+    def __init__(self, snapshot: Island, ax: Any = None) -> None:
         width = 8.0
-        self.axes = ax = axes_of(ax, figsize=(width, width * snapshot.height_px / snapshot.width_px + 0.5))
+        self.axes = ax = _axes(ax, figsize=(width, width * snapshot.height_px / snapshot.width_px + 0.5))
         ax.set(xlim=(0, snapshot.width_px), ylim=(snapshot.height_px, 0), aspect="equal", xticks=[], yticks=[])
         self._obstacles = _boxes(ax, _WALL)
         self._crates = _boxes(ax, _CRATE)
@@ -48,9 +96,10 @@ class WorldPicture:
         self._poison = _discs(ax, color=_POISON)
         self._organisms = _discs(ax, cmap="cividis", clim=(0, _HEALTH_SHOWN), edgecolor="black", linewidth=0.4)
         self.artists = (self._obstacles, self._crates, self._food, self._poison, self._organisms)
-        self.show(snapshot)
+        self.update(snapshot)
 
-    def show(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: Island) -> None:
+        """Draws another snapshot of the same island."""
         for artist, boxes in ((self._obstacles, snapshot.obstacles), (self._crates, snapshot.crates)):
             x, y, half_width, half_height = boxes.x_px, boxes.y_px, boxes.half_width_px, boxes.half_height_px
             corners = ((x - half_width, y - half_height), (x + half_width, y - half_height),
@@ -66,37 +115,38 @@ class WorldPicture:
         )
 
 
-def plot_snapshot(snapshot: Snapshot, ax: Any = None) -> Any:
-    return WorldPicture(snapshot, ax).axes
+def plot_island(snapshot: Island, ax: Any = None) -> Any:
+    """Plots a snapshot."""
+    return IslandPlot(snapshot, ax).axes
 
 
-def animation_of(snapshots: Sequence[Snapshot], interval_ms: float) -> Any:
-    """A matplotlib animation, which notebooks play."""
+def animate(snapshots: Sequence[Island], interval_ms: float) -> Any:
+    """Returns a matplotlib animation of the snapshots, which notebooks play."""
     if not snapshots:
-        raise Error("there are no snapshots to be shown")
+        raise Error("there are no snapshots to animate")
     from matplotlib import animation
 
-    picture = WorldPicture(snapshots[0])
-    figure = picture.axes.figure
+    plot = IslandPlot(snapshots[0])
+    figure = plot.axes.figure
 
-    def show(snapshot: Snapshot) -> Any:
-        picture.show(snapshot)
-        return picture.artists
+    def draw(snapshot: Island) -> Any:
+        plot.update(snapshot)
+        return plot.artists
 
-    class Shown(animation.FuncAnimation):  # type: ignore[misc]
+    class Animation(animation.FuncAnimation):  # type: ignore[misc]
         def _repr_html_(self) -> str:
             return str(self.to_jshtml())
 
-    made = Shown(figure, show, frames=list(snapshots), interval=interval_ms, init_func=lambda: picture.artists)
-    pyplot().close(figure)  # notebooks would show it once more, standing still
-    return made
+    animated = Animation(figure, draw, frames=list(snapshots), interval=interval_ms, init_func=lambda: plot.artists)
+    pyplot().close(figure)  # otherwise notebooks also show its first frame as an image
+    return animated
 
 
-def _discs(ax: Any, **how: Any) -> Any:
+def _discs(ax: Any, **options: Any) -> Any:
     from matplotlib.collections import EllipseCollection
 
-    clim = how.pop("clim", None)
-    discs = EllipseCollection([], [], [], units="xy", offsets=numpy.zeros((0, 2)), offset_transform=ax.transData, **how)
+    clim = options.pop("clim", None)
+    discs = EllipseCollection([], [], [], units="xy", offsets=numpy.zeros((0, 2)), offset_transform=ax.transData, **options)
     if clim is not None:
         discs.set_clim(*clim)
     return ax.add_collection(discs)
@@ -104,7 +154,7 @@ def _discs(ax: Any, **how: Any) -> Any:
 
 def _place(discs: Any, x: Array, y: Array, radius: Array) -> None:
     discs.set_offsets(numpy.stack((x, y), axis=1))
-    # EllipseCollection has no word for another size: it keeps half of the widths and heights.
+    # EllipseCollection has no setter for sizes; these attributes are half of the widths and heights.
     discs._widths, discs._heights, discs._angles = radius, radius, numpy.zeros(len(radius))
 
 
@@ -117,8 +167,8 @@ def _boxes(ax: Any, color: str) -> Any:
 # ---- a run --------------------------------------------------------------------------------------------------------------
 
 
-def columns_of(generations: Sequence[Generation], gene_names: Sequence[str]) -> dict[str, Array]:
-    """Statistics by the names that tables have, a row for each generation and island."""
+def statistics_columns(generations: Sequence[Generation], gene_names: Sequence[str]) -> dict[str, Array]:
+    """The statistics as columns with the names of the table "generations", a row for each generation and island."""
     rows = [island for g in generations for island in g.islands]
     columns = {
         name: numpy.array([getattr(row, name) for row in rows], float)
@@ -133,8 +183,8 @@ def columns_of(generations: Sequence[Generation], gene_names: Sequence[str]) -> 
 
 
 def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
-    """The best and the mean fitness of all islands, and how far organisms are from the mean (one standard deviation)."""
-    ax = axes_of(ax)
+    """Plots the best and the mean fitness over all islands, and a band of one standard deviation around the mean."""
+    ax = _axes(ax)
     generation, best = _by_generation(columns, "fitness_best", numpy.maximum)
     _, mean, deviation = _spread(columns, "fitness")
     ax.fill_between(generation, mean - deviation, mean + deviation, alpha=0.2, linewidth=0)
@@ -147,8 +197,8 @@ def plot_fitness(columns: Mapping[str, Any], ax: Any = None) -> Any:
 
 
 def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = None) -> Any:
-    """The mean of every gene and its spread (one standard deviation)."""
-    ax = axes_of(ax)
+    """Plots the mean of every gene over all islands, and a band of one standard deviation around it."""
+    ax = _axes(ax)
     for gene in gene_names:
         generation, mean, deviation = _spread(columns, gene)
         (line,) = ax.plot(generation, mean, label=gene)
@@ -160,29 +210,30 @@ def plot_genes(columns: Mapping[str, Any], gene_names: Sequence[str], ax: Any = 
 
 
 def plot_selection(columns: Mapping[str, Any], gene_names: Sequence[str], gene: str, ax: Any = None) -> Any:
-    """What moved the mean of one gene in each generation, over all islands: selection, transmission and migration, which are
-    together its change."""
+    """Plots what moved the mean of one gene in each generation: selection, transmission, migration, and their sum, the change."""
     if gene not in gene_names:
-        raise Error(f"there is no gene {gene!r}; allowed: {', '.join(gene_names)}")
-    ax = axes_of(ax)
+        raise Error(f"gene: got {gene!r}, allowed {', '.join(gene_names)}")
+    ax = _axes(ax)
     ax.axhline(0, color="0.7", linewidth=0.8)
     for part in ACCOUNT_PARTS:
         moved, count = (numpy.asarray(columns[name], float) for name in (f"{gene}_{part}", "organism_count"))
         weighted = {"generation": columns["generation"], "moved": moved * count, "count": count}
         generation, total = _by_generation(weighted, "moved", numpy.add)
         _, organisms = _by_generation(weighted, "count", numpy.add)
-        how = {"color": "black", "linestyle": "--"} if part == "change" else {}
-        ax.plot(generation, total / organisms, label=part, **how)
-    ax.set(xlabel="generation", ylabel=f"{gene}: gene units a generation")
+        style = {"color": "black", "linestyle": "--"} if part == "change" else {}
+        ax.plot(generation, total / organisms, label=part, **style)
+    ax.set(xlabel="generation", ylabel=f"{gene}: gene units per generation")
     ax.xaxis.get_major_locator().set_params(integer=True)
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax
 
 
 def plot_lineage(lineage: Any, ax: Any = None) -> Any:
-    """Who came of whom, as RunFile.lineage() tells it: a point for each organism, coloured by its fitness, a line to each
-    parent. Islands stand beside each other."""
-    ax = axes_of(ax, figsize=(8, 6))
+    """Plots a table of RunFile.lineage(): a point for each organism, coloured by fitness, and a line to each parent.
+
+    Islands are placed side by side.
+    """
+    ax = _axes(ax, figsize=(8, 6))
     from matplotlib.collections import LineCollection
 
     width = 1 + int(max(lineage["organism"].max(), lineage["parent_first"].max(), lineage["parent_second"].max()))
@@ -210,7 +261,7 @@ def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Ar
 
 
 def _spread(columns: Mapping[str, Any], name: str) -> tuple[Array, Array, Array]:
-    """Generations, and of the organisms of all islands together the mean and the standard deviation."""
+    """Generations, and the mean and standard deviation over the organisms of all islands."""
     count = numpy.asarray(columns["organism_count"], float)
     mean, deviation = (numpy.asarray(columns[f"{name}_{what}"], float) for what in ("mean", "deviation"))
     sums = {"count": count, "sum": count * mean, "square": count * (deviation**2 + mean**2)}

@@ -1,4 +1,4 @@
-"""Where the program evod is."""
+"""Finds the program evod."""
 from __future__ import annotations
 
 import os
@@ -7,10 +7,10 @@ import shutil
 from evod.errors import Error
 
 
-def program_of(program: str | os.PathLike[str] | None) -> str:
-    """The one that is named; otherwise the one that the environment's EVOD names, or that is on the path."""
+def find_program(program: str | os.PathLike[str] | None) -> str:
+    """Path of the program given, or of the one that the environment variable EVOD names, or of evod on the path."""
     name = os.fspath(program) if program is not None else os.environ.get("EVOD") or "evod"
     found = shutil.which(name)
     if found is None:
-        raise Error(f"there is no program {name}: put evod on the path, or name it in the environment's EVOD")
+        raise Error(f"there is no program {name}: put evod on the path, or name it in the environment variable EVOD")
     return found

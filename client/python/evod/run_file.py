@@ -1,4 +1,4 @@
-"""Run files as tables, without a server (docs/RUN_FILE.md)."""
+"""Run files as pandas tables and numpy arrays, without a server (docs/RUN_FILE.md)."""
 from __future__ import annotations
 
 import json
@@ -17,18 +17,32 @@ import numpy.typing
 from evod import plotting
 from evod.errors import DamagedData, Error
 from evod.generations import ACCOUNT_PARTS
-from evod.program import program_of
-from evod.tables import GENE_NAMES, frame_of, pandas
+from evod.program import find_program
+from evod.tables import GENE_NAMES, pandas, read_csv
 from evod.v1 import commands_pb2
 
 _CAUSES = ("alive", "starved", "poisoned")
 
 
 def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> RunFile:
-    """Opens a run file, NAME.evod, also one that a server writes to. Nothing in it is changed.
+    """Opens a run file, NAME.evod, for reading only. A server may be writing to it.
 
-    program   the program evod, for what it alone can tell: lineage(). Otherwise as of local().
+    Parameters
+    ----------
+    path
+        The run file.
+    program
+        The program evod, which `RunFile.lineage` runs. Without it, the one that `evod.local` would start.
 
+    Raises
+    ------
+    Error
+        There is no such file.
+    DamagedData
+        The file is no run file, or is damaged.
+
+    Examples
+    --------
     >>> import evod, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     with evod.local(seed=42, data=folder) as lab:
@@ -41,15 +55,15 @@ def open_run(path: str | os.PathLike[str], *, program: str | os.PathLike[str] | 
 
 
 class RunFile:
-    """What a run file tells. Tables have the columns of `evod export`."""
+    """A run file, made by `open_run`. Its tables have the columns of `evod export`; methods raise DamagedData for damage."""
 
     def __init__(self, path: str | os.PathLike[str], *, program: str | os.PathLike[str] | None = None) -> None:
         self.path = pathlib.Path(path)
         self._program = program
         if not self.path.is_file():
             raise Error(f"there is no run file {self.path}")
-        # SQLite makes what it needs beside a file that was left in order; in a folder that cannot be written to it is told
-        # that nobody else writes.
+        # SQLite creates its shared memory beside the file. Where the folder is read-only, `immutable` lets it read without:
+        # no server can be writing there.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"
         if not os.access(self.path.resolve().parent, os.W_OK):
             address += "&immutable=1"
@@ -57,7 +71,7 @@ class RunFile:
         self._database.execute("PRAGMA trusted_schema = OFF")
         foreign: tuple[Any, ...] | None = None
         try:
-            # A view in the place of a table could run without end.
+            # A view with the name of a table could run an endless query.
             foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"), None)
             if foreign:
                 raise DamagedData("")  # named below
@@ -66,7 +80,7 @@ class RunFile:
             self.seed = int(self.about["seed"])
         except (DamagedData, KeyError, ValueError):
             self._database.close()
-            why = f"not as evod wrote it: it has the {foreign[0]} {foreign[1]!r}" if foreign else "no run file"
+            why = f"not as evod wrote it: it contains the {foreign[0]} {foreign[1]!r}" if foreign else "no run file"
             raise DamagedData(f"{self.path} is {why}") from None
 
     def __repr__(self) -> str:
@@ -79,32 +93,34 @@ class RunFile:
         self.close()
 
     def close(self) -> None:
+        """Closes the file."""
         self._database.close()
 
-    # ---- what it began with ----------------------------------------------------------------------------------------
+    # ---- the run --------------------------------------------------------------------------------------------------
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """What the run began with."""
+        """The parameters at the beginning of the run, by name."""
         return self._parameters_of(self.about["parameters"])
 
     @property
     def first_generation(self) -> int:
+        """The first generation in the file: 1, or that at which the run was forked."""
         return int(self.about["first_generation"])
 
     @property
     def last_generation(self) -> int:
-        """The last one that has begun; it may have ended, and may not."""
+        """The last generation that has begun; it may not have ended."""
         ((last,),) = self._rows("SELECT max(generation) FROM generation")
         return int(last or 0)
 
     @property
-    def held(self) -> list[int]:
-        """Generations whose organisms are in the file; large files hold fewer of the older ones."""
+    def retained_generations(self) -> list[int]:
+        """The generations whose organisms are in the file; the others were purged by the retention rule of the run."""
         return [row[0] for row in self._rows("SELECT DISTINCT generation FROM population ORDER BY generation")]
 
     def parameters_of(self, generation: int) -> dict[str, Any]:
-        """Those that held when a generation began."""
+        """The parameters at the beginning of a generation, by name."""
         found = list(
             self._rows(
                 "SELECT active FROM parameters JOIN generation ON parameters.number = generation.parameters "
@@ -113,17 +129,17 @@ class RunFile:
             )
         )
         if not found:
-            raise self._no_such(generation)
+            raise self._missing(generation)
         return self._parameters_of(found[0][0])
 
     # ---- tables ----------------------------------------------------------------------------------------------------
 
     def generations(self) -> Any:
-        """The statistics: a row for each generation that has ended, and island."""
+        """The statistics: a DataFrame with a row for each island and generation that has ended."""
         accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
         if list(self._rows("SELECT 1 FROM sqlite_schema WHERE name = 'selection_account'")):
             columns, join = accounts, "LEFT JOIN selection_account USING (generation, island)"
-        else:  # an older file
+        else:  # files of formats before 3
             columns, join = [f"NULL AS {name}" for name in accounts], ""
         cursor = self._execute(
             f"SELECT statistics.*, {', '.join(columns)} FROM statistics {join} ORDER BY generation, island"
@@ -133,7 +149,7 @@ class RunFile:
         return table.astype({name: float for name in accounts})
 
     def organisms(self) -> Any:
-        """Parents, genes and fate of each organism of the generations that are held."""
+        """Origin, parents, genes, fitness and fate of each organism of the retained generations, as a DataFrame."""
         simulated_s = {
             (generation, island): seconds
             for generation, island, seconds in self._rows("SELECT generation, island, simulated_s FROM statistics")
@@ -157,18 +173,18 @@ class RunFile:
             else:
                 causes = _array(cause, "u1", count)
                 ticks = _array(lived_ticks, "<u4", count)
-                to_the_end = simulated_s.get((generation, island), numpy.nan)
+                whole_s = simulated_s.get((generation, island), numpy.nan)
                 lived = {
                     "fitness": _array(fitness, "<f8", count),
-                    "lived_s": numpy.where(causes == 0, to_the_end, ticks * tick_s[generation]),
+                    "lived_s": numpy.where(causes == 0, whole_s, ticks * tick_s[generation]),
                     "cause": numpy.array((*_CAUSES, "unknown"), object)[numpy.minimum(causes, len(_CAUSES))],
                 }
-            place = {"generation": generation, "island": island, "organism": numpy.arange(count)}
-            parts.append(pandas().DataFrame({**place, **begun, **lived}))
+            identity = {"generation": generation, "island": island, "organism": numpy.arange(count)}
+            parts.append(pandas().DataFrame({**identity, **begun, **lived}))
         return pandas().concat(parts, ignore_index=True)
 
     def population(self, generation: int | None = None) -> Any:
-        """The genes of one generation, otherwise of the last that has begun; another world can begin with them."""
+        """The genes of a generation as a DataFrame; without a number, of the last that has begun."""
         parts = []
         for island, genes in enumerate(self.genes(generation)):
             columns = dict(zip(GENE_NAMES, genes.T))
@@ -176,8 +192,15 @@ class RunFile:
         return pandas().concat(parts, ignore_index=True)
 
     def genes(self, generation: int | None = None) -> list[numpy.typing.NDArray[numpy.float32]]:
-        """The same as arrays: of each island one of shape (population_size, 6).
+        """The same as arrays, which `Lab.create_world` takes as `population`.
 
+        Returns
+        -------
+        list of numpy.ndarray
+            For each island an array of shape (population_size, 6), columns in the order of `evod.GENE_NAMES`.
+
+        Examples
+        --------
         >>> import evod, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     with evod.local(data=folder) as lab:
@@ -192,56 +215,61 @@ class RunFile:
         )
         islands = [_array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1) for count, genes in rows]
         if not islands:
-            raise self._no_such(number)
+            raise self._missing(number)
         return islands
 
     def events(self) -> Any:
-        """The journal: the commands that were applied, each request as JSON."""
+        """The journal as a DataFrame: the commands that were applied, each request as JSON."""
         rows = []
         for number, tick, client, data in self._rows("SELECT number, tick, client, request FROM journal ORDER BY number"):
             try:
                 request = commands_pb2.Request.FromString(data)
             except google.protobuf.message.DecodeError:
-                raise DamagedData(f"{self.path} is damaged: entry {number} of its journal is no request") from None
+                raise DamagedData(f"{self.path} is damaged: entry {number} of its journal cannot be read") from None
             request.ClearField("client_key")
             request.ClearField("request_id")
-            told = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
+            text = google.protobuf.json_format.MessageToJson(request, preserving_proto_field_name=True, indent=None)
             kind = request.WhichOneof("kind") or "unknown"
-            rows.append((number, tick, client, kind, told))
+            rows.append((number, tick, client, kind, text))
         names = ("number", "tick", "client", "kind", "request")
         return pandas().DataFrame(rows, columns=names)
 
     def lineage(self, of: tuple[int, int, int] | None = None) -> Any:
-        """Who came of whom, over islands too; of: one organism (generation, island, id) and its ancestors, newest first.
+        """The parents of every organism, across islands, as a DataFrame; newest first.
 
-        The program evod works it out, as migrants and generations that are not held are not told in the file.
+        Runs the program evod, which replays the run: the file does not contain migrants and purged generations.
+
+        Parameters
+        ----------
+        of
+            Only the ancestors of one organism, given as (generation, island, id).
         """
         which = [] if of is None else ["--of", ":".join(map(str, of))]
-        command = [program_of(self._program), "export", str(self.path), "--what", "lineage", *which]
+        command = [find_program(self._program), "export", str(self.path), "--what", "lineage", *which]
         done = subprocess.run(command, capture_output=True, text=True, errors="replace")
         if done.returncode != 0:
             raise Error(done.stderr.strip().removeprefix("evod: ") or "evod export failed")
-        return frame_of(done.stdout)
+        return read_csv(done.stdout)
 
-    # ---- pictures --------------------------------------------------------------------------------------------------
+    # ---- plots ----------------------------------------------------------------------------------------------------
 
     def plot_fitness(self, ax: Any = None) -> Any:
-        """Draws the best and the mean fitness of each generation with matplotlib; returns the axes."""
+        """Plots the best and the mean fitness of each generation with matplotlib; returns the axes."""
         return plotting.plot_fitness(self.generations(), ax)
 
     def plot_genes(self, ax: Any = None) -> Any:
-        """Draws the mean and the spread of each gene."""
+        """Plots mean and spread of each gene; returns the axes."""
         return plotting.plot_genes(self.generations(), GENE_NAMES, ax)
 
     def plot_selection(self, gene: str, ax: Any = None) -> Any:
-        """Draws what moved the mean of a gene: selection, transmission, migration, and its change, which they make together."""
+        """Plots what moved the mean of a gene in each generation: selection, transmission, migration, and their sum."""
         return plotting.plot_selection(self.generations(), GENE_NAMES, gene, ax)
 
     def plot_lineage(self, of: tuple[int, int, int] | None = None, ax: Any = None) -> Any:
-        """Draws who came of whom; of: one organism (generation, island, id) and its ancestors."""
+        """Plots the lineage; with `of` only the ancestors of one organism, given as (generation, island, id)."""
         return plotting.plot_lineage(self.lineage(of), ax)
 
-    # ---- within ----------------------------------------------------------------------------------------------------
+    # ---- private --------------------------------------------------------------------------------------------------
 
     def _rows(self, query: str, *values: object) -> Iterator[tuple[Any, ...]]:
         return iter(self._fetch(self._execute(query, *values)))
@@ -265,14 +293,14 @@ class RunFile:
             raise DamagedData(f"{self.path} is damaged: its parameters cannot be read") from None
         return {name: value for name, value in parameters.items() if name not in ("seed", "description")}
 
-    def _no_such(self, generation: int) -> Error:
-        held = self.held
+    def _missing(self, generation: int) -> Error:
+        retained = self.retained_generations
         if self.first_generation <= generation <= self.last_generation:
             return Error(
-                f"{self.path} does not hold the organisms of generation {generation} any more: `evod export` simulates it again"
+                f"{self.path} no longer contains the organisms of generation {generation}: `evod export` simulates it again"
             )
-        told = f"{held[0]} to {held[-1]}" if held else "none"
-        return Error(f"{self.path} does not tell of generation {generation}: there are {told}")
+        allowed = f"{retained[0]} to {retained[-1]}" if retained else "none"
+        return Error(f"generation: got {generation}, allowed in {self.path}: {allowed}")
 
 
 def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
@@ -282,7 +310,7 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
 
 
 def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: bytes) -> dict[str, Any]:
-    """How they began."""
+    """The columns known at birth."""
     chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)
     if parents:
         first, second = _array(parents, "<u4", 2 * count).reshape(count, 2).T.astype(float)

@@ -12,6 +12,7 @@ GENE_NAMES = ("normal_speed", "impulse", "body_size", "base_health", "food_radiu
 
 
 def pandas() -> Any:
+    """The module pandas. Raises Error if it is not installed."""
     try:
         import pandas as module
     except ImportError:
@@ -19,9 +20,11 @@ def pandas() -> Any:
     return module
 
 
-def frame_of(text: str) -> Any:
-    """Of CSV as evod writes it."""
-    # The parser that reads every digit; a name may look like a number; genes are written with a 32-bit float's digits.
+def read_csv(text: str) -> Any:
+    """Reads a table that evod wrote as CSV.
+
+    Floats are read exactly; text columns stay text even if they look like numbers; genes are 32-bit floats.
+    """
     kinds: dict[str, Any] = {name: str for name in ("client", "client_key", "kind", "request", "origin", "cause")}
     kinds |= {name: numpy.float32 for name in GENE_NAMES}
     return pandas().read_csv(io.StringIO(text), float_precision="round_trip", dtype=kinds)

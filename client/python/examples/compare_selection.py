@@ -1,5 +1,4 @@
-"""Compares methods of selection: the mean fitness of several runs each, and a band that has the mean of all runs with 95 %
-confidence.
+"""Compares the methods of selection: for each the mean fitness of several runs, with a 95 % confidence band.
 
     compare_selection.py [--generations N] [--seeds N] [--output FILE]
 """
@@ -16,7 +15,7 @@ parser.add_argument("--seeds", type=int, default=10)
 parser.add_argument("--output", default="compare_selection.png")
 options = parser.parse_args()
 
-# So many standard errors to either side have the mean with 95 % confidence: Student's t of few runs, by its expansion.
+# Half width of the 95 % confidence interval in standard errors: the quantile of Student's t, by its series expansion.
 z, runs_less_1 = 1.96, options.seeds - 1
 errors = z + (z**3 + z) / (4 * runs_less_1) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * runs_less_1**2)
 

@@ -1,4 +1,4 @@
-"""Follows the fittest of a run back to the first generation: who its ancestors were, and how its genes came about.
+"""Traces the fittest organism of a run back to the first generation: its ancestors, and the history of its genes.
 
     follow_a_lineage.py [--generations N] [--output FILE]
 """
@@ -23,8 +23,8 @@ with tempfile.TemporaryDirectory() as folder:
         figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6))
         run.plot_lineage(fittest, left)
 
-# Its first parent, which gave most of its genes, and the first parent of that, …
-names = organisms.set_index(["generation", "island", "organism"])
+# The line of first parents: each gave its child most of the genes.
+organisms = organisms.set_index(["generation", "island", "organism"])
 line, name = [], fittest
 while True:
     line.append(name)
@@ -32,11 +32,11 @@ while True:
     if row["origin"] == "initial":
         break
     name = tuple(int(row[f"parent_first{part}"]) for part in ("_generation", "_island", ""))
-genes = names.loc[line, list(evod.GENE_NAMES)]
+genes = organisms.loc[line, list(evod.GENE_NAMES)]
 for gene in evod.GENE_NAMES:
     right.step([name[0] for name in line], genes[gene], where="mid", label=gene)
 right.set(xlabel="generation", ylabel="gene of the first parents")
 right.legend(frameon=False)
 figure.savefig(options.output)
-print(f"organism {fittest[2]} of generation {fittest[0]} has {len(lineage) - 1} ancestors; the first of its line was "
+print(f"organism {fittest[2]} of generation {fittest[0]} has {len(lineage) - 1} ancestors; its line of first parents begins with "
       f"organism {line[-1][2]} of generation {line[-1][0]}")

@@ -1,4 +1,4 @@
-"""What would have happened if …? Forks a run at a generation, and lets the two go on with one difference.
+"""Forks a run at a generation, and continues both with one difference: what would have happened without crossover?
 
     fork.py [--generations N] [--output FILE]
 """
@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as folder, evod.local(seed=7, data=folder) as
         history = world.history()
         plt.plot([g.number for g in history], [g.mean for g in history], label=world.name)
     same = [g.mean for g in origin.history(half, half)] == [g.mean for g in other.history(half, half)]
-    print(f"generation {half} of both is", "the same" if same else "something else")
+    print(f"generation {half} of both is", "the same" if same else "different")
 
 plt.axvline(half, color="0.4", linestyle="--", linewidth=1)
 plt.xlabel("generation")

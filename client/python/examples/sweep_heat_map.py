@@ -1,4 +1,4 @@
-"""Sweeps over two parameters, and draws the mean fitness at the end as a heat map. Worlds of one server run side by side.
+"""Sweeps over two parameters, and plots the mean fitness at the end as a heat map. The server runs several worlds at once.
 
     sweep_heat_map.py [--generations N] [--seeds N] [--steps N] [--output FILE]
 """
@@ -16,8 +16,8 @@ parser.add_argument("--steps", type=int, default=5)
 parser.add_argument("--output", default="sweep_heat_map.png")
 options = parser.parse_args()
 
-chances = numpy.linspace(0, 0.4, options.steps)  # of a mutation, for each gene
-sizes = numpy.linspace(5, 25, options.steps)  # of a mutation, at most
+chances = numpy.linspace(0, 0.4, options.steps)  # chance that a gene mutates
+sizes = numpy.linspace(5, 25, options.steps)  # largest change of a gene
 fitness = numpy.zeros((options.steps, options.steps))
 
 with evod.local() as lab:
@@ -26,7 +26,7 @@ with evod.local() as lab:
             parameters = {"mutation_chance": chance, "mutation_step": size, "selection": "tournament"}
             worlds = [lab.create_world(f"seed-{seed}", parameters, seed=seed, speed="max")
                       for seed in range(1, options.seeds + 1)]
-            runs = [world.run(options.generations) for world in worlds]  # all of them begin
+            runs = [world.run(options.generations) for world in worlds]  # all worlds start
             fitness[row, column] = numpy.mean([run.wait().mean for run in runs])
             for world in worlds:
                 world.delete()

@@ -1,6 +1,6 @@
-"""Watches a world run: how many are alive, where their food is, and what each generation comes to.
+"""Prints while a world runs how many organisms are alive, how far their food is, and the results of each generation.
 
-    watch_a_run.py [HOST:PORT] [--generations N]      without an address, on a server of its own
+    watch_a_run.py [HOST:PORT] [--generations N]      without an address, on a private server
 """
 import argparse
 
@@ -9,7 +9,7 @@ import numpy
 import evod
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("server", nargs="?", help="HOST:PORT of a server that you may control")
+parser.add_argument("server", nargs="?", help="HOST:PORT of a server; needs the role controller")
 parser.add_argument("--generations", type=int, default=3)
 options = parser.parse_args()
 

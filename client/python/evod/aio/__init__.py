@@ -1,4 +1,4 @@
-"""The asyncio face: the same words as the plain one's, and what they answer is awaited.
+"""evod for asyncio: the classes and functions of evod, with coroutines in place of functions that wait for an answer.
 
     async with evod.aio.connect("host:7744", token="…") as lab:
         world = await lab.world("default")
@@ -6,8 +6,11 @@
         async for g in world.run(generations=50):
             print(g.best, g.mean)
 
-Threads      all on the event loop that it was connected on.
-"""
-from evod.aio.lab import Events, Snapshots, Lab, LocalLab, Replay, Run, World, connect, local
+Functions that open something, such as connect() and World.run(), work with `await`, `async with` and `async for`. The
+examples in the docstrings are for a notebook or `python3 -m asyncio`, where `await` is allowed outside of functions.
 
-__all__ = ["Events", "Snapshots", "Lab", "LocalLab", "Replay", "Run", "World", "connect", "local"]
+Threads      all calls on the event loop that connect() or local() was awaited on.
+"""
+from evod.aio.lab import Events, Lab, LocalLab, Replay, Run, Snapshots, World, connect, local
+
+__all__ = ["Events", "Lab", "LocalLab", "Replay", "Run", "Snapshots", "World", "connect", "local"]

@@ -1,4 +1,7 @@
-"""The asyncio face's line: carries out plans on an event loop."""
+"""Carries out plans over a connection that one asyncio task keeps open.
+
+Threads      all methods run on the event loop that open() ran on.
+"""
 from __future__ import annotations
 
 import asyncio
@@ -6,35 +9,49 @@ import contextlib
 import socket
 import ssl
 import time
-from typing import Callable, TypeVar
+from typing import Callable, ParamSpec, TypeVar
 
-from evod import plans, reach
+from evod import plans, transport
 from evod.core import Core
 from evod.endpoint import Endpoint
-from evod.errors import DamagedData, Error, NoConnection, Timeout
+from evod.errors import DamagedData, Error, NoConnection, Timeout, copy_of
 from evod.plans import Plan
 from evod.v1 import commands_pb2 as c
 
 T = TypeVar("T")
+P = ParamSpec("P")
+
+
+async def blocking_call(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
+    """Calls a function that blocks, on a thread of its own, so that the event loop continues."""
+    return await asyncio.to_thread(function, *args, **kwargs)
 
 
 class Link:
-    """See above."""
+    """A connection to one server, which reconnects after a loss, and the Core that speaks the protocol over it.
+
+    timeout_s    how long an answer may take, and how long the server may be unreachable.
+    reconnect    False: the first loss fails everything that waits.
+    """
 
     def __init__(
         self, server: Endpoint, core: Core, tls: ssl.SSLContext | None, *, timeout_s: float, reconnect: bool
     ) -> None:
         self.server, self.core, self.timeout_s = server, core, timeout_s
         self._tls, self._reconnect = tls, reconnect
-        self._line = reach.Line(server, None)
+        self._transport = transport.Transport(server, None)
         self._writer: asyncio.StreamWriter | None = None
-        self._absence = reach.Absence()
-        self._waiting: set[asyncio.Future[None]] = set()
-        self._keeper: asyncio.Task[None] | None = None
+        self._backoff = transport.Backoff()
+        self._waiters: set[asyncio.Future[None]] = set()  # woken after each change of the core
+        self._connection_task: asyncio.Task[None] | None = None
 
     # ---- plans ----------------------------------------------------------------------------------------------------
 
     async def perform(self, plan: Plan[T]) -> T:
+        """Carries out a plan and returns its result.
+
+        Raises what the plan raises; Timeout if an answer is overdue; NoConnection if the server stays unreachable.
+        """
         try:
             step = next(plan)
             while True:
@@ -51,125 +68,133 @@ class Link:
             plan.close()
             self._flush()
 
-    async def tell(self, change: Callable[[], None]) -> None:
+    async def apply(self, change: Callable[[], None]) -> None:
+        """Changes the core and sends what that produces; there is no answer to wait for."""
         change()
         self._flush()
 
     async def _do(self, step: plans.Step) -> c.Response | None:
         if isinstance(step, plans.Until):
-            await self._wait(step.holds, self.timeout_s if step.in_time else None)
+            await self._wait(step.condition, self.timeout_s if step.within_timeout else None)
             return None
         pending = self.core.request(step)
         try:
-            await self._wait(lambda: pending.done, pending.patience_s(self.timeout_s))
+            await self._wait(lambda: pending.done, pending.timeout_s(self.timeout_s))
         finally:
             self.core.forget(pending)
         if pending.error is not None:
             raise pending.error
         return pending.response
 
-    async def _wait(self, holds: Callable[[], object], timeout_s: float | None) -> None:
+    async def _wait(self, condition: Callable[[], object], timeout_s: float | None) -> None:
         deadline = None if timeout_s is None else time.monotonic() + timeout_s
         self._flush()
-        while not holds():
+        while not condition():
             if self.core.failed is not None:
-                raise self.core.failed
+                raise copy_of(self.core.failed)
             now = time.monotonic()
             end = deadline
-            if self._absence.since is not None:
-                back_by = self._absence.since + self.timeout_s
+            if self._backoff.down_since is not None:
+                back_by = self._backoff.down_since + self.timeout_s
                 if now >= back_by or not self._reconnect and self.core.loss:
-                    raise self.core.loss or NoConnection(f"no welcome from {self.server}")
+                    raise copy_of(self.core.loss or NoConnection(f"no welcome from {self.server}"))
                 end = back_by if end is None else min(end, back_by)
             if deadline is not None and now >= deadline:
+                if self._backoff.down_since is not None and self.core.loss:
+                    raise copy_of(self.core.loss)
                 raise Timeout(f"no answer within {timeout_s:g} s")
-            changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-            self._waiting.add(changed)
-            try:
-                await asyncio.wait([changed], timeout=None if end is None else end - now)
-            finally:
-                self._waiting.discard(changed)
+            await self._next_change(None if end is None else end - now)
 
-    def _tell_all(self) -> None:
-        for waiting in self._waiting:
-            if not waiting.done():
-                waiting.set_result(None)
+    async def _next_change(self, timeout_s: float | None) -> None:
+        changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters.add(changed)
+        try:
+            await asyncio.wait([changed], timeout=timeout_s)
+        finally:
+            self._waiters.discard(changed)
 
-    # ---- the line -------------------------------------------------------------------------------------------------
+    def _wake_waiters(self) -> None:
+        for waiter in self._waiters:
+            if not waiter.done():
+                waiter.set_result(None)
+
+    # ---- the connection -------------------------------------------------------------------------------------------
 
     async def open(self) -> None:
-        self._keeper = asyncio.create_task(self._keep())
+        """Connects for the first time. Raises NoConnection, or DamagedData if the other end is no evod server."""
+        self._connection_task = asyncio.create_task(self._keep_connected())
         try:
             while not self.core.connected:
                 if self.core.loss is not None:
-                    raise self.core.failed or self.core.loss
-                changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-                self._waiting = {changed}
-                await changed
+                    raise copy_of(self.core.failed or self.core.loss)
+                await self._next_change(None)
         except BaseException:
             await self.close()
             raise
 
     async def close(self) -> None:
+        """Closes the connection; everything that waits fails with NoConnection."""
         if self.core.failed is None:
             self.core.close()
-        self._tell_all()
-        if self._keeper is not None:
-            self._keeper.cancel()
-            await asyncio.wait([self._keeper])
+        self._wake_waiters()
+        if self._connection_task is not None:
+            self._connection_task.cancel()
+            await asyncio.wait([self._connection_task])
 
-    async def _keep(self) -> None:
-        """Reads, and connects again, until it is of no use any more."""
+    async def _keep_connected(self) -> None:
+        """Connects, reads until the connection is lost, and connects again, until the core has failed for good."""
         while self.core.failed is None:
             try:
-                await self._serve_a_line()
+                await self._serve_connection()
             except (OSError, NoConnection, DamagedData, TimeoutError) as error:
-                reason = reach.reason_of(error, self.server)
+                loss = transport.connection_error(error, self.server)
                 if isinstance(error, ssl.SSLCertVerificationError):
-                    self.core.failed = reason
-                self._absence.begin()
-                self.core.lost(reason)
-                self._tell_all()
-            except Exception as error:  # nobody is to wait for ever, on account of a fault in here
+                    self.core.failed = loss
+                self._backoff.failed()
+                self.core.lost(loss)
+                self._wake_waiters()
+            except Exception as error:  # a bug in this package: fail everything that waits, rather than hang
                 self.core.failed = Error(f"the client has a fault: {error!r}")
                 self.core.lost(self.core.failed)
-                self._tell_all()
+                self._wake_waiters()
                 raise
-            await asyncio.sleep(max(0.0, self._absence.retry_at - time.monotonic()))
+            await asyncio.sleep(max(0.0, self._backoff.retry_at - time.monotonic()))
 
-    async def _serve_a_line(self) -> None:
-        async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
-            reader, writer = await asyncio.open_connection(self.server.host, self.server.port, limit=4 * reach.READ_BYTES)
+    async def _serve_connection(self) -> None:
+        async with asyncio.timeout(transport.CONNECT_TIMEOUT_S):
+            reader, writer = await asyncio.open_connection(
+                self.server.host, self.server.port, limit=4 * transport.READ_BYTES
+            )
         try:
             connection: socket.socket = writer.get_extra_info("socket")
-            reach.notice_silence(connection)
-            self._writer, self._line = writer, reach.Line(self.server, self._tls)
+            transport.enable_keepalive(connection)
+            self._writer, self._transport = writer, transport.Transport(self.server, self._tls)
             self.core.opened()
             self._flush()
-            async with asyncio.timeout(reach.CONNECT_TIMEOUT_S):
+            async with asyncio.timeout(transport.CONNECT_TIMEOUT_S):
                 while not self.core.connected:
-                    self._take(await reader.read(reach.READ_BYTES))
-            self._absence.end()
-            self._tell_all()
+                    self._take(await reader.read(transport.READ_BYTES))
+            self._backoff.reset()
+            self._wake_waiters()
             while True:
-                self._take(await reader.read(reach.READ_BYTES))
-                self._tell_all()
+                self._take(await reader.read(transport.READ_BYTES))
+                self._wake_waiters()
         finally:
             self._writer = None
-            writer.close()
+            writer.transport.abort()  # close() would wait for a server that does not read
             with contextlib.suppress(OSError):
                 await writer.wait_closed()
 
     def _take(self, data: bytes) -> None:
         if not data:
-            raise reach.closed_by(self.server)
-        said = self._line.incoming(data)
-        if said:
-            self.core.received(said)
+            raise transport.closed_by(self.server)
+        plain = self._transport.incoming(data)
+        if plain:
+            self.core.received(plain)
         self._flush()
 
     def _flush(self) -> None:
         if self._writer is not None:
-            to_send = self._line.outgoing(self.core.outgoing())
+            to_send = self._transport.outgoing(self.core.outgoing())
             if to_send:
                 self._writer.write(to_send)

@@ -1,0 +1,76 @@
+"""Results that can be awaited, or opened by `async with`, or iterated by `async for`.
+
+`await world.run()`, `async with world.run() as run` and `async for generation in world.run()` all work: World.run() is a
+coroutine function with the decorator `opens_stream`. generate_sync.py removes the decorators from the synchronous modules.
+"""
+from __future__ import annotations
+
+import functools
+from typing import Any, AsyncIterator, Callable, Coroutine, Generator, Generic, ParamSpec, Protocol, TypeVar
+
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+P = ParamSpec("P")
+
+
+class _Closable(Protocol):
+    async def close(self) -> None: ...
+
+
+class _Stream(_Closable, Protocol[T_co]):
+    def __aiter__(self) -> AsyncIterator[T_co]: ...
+
+
+S = TypeVar("S", bound=_Closable, covariant=True)
+R = TypeVar("R", bound=_Stream[Any], covariant=True)
+
+
+class AwaitableContext(Generic[S]):
+    """Opens something with `await`; or with `async with`, which closes it at the end of the block."""
+
+    def __init__(self, coroutine: Coroutine[Any, Any, S]) -> None:
+        self._coroutine = coroutine
+        self._opened: S | None = None
+
+    def __await__(self) -> Generator[Any, None, S]:
+        return self._coroutine.__await__()
+
+    async def __aenter__(self) -> S:
+        self._opened = await self._coroutine
+        return self._opened
+
+    async def __aexit__(self, *_: object) -> None:
+        assert self._opened is not None
+        await self._opened.close()
+
+
+class AwaitableStream(AwaitableContext[R]):
+    """The same for a stream, which `async for` can also open, iterate and close."""
+
+    async def __aiter__(self: AwaitableStream[_Stream[T]]) -> AsyncIterator[T]:
+        stream = await self._coroutine
+        try:
+            async for item in stream:
+                yield item
+        finally:
+            await stream.close()
+
+
+def opens(method: Callable[P, Coroutine[Any, Any, S]]) -> Callable[P, AwaitableContext[S]]:
+    """Lets callers use `async with` on what a coroutine function returns."""
+
+    @functools.wraps(method)
+    def open_later(*args: P.args, **kwargs: P.kwargs) -> AwaitableContext[S]:
+        return AwaitableContext(method(*args, **kwargs))
+
+    return open_later
+
+
+def opens_stream(method: Callable[P, Coroutine[Any, Any, R]]) -> Callable[P, AwaitableStream[R]]:
+    """Lets callers use `async with` and `async for` on what a coroutine function returns."""
+
+    @functools.wraps(method)
+    def open_later(*args: P.args, **kwargs: P.kwargs) -> AwaitableStream[R]:
+        return AwaitableStream(method(*args, **kwargs))
+
+    return open_later

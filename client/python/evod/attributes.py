@@ -1,0 +1,75 @@
+"""A World's parameters as attributes, for the synchronous World alone: an attribute cannot be awaited."""
+from __future__ import annotations
+
+from typing import Any, Iterator, Mapping, Protocol
+
+from evod.parameters import Parameters, Registry, Value
+
+
+class _Lab(Protocol):
+    def registry(self) -> Registry: ...
+
+
+class _World(Protocol):
+    @property
+    def lab(self) -> _Lab: ...
+
+    def get_parameters(self) -> Parameters: ...
+
+    def set(self, values: Mapping[str, object] | None = None, /) -> Parameters: ...
+
+
+class ParameterAttributes:
+    """The base class of World."""
+
+    @property
+    def parameters(self: _World) -> LiveParameters:
+        """The current parameters as attributes; assigning one sets it on the server.
+
+        Every read asks the server. To read several at one moment use `get_parameters`, to set several at once use `set`.
+
+        Examples
+        --------
+        >>> import evod
+        >>> with evod.local() as lab:
+        ...     world = lab.world()
+        ...     world.parameters.mutation_chance = 0.3
+        ...     world.parameters.mutation_chance, world.parameters["mutation_chance"].allowed
+        (0.3, '0 to 1')
+        """
+        return LiveParameters(self)
+
+
+class LiveParameters(Mapping[str, Any]):
+    """The current parameters of a world: values as attributes, `Parameter` objects by name; made by `World.parameters`."""
+
+    def __init__(self, world: _World) -> None:
+        object.__setattr__(self, "_world", world)
+
+    _world: _World
+
+    def __getattr__(self, name: str) -> Value:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._world.get_parameters().__getattr__(name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        self._world.set({name: value})
+
+    def __getitem__(self, name: str) -> Any:
+        return self._world.get_parameters()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._world.lab.registry())
+
+    def __len__(self) -> int:
+        return len(self._world.lab.registry())
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self]
+
+    def __repr__(self) -> str:
+        return f"<parameters of {self._world!r}>"
+
+    def _repr_html_(self) -> str:
+        return self._world.get_parameters()._repr_html_()

@@ -1,0 +1,118 @@
+"""Connections to a server: bytes with or without TLS, keep-alive, reconnect backoff, and the causes of failures in words."""
+from __future__ import annotations
+
+import random
+import socket
+import ssl
+import time
+
+from evod.endpoint import Endpoint
+from evod.errors import DamagedData, NoConnection
+
+CONNECT_TIMEOUT_S = 5.0  # for connecting, and again for the server's Welcome
+READ_BYTES = 256 << 10
+_BACKOFF_MIN_S, _BACKOFF_MAX_S = 0.1, 5.0  # wait before the first new attempt; each failure doubles it
+
+
+class Backoff:
+    """Since when there has been no session, and when to connect again. Times are those of time.monotonic()."""
+
+    def __init__(self) -> None:
+        self.down_since: float | None = time.monotonic()  # None: connected
+        self.retry_at = 0.0
+        self._backoff_s = _BACKOFF_MIN_S
+
+    def failed(self) -> None:
+        """The connection was lost, or an attempt to connect failed."""
+        now = time.monotonic()
+        self.down_since = now if self.down_since is None else self.down_since
+        # The random factor keeps many clients of one server from reconnecting at the same instant.
+        self.retry_at = now + self._backoff_s * random.uniform(0.5, 1.0)
+        self._backoff_s = min(2 * self._backoff_s, _BACKOFF_MAX_S)
+
+    def reset(self) -> None:
+        """The server has sent its Welcome."""
+        self.down_since, self._backoff_s = None, _BACKOFF_MIN_S
+
+
+def enable_keepalive(connection: socket.socket) -> None:
+    """Lets the operating system detect a peer that vanished without closing: a cut cable, a suspended laptop."""
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in (("TCP_KEEPIDLE", 10), ("TCP_KEEPINTVL", 5), ("TCP_KEEPCNT", 3)):
+        if hasattr(socket, option):  # some systems lack them and use their own times
+            connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, option), value)
+
+
+def connection_error(error: Exception, server: Endpoint) -> NoConnection | DamagedData:
+    """The error to raise to the caller for an exception of the socket, of TLS or of the decoder."""
+    if isinstance(error, (NoConnection, DamagedData)):
+        return error
+    if isinstance(error, ConnectionRefusedError):
+        return NoConnection(f"no server at {server}: start one with `evod`")
+    if isinstance(error, socket.gaierror):
+        return NoConnection(f"the host {server.host} is not known: check its name")
+    if isinstance(error, ssl.SSLCertVerificationError):
+        return NoConnection(f"no TLS with {server}: its certificate is not trusted: {error.verify_message}")
+    if isinstance(error, (ssl.SSLEOFError, ConnectionResetError, BrokenPipeError)):
+        return closed_by(server)
+    if isinstance(error, ssl.SSLError):
+        return NoConnection(f"no TLS with {server}: {(error.reason or str(error)).replace('_', ' ').lower()}")
+    if isinstance(error, TimeoutError):
+        return NoConnection(
+            f"{server} did not answer within {CONNECT_TIMEOUT_S:g} s: check the address, and the network and firewalls on "
+            "the way"
+        )
+    return NoConnection(f"the connection to {server} failed: {getattr(error, 'strerror', None) or error}")
+
+
+def closed_by(server: Endpoint) -> NoConnection:
+    """The error for a connection that the server closed."""
+    return NoConnection(f"the server at {server} closed the connection")
+
+
+class Transport:
+    """Translates between the protocol's bytes and those on the socket: through TLS, or unchanged. It has no socket itself."""
+
+    def __init__(self, server: Endpoint, tls: ssl.SSLContext | None) -> None:
+        self._tls: ssl.SSLObject | None = None
+        if tls is not None:
+            self._received, self._to_send = ssl.MemoryBIO(), ssl.MemoryBIO()
+            self._tls = tls.wrap_bio(self._received, self._to_send, server_hostname=server.host)
+        self._handshake_done = False
+        self._queued = b""  # waits for the end of the handshake
+
+    def outgoing(self, data: bytes) -> bytes:
+        """The bytes to write to the socket so that the server receives `data`; empty while the TLS handshake waits."""
+        if self._tls is None:
+            return data
+        self._queued += data
+        if not self._handshake_done:
+            try:
+                self._tls.do_handshake()
+                self._handshake_done = True
+            except ssl.SSLWantReadError:
+                pass
+        if self._handshake_done and self._queued:
+            self._tls.write(self._queued)
+            self._queued = b""
+        return self._to_send.read()
+
+    def incoming(self, data: bytes) -> bytes:
+        """The server's bytes out of those read from the socket. Call outgoing() afterwards: the handshake may need a reply.
+
+        Raises ssl.SSLError if the handshake or the certificate is refused.
+        """
+        if self._tls is None:
+            return data
+        self._received.write(data)
+        parts = []
+        try:
+            if not self._handshake_done:
+                self._tls.do_handshake()
+                self._handshake_done = True
+            while part := self._tls.read(256 << 10):
+                parts.append(part)
+        except (ssl.SSLWantReadError, ssl.SSLZeroReturnError):
+            pass
+        return b"".join(parts)
