@@ -1,12 +1,14 @@
-"""What it costs to go through the Python package, on a real evod: generations beside `evod run`, and pictures as arrays.
+"""The cost of the Python package with a real server: generations compared to `evod run`, and snapshots as arrays.
 
     python_cost.py EVOD PACKAGE [--rounds N] [--seconds S] [--organisms N] [--json]
 
-Generations: the same hundred of the default world, on one thread, first by `evod run`, then by World.run() with something
-called for each; of many rounds, one after the other in each. Whatever starting takes is left out of both. Where other
-programs keep the machine from resting, the processor seconds of what simulates tell more than the clock. Pictures: as they
-come to one connection from a world that runs as fast as it can, every column turned to px; a subscription is given 120 a
-second at most, so there are several. And the same pictures from memory, which is the package alone.
+Generations: each round runs the same hundred generations of the default world on one thread, first with `evod run`, then
+with World.run() and a Python callback for each. Start-up is excluded. On a busy machine compare the processor time of the
+simulation thread rather than the clock.
+
+Snapshots: one connection receives them from a world at full speed and converts every column to px. It has several
+subscriptions, as the server sends each at most 120 snapshots per second. Then the same snapshots are decoded from memory,
+which measures the package alone.
 """
 import argparse
 import copy
@@ -39,7 +41,7 @@ GENERATIONS, SUBSCRIPTIONS = 100, 4
 
 
 def by_program(program, seed):
-    """Seconds by the clock, and processor seconds."""
+    """Seconds by the clock, and seconds of processor time."""
     def run_s(generations):
         def now():
             used = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -54,16 +56,16 @@ def by_program(program, seed):
 
 
 def simulation_s(lab):
-    """Processor seconds of the thread that simulates."""
-    keeper = lab._server._supervisor.pid
-    with open(f"/proc/{keeper}/task/{keeper}/children") as children:
+    """Processor time of the simulation thread."""
+    supervisor = lab._server._supervisor.pid
+    with open(f"/proc/{supervisor}/task/{supervisor}/children") as children:
         tasks = pathlib.Path("/proc") / children.read().split()[0] / "task"
     (task,) = (task for task in tasks.iterdir() if (task / "comm").read_text().strip() == "simulation")
     return int((task / "schedstat").read_text().split()[0]) / 1e9
 
 
 def by_package(program, seed):
-    """The same, and the processor seconds of this program."""
+    """Seconds by the clock, processor time of the simulation thread, and processor time of this program."""
     best = []
     with evod.local(seed=seed, threads=1, program=program) as lab:
         run = lab.world().run(1 + GENERATIONS)
@@ -88,14 +90,14 @@ def generations(program, rounds):
             "python_processor_ms_a_generation": spread([1e3 * b[2] / GENERATIONS for _, b in pairs])}
 
 
-def look_at(snapshot):
-    """Every column there is."""
+def convert(snapshot):
+    """Converts every column to px."""
     kinds = (snapshot.organisms, snapshot.food, snapshot.poison)
     return sum(float(kind.x_px[0] + kind.y_px[0]) for kind in kinds) + float(
         snapshot.organisms.radius_px[0] + snapshot.organisms.health[0])
 
 
-def pictures(program, organisms, seconds):
+def snapshots(program, organisms, seconds):
     messages = []
     with evod.local(seed=1, program=program, experiment=benchmark_world(organisms)) as lab:
         world, core = lab.world(), lab._link.core
@@ -107,7 +109,7 @@ def pictures(program, organisms, seconds):
         while time.perf_counter() < began + seconds:
             for stream in streams:
                 snapshot = next(stream)
-                look_at(snapshot)
+                convert(snapshot)
                 count += 1
         come_per_s = count / (time.perf_counter() - began)
         ticks_per_s = (snapshot.tick - tick) / (time.perf_counter() - began)
@@ -115,10 +117,10 @@ def pictures(program, organisms, seconds):
             stream.close()
         take = core._take_snapshot
         core._take_snapshot = lambda message: (messages.append(copy.deepcopy(message)), take(message))
-        with world.snapshots(120) as snapshots:
+        with world.snapshots(120) as recorded:
             while len(messages) < 200:
-                next(snapshots)
-    last = messages[-1].subscription_id  # what comes of the others was on its way
+                next(recorded)
+    last = messages[-1].subscription_id  # the first messages are of the closed subscriptions
     messages = [message for message in messages if message.subscription_id == last]
     data = [framing.encode(message.SerializeToString()) for message in messages]
     decoder, reader = FrameDecoder(), framing.FrameReader()
@@ -126,11 +128,11 @@ def pictures(program, organisms, seconds):
     for one in data:
         reader.feed(one)
         for _, body in reader.frames():
-            look_at(decoder.decode(stream_pb2.SnapshotFrame.FromString(body)))
+            convert(decoder.decode(stream_pb2.SnapshotFrame.FromString(body)))
     alone_per_s = len(data) / (time.perf_counter() - began)
     return {"organisms": organisms, "come_per_s": come_per_s, "ticks_per_s": ticks_per_s, "decoded_alone_per_s": alone_per_s,
             "frame_bytes": statistics.mean(map(len, data))}
 
 
 print_figures({"generations": generations(options.evod, options.rounds),
-               "pictures": pictures(options.evod, options.organisms, options.seconds)}, options.json)
+               "snapshots": snapshots(options.evod, options.organisms, options.seconds)}, options.json)

@@ -1,4 +1,4 @@
-"""The asyncio face: the same words, and the same reliability."""
+"""evod.aio: the same functions as evod, and the same reliability."""
 import asyncio
 import inspect
 import tempfile
@@ -8,35 +8,38 @@ import evod
 import evod.aio
 from evod.v1 import commands_pb2 as c
 from support import Relay, Server
-from walk import asked_kinds, walk_all
+from every_request import record_kinds, send_every_request
 
 
-class Faces(unittest.TestCase):
-    def test_both_have_the_same_words(self):
-        for name in ("Lab", "LocalLab", "World", "Replay", "Run", "Snapshots", "Events"):
-            plain, awaited = getattr(evod, name), getattr(evod.aio, name)
-            words = {word for word in dir(plain) if not word.startswith("_")} - {"parameters"}  # an attribute cannot be awaited
-            self.assertEqual(words, {word for word in dir(awaited) if not word.startswith("_")}, name)
-            for word in words:
-                ours, theirs = getattr(plain, word), getattr(awaited, word)
-                if callable(ours):
-                    self.assertEqual(list(inspect.signature(ours).parameters.values()),
-                                     [p for p in inspect.signature(theirs).parameters.values()], f"{name}.{word}")
-                    self.assertTrue(theirs.__doc__ or not ours.__doc__, f"{name}.{word}")
-        for word in ("connect", "local"):
-            self.assertEqual(list(inspect.signature(getattr(evod, word)).parameters.values()),
-                             list(inspect.signature(getattr(evod.aio, word)).parameters.values()))
+def public(thing):
+    """The public names of a class."""
+    return {name for name in dir(thing) if not name.startswith("_")}
 
 
-class Awaited(unittest.IsolatedAsyncioTestCase):
-    async def test_every_kind_of_request_can_be_asked(self):
+class Modules(unittest.TestCase):
+    def test_both_modules_have_the_same_functions(self):
+        self.assertEqual(set(evod.aio.__all__) - set(evod.__all__), set())
+        for name in evod.aio.__all__:
+            ours, theirs = getattr(evod.aio, name), getattr(evod, name)
+            if not isinstance(ours, type):
+                self.assertEqual(inspect.signature(ours), inspect.signature(theirs), name)
+                continue
+            self.assertEqual(public(theirs) - public(ours) - {"parameters"}, set())  # an attribute cannot be awaited
+            for member in public(ours):
+                one, other = getattr(ours, member), getattr(theirs, member)
+                if callable(one):
+                    self.assertEqual(inspect.signature(one), inspect.signature(other), f"{name}.{member}")
+
+
+class Asynchronous(unittest.IsolatedAsyncioTestCase):
+    async def test_every_kind_of_request_can_be_sent(self):
         with tempfile.TemporaryDirectory() as data:
             async with evod.aio.local(seed=1, data=data) as lab:
-                kinds = asked_kinds(lab)
-                await walk_all(lab)
+                kinds = record_kinds(lab)
+                await send_every_request(lab)
         self.assertEqual(kinds, set(field.name for field in c.Request.DESCRIPTOR.oneofs_by_name["kind"].fields))
 
-    async def test_many_things_go_on_at_once(self):
+    async def test_many_coroutines_share_a_connection(self):
         async with evod.aio.local(seed=42) as lab:
             world = await lab.world()
 
@@ -50,7 +53,7 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(ended, list(range(1, 21)))
             self.assertEqual([organism.id for organism in asked], [i % 50 for i in range(200)])
 
-    async def test_more_can_be_asked_at_once_than_a_server_takes(self):
+    async def test_more_requests_than_the_limit_are_queued(self):
         async with evod.aio.local() as lab:
             world = await lab.world()
 
@@ -58,12 +61,12 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
                 return [(await world.set(food_health=value)).revision for value in range(5)]
 
             revisions = await asyncio.gather(*(ask() for _ in range(50)))
-            self.assertEqual(len({revision for told in revisions for revision in told}), 50 * 5)
+            self.assertEqual(len({revision for each in revisions for revision in each}), 50 * 5)
 
     async def first_of(self, run, count):
         return [(await anext(run)).number for _ in range(count)]
 
-    async def test_a_wait_that_is_given_up_leaves_the_rest_alone(self):
+    async def test_a_cancelled_wait_leaves_the_others(self):
         async with evod.aio.local() as lab:
             world = await lab.world()
             async with world.events() as events:
@@ -73,7 +76,7 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
                 await world.pause()
                 self.assertEqual((await anext(events)).WhichOneof("kind"), "run_control_changed")
 
-    async def test_it_goes_on_across_a_kill(self):
+    async def test_a_run_continues_after_a_kill(self):
         with tempfile.TemporaryDirectory() as data:
             options = ["--data", data, "--seed", "5", "--speed", "max"]
             server = await asyncio.to_thread(Server, *options)
@@ -94,7 +97,7 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
             relay.close()
             server.kill()
 
-    async def test_a_fault_ends_what_waits(self):
+    async def test_a_bug_in_the_client_fails_waiting_calls(self):
         async with evod.aio.local() as lab:
             events = await lab.events()
             lab._link.core._take_event = lambda event: 1 // 0
@@ -102,11 +105,11 @@ class Awaited(unittest.IsolatedAsyncioTestCase):
                 await lab.create_world("any")
                 await anext(events)
 
-    async def test_no_server_is_told_of(self):
+    async def test_a_missing_server_is_reported(self):
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1:1: start one with `evod`"):
             await evod.aio.connect("127.0.0.1:1")
 
-    async def test_closing_ends_what_waits(self):
+    async def test_closing_fails_waiting_calls(self):
         async with evod.aio.local() as server:
             lab = await evod.aio.connect(server.address)
             events = await lab.events()

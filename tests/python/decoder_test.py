@@ -1,4 +1,4 @@
-"""Pictures: as the protocol's own decoder reads them, of every world and view; and what happens with bytes that lie."""
+"""The snapshot decoder against the reference decoder of the protocol's tests, for every view; and damaged snapshots."""
 import copy
 import random
 import struct
@@ -6,20 +6,21 @@ import threading
 import unittest
 import zlib
 
-import delta_decoder  # of the protocol's tests
+import delta_decoder  # the reference decoder, in tests/system
 import numpy
 
 import evod
-from evod import framing, picture_decoder, plans
-from evod.core import Core
-from evod.v1 import commands_pb2 as c, session_pb2, stream_pb2, world_pb2
+from evod import picture_decoder
+from evod.v1 import commands_pb2 as c, stream_pb2
+
+from core_support import CoreTestCase
 
 BUSY = {"population_size": 300, "island_width_px": 3000, "island_height_px": 3000, "food_count": 400, "poison_count": 300,
         "crate_count": 10, "obstacle_count": 5, "generation_s": 5, "respawn_s": 0.2}
 
 
 def recorded(lab, world, count, **options):
-    """Messages of pictures as they came, while the world runs."""
+    """The messages of `count` snapshots as they arrive while the world runs."""
     messages, take = [], lab._link.core._take_snapshot
 
     def keep(message):
@@ -40,28 +41,7 @@ def unpack(data):
     return picture_decoder._unpack(data, 1 << 28)
 
 
-class Told(unittest.TestCase):
-    """What a core is told, and says."""
-
-    def core(self):
-        core = Core(token="", client_name="test", server="lab:1")
-        core.opened()
-        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=4, control_frame_bytes_max=500))
-        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
-        core.outgoing()
-        return core
-
-    def sent(self, core):
-        reader = framing.FrameReader()
-        reader.feed(core.outgoing())
-        return [session_pb2.ClientMessage.FromString(body) for _, body in reader.frames()]
-
-    def answer(self, core, request_id, **response):
-        message = session_pb2.ServerMessage(response=c.Response(request_id=request_id, **response))
-        core.received(framing.encode(message.SerializeToString()))
-
-
-class Decoder(Told):
+class Decoder(CoreTestCase):
     @classmethod
     def setUpClass(cls):
         with evod.local(seed=3, experiment=BUSY) as lab:
@@ -69,18 +49,18 @@ class Decoder(Told):
             world.set_speed(3)
             cls.deltas = recorded(lab, world, 60)
             world.set_speed("max")
-            cls.deltas += recorded(lab, world, 60)  # over ends of generations
+            cls.deltas += recorded(lab, world, 60)  # across ends of generations
             world.set_speed(3)
             cls.full = recorded(lab, world, 20, region=(0, 0, 1200, 1200))
             cls.dots = recorded(lab, world, 3, detail="dots")
             cls.density = recorded(lab, world, 3, detail="density")
 
-            with world.snapshots(1) as snapshots:  # the same once more in columns
+            with world.snapshots(1) as snapshots:  # the same state again, in columns
                 cls.same = next(snapshots)
             found, take = [], lab._link.core._take_snapshot
             lab._link.core._take_snapshot = lambda message: found.append(message) if message.codec == 1 else take(message)
             columns = c.SubscribeSnapshots(world=world.name, rate_hz=1)
-            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=columns))  # forgotten, it would be unsubscribed
+            held = lab._link.core.subscribe(c.Request(subscribe_snapshots=columns))  # a collected subscription would be unsubscribed
             while not found:
                 world.info()
             (cls.columns,) = found
@@ -90,7 +70,7 @@ class Decoder(Told):
         for name in columns:
             numpy.testing.assert_array_equal(entities._columns[name], reference[name])
 
-    def test_deltas_are_what_they_are_for_the_protocols_own_decoder(self):
+    def test_deltas_decode_as_in_the_reference_decoder(self):
         self.assertGreater(len({message.generation for message in self.deltas}), 2)
         self.assertGreater(sum(message.base_sequence != 0 for message in self.deltas), 50)
         decoder, reference = picture_decoder.FrameDecoder(), delta_decoder.Decoder(unpack)
@@ -105,7 +85,7 @@ class Decoder(Told):
             self.assert_same(snapshot.crates, content["crates"], ("x", "y", "half_width", "half_height", "dx", "dy"))
             self.assert_same(snapshot.obstacles, content["obstacles"], ("x", "y", "half_width", "half_height"))
 
-    def test_columns_show_what_deltas_show(self):
+    def test_columns_and_deltas_decode_to_the_same(self):
         snapshot = picture_decoder.FrameDecoder().decode(self.columns)
         self.assertEqual((snapshot.tick, snapshot.state_hash), (self.same.tick, self.same.state_hash))
         for kind in ("organisms", "food", "poison", "crates", "obstacles"):
@@ -114,7 +94,7 @@ class Decoder(Told):
         numpy.testing.assert_array_equal(snapshot.organisms.health, self.same.organisms.health)
         numpy.testing.assert_array_equal(snapshot.crates.half_width_px, self.same.crates.half_width_px)
 
-    def test_tiles_are_what_they_are_for_the_protocols_own_decoder(self):
+    def test_tiles_decode_as_in_the_reference_decoder(self):
         for messages in (self.full, self.dots, self.density):
             decoder, reference = picture_decoder.FrameDecoder(), delta_decoder.TilesDecoder(unpack)
             for message in messages:
@@ -136,7 +116,7 @@ class Decoder(Told):
         self.assertEqual({tile.detail for message in self.dots for tile in message.tiles}, {2})
         self.assertEqual({tile.detail for message in self.density for tile in message.tiles}, {3})
 
-    def test_a_picture_does_not_change_when_the_next_one_comes(self):
+    def test_later_snapshots_leave_earlier_ones_unchanged(self):
         decoder = picture_decoder.FrameDecoder()
         snapshots = [decoder.decode(message) for message in self.deltas[:30]]
         again = picture_decoder.FrameDecoder()
@@ -145,10 +125,10 @@ class Decoder(Told):
         with self.assertRaises(ValueError):
             snapshots[0].organisms.id[0] = 7
 
-    # ---- bytes that lie ----------------------------------------------------------------------------------------------
+    # ---- damaged snapshots -------------------------------------------------------------------------------------------
 
     def resealed(self, message, body):
-        """With another body, whose checksum is right."""
+        """The message with another body and its correct checksum."""
         message = copy.deepcopy(message)
         message.body, message.compression = body, stream_pb2.COMPRESSION_NONE
         counts = picture_decoder._counts_of(message)
@@ -156,7 +136,7 @@ class Decoder(Told):
         message.checksum = zlib.crc32(head + body)
         return message
 
-    def test_damage_of_every_kind_is_refused_or_makes_no_difference_in_size(self):
+    def test_damaged_bodies_are_refused_or_keep_their_counts(self):
         chance = random.Random(5)
         base = self.deltas[0]
         victims = [message for message in self.deltas[:4]]
@@ -183,14 +163,14 @@ class Decoder(Told):
         self.assertGreater(refused, 100)
         self.assertTrue(base.base_sequence == 0)
 
-    def test_every_lie_in_a_header_is_refused(self):
+    def test_wrong_header_fields_are_refused(self):
         keyframe, delta = self.deltas[0], self.deltas[1]
         self.assertNotEqual(delta.base_sequence, 0)
-        lies = {
-            "position_bytes": (0, 1, 3, 8), "codec": (0, 3), "compression": (1 if keyframe.compression == 2 else 2, 3),
+        wrong = {
+            "position_bytes": (0, 1, 3, 8), "codec": (0, 99), "compression": (1 if keyframe.compression == 2 else 2, 3),
             "checksum": (0,), "organism_count": (0, 2**32 - 1), "obstacle_count": (1, 2**31), "body": (b"", b"\0" * 50),
         }
-        for field, values in lies.items():
+        for field, values in wrong.items():
             for value in values:
                 message = copy.deepcopy(keyframe)
                 setattr(message, field, value)
@@ -199,7 +179,7 @@ class Decoder(Told):
         with self.assertRaisesRegex(evod.DamagedData, "base_sequence"):
             picture_decoder.FrameDecoder().decode(delta)
 
-    def test_counts_of_what_is_not_there_take_no_memory(self):
+    def test_false_counts_allocate_no_memory(self):
         keyframe = self.deltas[0]
         endless = struct.pack("<I", 2**32 - 1)
         for section in (b"\1" + endless + b"\0", b"\2" + endless + b"\0", b"\2" + endless + b"\x80" + endless):
@@ -207,7 +187,7 @@ class Decoder(Told):
             with self.assertRaises(evod.DamagedData):
                 picture_decoder.FrameDecoder().decode(self.resealed(keyframe, body))
 
-    def test_a_bomb_is_refused_before_it_is_unpacked(self):
+    def test_a_decompression_bomb_is_refused(self):
         if picture_decoder.zstandard is None:
             self.skipTest("python3-zstandard is not there")
         message = copy.deepcopy(self.deltas[0])
@@ -220,7 +200,7 @@ class Decoder(Told):
             with self.assertRaises(evod.DamagedData):
                 picture_decoder.FrameDecoder().decode(message)
 
-    def test_after_a_damaged_picture_a_keyframe_is_asked_for_once_and_waited_for(self):
+    def test_a_damaged_snapshot_requests_one_keyframe(self):
         core = self.core()
         subscription = core.subscribe(c.Request(subscribe_snapshots=c.SubscribeSnapshots(world="a", rate_hz=1)))
         self.answer(core, 1, subscription=c.Subscription(subscription_id=4, rate_hz=1))
@@ -229,22 +209,22 @@ class Decoder(Told):
         for message in (keyframe, *deltas):
             message.subscription_id = 4
 
-        def come(message):
+        def receive(message):
             body = message.SerializeToString()
             core.received(b"EV\1\2" + struct.pack("<I", len(body)) + body)
-            said = self.sent(core)
-            return len(subscription.arrived), [message.request.WhichOneof("kind") or "acknowledged" for message in said]
+            replies = [message.request.WhichOneof("kind") or "acknowledged" for message in self.sent(core)]
+            return len(subscription.arrived), replies
 
-        self.assertEqual(come(keyframe), (1, []))  # is acknowledged when it is taken
+        self.assertEqual(receive(keyframe), (1, []))  # acknowledged once it is taken
         deltas[0].checksum ^= 1
-        self.assertEqual(sorted(come(deltas[0])[1]), ["acknowledged", "request_keyframe"])
-        self.assertEqual(come(deltas[1]), (1, ["acknowledged"]))
-        self.assertEqual(come(keyframe), (2, []))
+        self.assertEqual(sorted(receive(deltas[0])[1]), ["acknowledged", "request_keyframe"])
+        self.assertEqual(receive(deltas[1]), (1, ["acknowledged"]))
+        self.assertEqual(receive(keyframe), (2, []))
         self.assertEqual(core.damaged_snapshot_count, 1)
 
-    def test_tiles_that_lie_are_refused(self):
-        lies = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
-        for field, value in lies:
+    def test_wrong_tile_fields_are_refused(self):
+        wrong = (("tile", 10_000), ("detail", 0), ("detail", 2), ("detail", 3), ("checksum", 1), ("organism_count", 9999))
+        for field, value in wrong:
             message = copy.deepcopy(self.full[0])
             setattr(message.tiles[0], field, value)
             with self.assertRaises(evod.DamagedData, msg=field):
@@ -259,76 +239,6 @@ class Decoder(Told):
         with self.assertRaisesRegex(evod.DamagedData, "rising"):
             picture_decoder.FrameDecoder().decode(message)
 
-
-class Streams(Told):
-    """The core, told of a line that damages what it carries."""
-
-    def test_frames_that_lie_end_the_line(self):
-        for head, what in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"),
-                           (b"EV\1\3\0\0\0\0", "channel is 3"),
-                           (b"EV\1\1\1\0\0\4", "bytes long"), (b"EV\1\1\1\0\0\0\xff", "cannot be read")):
-            with self.assertRaisesRegex(evod.DamagedData, what):
-                self.core().received(head)
-
-    def test_random_bytes_never_do_anything_else(self):
-        chance = random.Random(11)
-        for _ in range(3000):
-            core = self.core()
-            body = chance.randbytes(chance.randrange(40))
-            try:
-                core.received(b"EV\1" + bytes([chance.choice((1, 2))]) + struct.pack("<I", len(body)) + body)
-            except evod.Error:
-                pass
-
-    def test_frames_come_together_from_any_pieces(self):
-        message = session_pb2.ServerMessage(event=stream_pb2.Event(world="a", server_going_away=stream_pb2.ServerGoingAway()))
-        data = framing.encode(message.SerializeToString()) * 3
-        for size in (1, 3, 7, 1000):
-            reader, bodies = framing.FrameReader(), []
-            for at in range(0, len(data), size):
-                reader.feed(data[at:at + size])
-                bodies += [body for _, body in reader.frames()]
-            self.assertEqual(bodies, [message.SerializeToString()] * 3)
-
-    def test_requests_wait_for_their_turn_and_are_sent_again_in_order(self):
-        core = self.core()
-        asked = [core.request(c.Request(pause=c.Pause(world=str(i)))) for i in range(5)]
-        self.assertEqual([message.request.request_id for message in self.sent(core)], [1, 2])
-        self.answer(core, 1)
-        self.assertTrue(asked[0].done)
-        self.assertEqual([message.request.request_id for message in self.sent(core)], [3])
-        core.lost(evod.NoConnection("gone"))
-        core.opened()
-        self.assertEqual([message.WhichOneof("kind") for message in self.sent(core)], ["hello"])
-        welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=9))
-        core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
-        again = self.sent(core)
-        self.assertEqual([message.request.request_id for message in again], [2, 3, 4, 5])
-        self.assertEqual({message.request.client_key for message in again}, {core.client_key})
-
-    def test_a_past_that_opens_too_late_is_closed(self):
-        core = self.core()
-        pending = core.request(c.Request(open_replay=c.OpenReplay(world="w")))
-        self.assertEqual(len(self.sent(core)), 1)
-        core.forget(pending)
-        self.answer(core, 1, world=world_pb2.WorldInfo(name="w@1"))
-        self.assertEqual([message.request.close_replay.world for message in self.sent(core)], ["w@1"])
-
-    def test_a_refused_view_is_not_asked_for_in_the_next_session(self):
-        core = self.core()
-        subscription = core.subscribe(c.Request(subscribe_snapshots=c.SubscribeSnapshots(world="w")))
-        stream = plans.SnapshotStream(core, subscription)
-        plan = stream.set_view(c.View(detail=stream_pb2.DETAIL_DOTS))
-        step = next(plan)
-        self.assertFalse(step.condition(), "the server has not accepted the subscription yet")
-        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
-        self.assertTrue(step.condition())
-        request = plan.send(None)
-        self.assertEqual(request.set_view.subscription_id, 4)
-        with self.assertRaises(evod.Error):
-            plan.throw(evod.Error("no view there"))
-        self.assertFalse(subscription.request.subscribe_snapshots.HasField("view"))
-
     def test_threads_share_no_decompressor(self):
         unpackers = [picture_decoder._unpacker()]
         thread = threading.Thread(target=lambda: unpackers.append(picture_decoder._unpacker()))
@@ -336,35 +246,6 @@ class Streams(Told):
         thread.join()
         self.assertIsNot(*unpackers)
         self.assertIs(picture_decoder._unpacker(), unpackers[0])
-
-    def test_what_means_nothing_in_another_session_is_not_sent_again(self):
-        core = self.core()
-        pending = core.request(c.Request(unsubscribe=c.Unsubscribe(subscription_id=1)))
-        core.lost(evod.NoConnection("gone"))
-        self.assertIsInstance(pending.error, evod.NoConnection)
-
-    def test_what_is_too_long_is_not_sent(self):
-        core = self.core()
-        with self.assertRaisesRegex(evod.Error, "bytes long, allowed 500"):
-            core.request(c.Request(pause=c.Pause(world="x" * 500)))
-        self.assertEqual(core.outgoing(), b"")
-
-    def test_of_events_that_nobody_takes_the_newest_are_kept_and_the_loss_is_told(self):
-        core = self.core()
-        subscription = core.subscribe(c.Request(subscribe_events=c.SubscribeEvents(world="a")))
-        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
-        event = framing.encode(session_pb2.ServerMessage(event=stream_pb2.Event(
-            world="a", world_deleted=stream_pb2.WorldDeleted())).SerializeToString())
-        core.received(event * 10_002)
-        self.assertEqual(subscription.take_event().events_dropped.dropped_count, 2)
-        self.assertEqual(len(subscription.arrived), 10_000)
-
-    def test_who_is_not_held_any_more_is_unsubscribed(self):
-        core = self.core()
-        core.subscribe(c.Request(subscribe_events=c.SubscribeEvents(world="a")))
-        self.answer(core, 1, subscription=c.Subscription(subscription_id=4))
-        (unsubscribed,) = [message.request for message in self.sent(core) if message.request.HasField("unsubscribe")]
-        self.assertEqual(unsubscribed.unsubscribe.subscription_id, 4)
 
 
 if __name__ == "__main__":

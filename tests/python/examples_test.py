@@ -1,4 +1,4 @@
-"""The examples in small, and the pictures."""
+"""The examples run, with few generations, and print and plot their results."""
 import contextlib
 import io
 import pathlib
@@ -8,10 +8,7 @@ import tempfile
 import unittest
 from unittest import mock
 
-import numpy
 from matplotlib import pyplot
-
-import evod
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "client" / "python" / "examples"
 SMALL = {
@@ -22,7 +19,7 @@ SMALL = {
     "fork": ["--generations", "6"],
     "follow_a_lineage": ["--generations", "4"],
 }
-SAYS = {
+PRINTS = {
     "watch_a_run": "mean health",
     "change_at_generation_20": "generation 22: best",
     "compare_selection": "truncation: ",
@@ -33,88 +30,28 @@ SAYS = {
 
 
 class Examples(unittest.TestCase):
-    def test_there_is_no_other(self):
+    def test_every_example_is_tested(self):
         self.assertEqual({path.stem for path in EXAMPLES.glob("*.py")}, set(SMALL))
 
 
 def _runs(name):
     def test(self):
         with tempfile.TemporaryDirectory() as folder:
-            picture = pathlib.Path(folder) / "picture.png"
+            plot = pathlib.Path(folder) / "plot.png"
             draws = name != "watch_a_run"
-            arguments = [name, *SMALL[name], *(["--output", str(picture)] if draws else [])]
-            said = io.StringIO()
-            with mock.patch.object(sys, "argv", arguments), contextlib.redirect_stdout(said):
+            arguments = [name, *SMALL[name], *(["--output", str(plot)] if draws else [])]
+            output = io.StringIO()
+            with mock.patch.object(sys, "argv", arguments), contextlib.redirect_stdout(output):
                 runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
             pyplot.close("all")
-            self.assertIn(SAYS[name], said.getvalue())
+            self.assertIn(PRINTS[name], output.getvalue())
             if draws:
-                self.assertGreater(picture.stat().st_size, 5000)
+                self.assertGreater(plot.stat().st_size, 5000)
     return test
 
 
 for _name in SMALL:
     setattr(Examples, f"test_{_name}", _runs(_name))
-
-
-class Pictures(unittest.TestCase):
-    def test_a_world_is_drawn_where_it_is(self):
-        with evod.local(seed=3, experiment={"crate_count": 3, "obstacle_count": 2}) as lab:
-            snapshot = lab.world().snapshot()
-        axes = snapshot.plot()
-        obstacles, crates, food, poison, organisms = axes.collections
-        numpy.testing.assert_array_equal(organisms.get_offsets()[:, 0], snapshot.organisms.x_px)
-        numpy.testing.assert_array_equal(organisms.get_array(), snapshot.organisms.health)
-        self.assertEqual([len(x.get_offsets()) for x in (food, poison)], [len(snapshot.food), len(snapshot.poison)])
-        self.assertEqual([len(x.get_paths()) for x in (obstacles, crates)], [2, 3])
-        left = crates.get_paths()[0].vertices[:, 0].min()
-        self.assertEqual(left, snapshot.crates.x_px[0] - snapshot.crates.half_width_px[0])
-        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((0, snapshot.width_px), (snapshot.height_px, 0)))
-
-    def test_curves_are_what_the_statistics_tell_over_all_islands(self):
-        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2}
-        with evod.local(seed=3, experiment=experiment) as lab:
-            world = lab.world()
-            with self.assertRaisesRegex(evod.Error, "no generation has ended yet"):
-                world.plot_fitness()
-            told = list(world.run(3))
-            mean, best = world.plot_fitness().lines
-            numpy.testing.assert_allclose(mean.get_ydata(), [g.mean for g in told])
-            numpy.testing.assert_allclose(best.get_ydata(), [g.best for g in told])
-            genes = world.plot_genes().lines
-            numpy.testing.assert_allclose([line.get_ydata() for line in genes], numpy.array([g.genes for g in told]).T)
-
-    def test_selection_is_drawn_as_it_is_told_over_all_islands(self):
-        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
-        with tempfile.TemporaryDirectory() as folder:
-            with evod.local(seed=3, experiment=experiment, data=folder) as lab:
-                world = lab.world()
-                told = list(world.run(4))
-                axes = world.plot_selection("body_size")
-                with self.assertRaisesRegex(evod.Error, "gene: got 'size', allowed normal_speed, impulse, body_size"):
-                    world.plot_selection("size")
-            with evod.open_run(folder + "/default.evod") as run:
-                from_file = run.plot_selection("body_size")
-                table = run.generations()
-        lines = {line.get_label(): line.get_ydata() for line in axes.lines}
-        for part in ("selection", "transmission", "migration", "change"):
-            numpy.testing.assert_allclose(lines[part], [getattr(g, part)[2] for g in told])
-            (again,) = (line.get_ydata() for line in from_file.lines if line.get_label() == part)
-            numpy.testing.assert_array_equal(again, lines[part])
-            self.assertTrue(numpy.isnan(lines[part][0]))
-            self.assertFalse(numpy.isnan(lines[part][1:]).any())
-            self.assertTrue((lines[part][1:] != 0).all(), part)
-        sums = lines["selection"] + lines["transmission"] + lines["migration"]
-        numpy.testing.assert_allclose(sums[1:], lines["change"][1:], rtol=1e-9)
-        numpy.testing.assert_allclose(lines["change"][1:], numpy.diff([g.genes[2] for g in told]), atol=1e-10)
-        self.assertEqual(list(table["body_size_change"].isna()), [True, True] + [False] * 6)
-
-    def test_a_notebook_plays_a_world(self):
-        with evod.local(seed=3, speed=10) as lab:
-            world = lab.world()
-            self.assertIn("</script>", world.animate(3)._repr_html_())  # stands still: one picture
-            world.run()
-            self.assertIn("frames[2]", world.animate(3)._repr_html_())
 
 
 if __name__ == "__main__":

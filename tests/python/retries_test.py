@@ -1,4 +1,4 @@
-"""Lines that break and servers that are killed: what was asked happens once, and what was subscribed to goes on."""
+"""Lost connections and killed servers: commands are applied once, and subscriptions resume."""
 import contextlib
 import sqlite3
 import tempfile
@@ -36,14 +36,14 @@ class Retries(unittest.TestCase):
         self.addCleanup(relay.close)
         return lab
 
-    def asked_of(self, lab):
-        """The ids of what was done for it; none of them twice."""
+    def applied_ids(self, lab):
+        """The request ids of the lab's commands in the journal; none is there twice."""
         with contextlib.closing(sqlite3.connect(f"file:{self.data}/default.evod?mode=ro", uri=True)) as run:
             rows = run.execute("SELECT request_id FROM journal WHERE client_key = ?", [lab.client_key]).fetchall()
         self.assertEqual(len(rows), len(set(rows)))
         return [row[0] for row in rows]
 
-    def test_a_command_whose_answer_is_lost_happens_once(self):
+    def test_a_command_with_a_lost_answer_is_applied_once(self):
         relay = Relay(self.server.port)
         lab = self.connect(relay)
         world = lab.world()
@@ -59,24 +59,24 @@ class Retries(unittest.TestCase):
         relay.at = lose_one
         parameters = world.set(mutation_chance=0.5)
         self.assertEqual(len(lost), 1)
-        self.assertEqual(relay.lines, 2)
+        self.assertEqual(relay.connection_count, 2)
         self.assertEqual(parameters.revision, world.get_parameters().revision)
-        self.assertEqual(len(self.asked_of(lab)), 1)
+        self.assertEqual(len(self.applied_ids(lab)), 1)
 
-    def test_a_server_killed_in_the_middle_of_a_retry_does_a_command_once(self):
+    def test_a_kill_during_a_retry_applies_a_command_once(self):
         relay = Relay(self.server.port)
         lab = self.connect(relay)
         world = lab.world()
         lab.registry()
-        lab.request(run=c.Run())  # ticks pass; and no events come
+        lab.request(run=c.Run())  # as World.run() does, without subscribing to events
         deaths = []
 
         def kill(to_server, data):
-            """The answer is lost with the server; and so is the answer to the retry, by another kill."""
+            """Kills the server before the answer arrives, and again before the answer to the retry arrives."""
             if to_server or len(deaths) >= 4:
                 return False
             deaths.append(data)
-            # The first thing that a new session hears is its welcome: that arrives, and the next thing does not.
+            # The first data of a new session is its Welcome, which arrives; the data after it does not.
             if len(deaths) % 2 == 0:
                 return False
             self.restart(relay)
@@ -86,9 +86,9 @@ class Retries(unittest.TestCase):
         parameters = world.set(mutation_chance=0.5)
         self.assertEqual(len(deaths), 4)
         self.assertEqual(parameters.mutation_chance, 0.5)
-        self.assertEqual(len(self.asked_of(lab)), 2)  # run, set_parameters
+        self.assertEqual(len(self.applied_ids(lab)), 2)  # run, set_parameters
 
-    def test_killed_at_any_moment_it_does_each_command_once(self):
+    def test_kills_at_any_time_apply_each_command_once(self):
         relay = Relay(self.server.port)
         lab = self.connect(relay)
         world = lab.world()
@@ -106,17 +106,17 @@ class Retries(unittest.TestCase):
         worker.start()
         for _ in range(4):
             count = len(done)
-            until(lambda: len(done) > count + 3 or failures, "some more are done")
+            until(lambda: len(done) > count + 3 or failures, "some more commands are applied")
             self.restart(relay)
         count = len(done)
-        until(lambda: len(done) > count + 3 or failures, "it goes on")
+        until(lambda: len(done) > count + 3 or failures, "commands are applied again")
         enough.set()
         worker.join()
         self.assertEqual(failures, [])
-        self.assertEqual(done, sorted(set(done)))  # each raised the revision
-        self.assertEqual(len(self.asked_of(lab)), 1 + len(done))
+        self.assertEqual(done, sorted(set(done)))  # each command increased the revision
+        self.assertEqual(len(self.applied_ids(lab)), 1 + len(done))
 
-    def test_generations_are_told_each_once_across_a_kill(self):
+    def test_each_generation_is_returned_once_across_a_kill(self):
         relay = Relay(self.server.port)
         world = self.connect(relay).world()
         numbers = []
@@ -128,7 +128,7 @@ class Retries(unittest.TestCase):
                 relay.cut()
         self.assertEqual(numbers, list(range(1, 41)))
 
-    def test_frames_and_events_go_on_after_a_kill(self):
+    def test_snapshots_and_events_resume_after_a_kill(self):
         relay = Relay(self.server.port)
         world = self.connect(relay).world()
         events = world.events()
@@ -148,7 +148,7 @@ class Retries(unittest.TestCase):
             if event.HasField("generation_finished"):
                 break
 
-    def test_a_server_that_stays_away_is_told_of(self):
+    def test_a_server_that_stays_away_is_reported(self):
         relay = Relay(self.server.port)
         lab = evod.connect(relay.address)
         self.addCleanup(lab.close)
@@ -157,7 +157,7 @@ class Retries(unittest.TestCase):
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1"):
             lab.worlds()
 
-    def test_without_reconnecting_a_lost_line_is_told_of_at_once(self):
+    def test_without_reconnect_a_loss_is_reported_at_once(self):
         relay = Relay(self.server.port)
         lab = self.connect(relay, reconnect=False)
         relay.cut()

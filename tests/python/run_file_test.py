@@ -1,4 +1,4 @@
-"""Run files read without a server: the tables that `evod export` writes, of files of every kind."""
+"""Run files read without a server: tables, damage, purged generations."""
 import os
 import pathlib
 import shutil
@@ -41,26 +41,26 @@ class RunFiles(unittest.TestCase):
                 assert len(run.generations()) >= 6
             cls.tables = {table: world.table(table) for table in ("generations", "organisms", "population", "events")}
 
-    def test_tables_are_those_that_evod_exports(self):
+    def test_tables_equal_those_of_evod_export(self):
         for name in ("default", "islands"):
             path = self.folder / f"{name}.evod"
             with evod.open_run(path) as run:
                 for table in ("generations", "organisms", "population", "events", "lineage"):
                     ours, theirs = getattr(run, table)(), exported(path, table)
                     self.assertGreater(len(ours), 0)
-                    if table == "events":  # two programs write the same JSON in two ways
+                    if table == "events":  # Python and evod format the same JSON differently
                         ours, theirs = ours.drop(columns="request"), theirs.drop(columns="request")
                     pandas.testing.assert_frame_equal(ours, theirs, check_exact=True, check_dtype=False, obj=f"{name}, {table}")
                 pandas.testing.assert_frame_equal(run.lineage((2, 0, 3)), exported(path, "lineage", "--of", "2:0:3"))
                 pandas.testing.assert_frame_equal(run.population(2), exported(path, "population", "--generation", "2"))
 
-    def test_a_server_tells_the_same(self):
+    def test_a_server_returns_the_same_tables(self):
         with evod.open_run(self.path) as run:
-            for table, told in self.tables.items():
+            for table, expected in self.tables.items():
                 if table != "events":
-                    pandas.testing.assert_frame_equal(getattr(run, table)(), told, check_exact=True, check_dtype=False)
+                    pandas.testing.assert_frame_equal(getattr(run, table)(), expected, check_exact=True, check_dtype=False)
 
-    def test_what_it_began_with(self):
+    def test_properties_describe_the_run(self):
         with evod.open_run(self.path) as run:
             self.assertEqual((run.name, run.seed, run.first_generation, run.last_generation), ("default", 42, 1, 7))
             self.assertEqual(run.parameters["population_size"], 10)
@@ -74,7 +74,7 @@ class RunFiles(unittest.TestCase):
             world = lab.create_world("plate", SMALL, population=genes)
             numpy.testing.assert_array_equal(world.population().genes, genes[0])
 
-    def test_a_run_that_holds_fewer_generations_says_which(self):
+    def test_purged_generations_are_named(self):
         with tempfile.TemporaryDirectory() as folder:
             server = Server("--data", folder, "--keep-every", "3", "--speed", "max")
             with evod.connect(f"127.0.0.1:{server.port}") as lab:
@@ -87,7 +87,7 @@ class RunFiles(unittest.TestCase):
                 with self.assertRaisesRegex(evod.Error, "no longer contains the organisms of generation 2"):
                     run.genes(2)
 
-    def test_what_is_no_run_file_is_told_of(self):
+    def test_other_files_are_refused(self):
         with self.assertRaisesRegex(evod.Error, "there is no run file .*/no.evod"):
             evod.open_run(self.folder / "no.evod")
         for name, content in (("empty.evod", b""), ("text.evod", b"generation,island\n" * 1000), ("zero.evod", bytes(8192))):
@@ -101,7 +101,7 @@ class RunFiles(unittest.TestCase):
         with self.assertRaisesRegex(evod.DamagedData, "is no run file"):
             evod.open_run(other)
 
-    def test_a_view_in_the_place_of_a_table_is_refused(self):
+    def test_a_view_in_place_of_a_table_is_refused(self):
         path = self.folder / "view.evod"
         shutil.copy(self.path, path)
         with sqlite3.connect(path) as file:
@@ -112,7 +112,7 @@ class RunFiles(unittest.TestCase):
         with self.assertRaisesRegex(evod.DamagedData, "view.evod is not as evod wrote it: it contains the view 'run'"):
             evod.open_run(path)
 
-    def test_damage_is_an_error_of_ours(self):
+    def test_damage_raises_DamagedData(self):
         for table, column in (("population", "chromosomes"), ("population", "parents"), ("outcome", "fitness")):
             path = self.folder / "damaged.evod"
             shutil.copy(self.path, path)
@@ -124,7 +124,7 @@ class RunFiles(unittest.TestCase):
         with evod.open_run(self.path) as run, self.assertRaisesRegex(evod.Error, "generation: got 99, allowed in .*: 1 to 7"):
             run.genes(99)
 
-    def test_nothing_is_changed(self):
+    def test_reading_changes_nothing(self):
         before = self.path.read_bytes()
         with evod.open_run(self.path) as run:
             run.organisms()

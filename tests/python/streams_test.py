@@ -1,4 +1,4 @@
-"""Generations, pictures and events one after another, whoever else has a hand in it."""
+"""The streams of a world: generations, snapshots and events, also while another client changes the world."""
 import unittest
 
 import evod
@@ -21,22 +21,22 @@ class Generations(unittest.TestCase):
         self.world = self.lab.create_world(name, {"population_size": 12, "generation_s": 2}, seed=7, speed="max")
         self.addCleanup(lambda: self.world.name in [x.name for x in self.lab.worlds()] and self.world.delete())
 
-    def test_each_is_told_once_by_one_run_after_another(self):
+    def test_consecutive_runs_return_each_generation_once(self):
         self.assertEqual(numbers(self.world.run(2)), [1, 2])
         self.assertEqual(numbers(self.world.run(3)), [3, 4, 5])
         run = self.world.run()
         self.assertEqual([next(run).number for _ in range(2)], [6, 7])
 
-    def test_they_are_what_the_history_tells(self):
-        told = list(self.world.run(5))
+    def test_generations_equal_the_history(self):
+        generations = list(self.world.run(5))
         history = self.world.history()
-        self.assertEqual([g.islands for g in told], [g.islands for g in history])
-        for g in told:
+        self.assertEqual([g.islands for g in generations], [g.islands for g in history])
+        for g in generations:
             self.assertEqual((g.best, g.worst), (g.islands[0].fitness_best, g.islands[0].fitness_worst))
             self.assertEqual(g.genes.tolist(), [gene.mean for gene in g.islands[0].genes])
         self.assertEqual([g.number for g in self.world.history(2, 3)], [2, 3])
 
-    def test_those_of_several_islands_are_one(self):
+    def test_a_generation_contains_all_islands(self):
         world = self.lab.create_world("islands", {"island_count": 3, "population_size": 12, "generation_s": 2}, speed="max")
         (g,) = world.run(1)
         self.assertEqual([island.island for island in g.islands], [0, 1, 2])
@@ -45,17 +45,17 @@ class Generations(unittest.TestCase):
         self.assertEqual({snapshot.island for _, snapshot in zip(range(3), world.snapshots())}, {0, 1, 2})
         world.delete()
 
-    def test_a_run_that_others_end_sooner_ends(self):
+    def test_a_run_shortened_by_another_command_ends(self):
         run = self.world.run(10**6)
         self.world.run(1)
         self.assertEqual(numbers(run)[-1], self.world.wait().generation)
 
-    def test_a_run_that_a_criterion_ends_ends(self):
+    def test_a_termination_criterion_ends_a_run(self):
         self.world.set(generation_limit=4)
         self.assertEqual(numbers(self.world.run(50)), [1, 2, 3, 4])
         self.assertEqual(self.world.info().state, world_pb2.RUN_STATE_TERMINATED)
 
-    def test_a_run_that_is_reset_or_deleted_is_told_of(self):
+    def test_a_reset_or_deleted_world_fails_its_run(self):
         run = self.world.run()
         self.world.reset()
         with self.assertRaisesRegex(evod.Error, "was reset while it ran"):
@@ -65,11 +65,11 @@ class Generations(unittest.TestCase):
         with self.assertRaisesRegex(evod.Error, "was deleted while it ran"):
             numbers(run)
 
-    def test_nobody_has_to_look(self):
+    def test_a_world_runs_without_being_iterated(self):
         self.world.run(3)
         self.assertEqual(self.world.wait().generation, 3)
 
-    def test_frames_stop_coming_when_they_are_closed(self):
+    def test_closed_snapshots_are_unsubscribed(self):
         snapshots = self.world.snapshots(10**6)
         self.assertEqual(snapshots.rate_hz, self.lab.describe().limits.snapshot_rate_hz_max)
         next(snapshots)
@@ -77,7 +77,7 @@ class Generations(unittest.TestCase):
         self.world.run(2).wait()
         self.assertEqual(self.lab._link.core._streams, {})
 
-    def test_who_takes_long_is_shown_fewer_and_newer(self):
+    def test_a_slow_reader_receives_fewer_snapshots(self):
         with self.world.snapshots(120) as snapshots:
             self.world.run()
             next(snapshots)
@@ -90,14 +90,14 @@ class Generations(unittest.TestCase):
         self.assertLessEqual(len(behind), UNACKNOWLEDGED_MAX)
         self.assertEqual([snapshot.tick for snapshot in behind], sorted(snapshot.tick for snapshot in behind))
 
-    def test_events_of_one_world_and_of_all(self):
+    def test_events_are_of_one_world_or_of_all(self):
         events, everything = self.world.events(), self.lab.events()
         other = self.lab.create_world("other")
         self.world.pause()
         other.delete()
         self.assertEqual(next(events).WhichOneof("kind"), "run_control_changed")
         kinds = [event.WhichOneof("kind") for _, event in zip(range(4), everything)]
-        # The first change is the new world's speed, which is that of evod.local().
+        # The first run_control_changed is the speed of the new world, which is that of evod.local().
         self.assertEqual(kinds, ["world_created", "run_control_changed", "run_control_changed", "world_deleted"])
 
 

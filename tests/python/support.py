@@ -1,4 +1,4 @@
-"""Real servers for the tests of the Python package. EVOD names the program."""
+"""Real servers and a relay for the tests of the Python package. The environment variable EVOD names the program."""
 import os
 import re
 import signal
@@ -12,11 +12,11 @@ from evod import transport
 from waiting import until
 
 PROGRAM = os.environ["EVOD"]
-transport.CONNECT_TIMEOUT_S = 600.0  # as the machine may stand still
+transport.CONNECT_TIMEOUT_S = 600.0  # a busy machine may be slow
 
 
 class Server:
-    """One that can be killed; evod.local() is for all else."""
+    """A server that a test can kill; other tests use evod.local()."""
 
     def __init__(self, *options, port=0):
         self.log = tempfile.TemporaryFile()
@@ -41,15 +41,15 @@ class Server:
 
 
 class Relay:
-    """Stands between a client and a server, and sees what they say; `at` may cut the line before it goes on.
+    """Forwards data between a client and a server, and can cut the connection.
 
-    at(to_server, data): called on a thread of the relay for every piece of either; True: it does not arrive, and the line
-    is cut.
+    at(to_server, data): called on a thread of the relay before it forwards a piece of data; True drops the piece and cuts
+    the connection.
     """
 
     def __init__(self, port, at=lambda to_server, data: False):
-        self.port, self.at = port, at  # of the server; the next line goes there
-        self.lines = 0
+        self.port, self.at = port, at  # port of the server for the next connection
+        self.connection_count = 0
         self._open = []
         self._listener = socket.create_server(("127.0.0.1", 0))
         self.address = "127.0.0.1:%d" % self._listener.getsockname()[1]
@@ -66,7 +66,7 @@ class Relay:
             except OSError:
                 client.close()
                 continue
-            self.lines += 1
+            self.connection_count += 1
             self._open.append((client, server))
             for end, other, to_server in ((client, server, True), (server, client, False)):
                 threading.Thread(target=self._carry, args=(end, other, to_server), daemon=True).start()
@@ -81,8 +81,8 @@ class Relay:
             pass
         self.cut((end, other))
 
-    def cut(self, line=None):
-        for ends in [line] if line else list(self._open):
+    def cut(self, connection=None):
+        for ends in [connection] if connection else list(self._open):
             for end in ends:
                 try:
                     end.shutdown(socket.SHUT_RDWR)
@@ -91,6 +91,6 @@ class Relay:
                 end.close()
 
     def close(self):
-        self._listener.shutdown(socket.SHUT_RDWR)  # wakes who accepts
+        self._listener.shutdown(socket.SHUT_RDWR)  # wakes the accepting thread
         self._listener.close()
         self.cut()

@@ -1,11 +1,11 @@
-"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to what its line says, to the last number."""
+"""The test vectors of docs/PROTOCOL.md: every frame of proto/vectors decodes to exactly the values of its line."""
 import collections
 import json
 import pathlib
 import unittest
 import zlib
 
-import delta_decoder  # of the protocol's tests
+import delta_decoder  # the reference decoder, in tests/system
 import numpy
 
 import evod
@@ -20,7 +20,7 @@ Vector = collections.namedtuple("Vector", "name head decoded body snapshot")
 
 
 def vectors():
-    """All of them, in the order of the files."""
+    """All vectors, in the order of the files."""
     reader = framing.FrameReader()
     reader.feed((FOLDER / "snapshots.frames").read_bytes())
     frames, found = list(reader.frames()), []
@@ -44,26 +44,26 @@ def columns_of(entities, with_ids):
 
 
 def entities_of(snapshot, with_ids):
-    """Whole numbers; a kind without entities is left out."""
+    """The integer columns of each kind that has entities."""
     return {kind: columns_of(getattr(snapshot, kind), with_ids) for kind in KINDS if len(getattr(snapshot, kind))}
 
 
-def told_of(tile):
+def tile_of(tile):
     """A tile at DETAIL_FULL without its entities: the decoder returns those of all tiles together."""
-    told = {"tile": tile.index, "detail": stream_pb2.Detail.Name(tile.detail)}
+    content = {"tile": tile.index, "detail": stream_pb2.Detail.Name(tile.detail)}
     if tile.dots is not None:
         corner = numpy.array([[tile.left_px], [tile.top_px]])
         for kind, places in tile.dots.items():
             if places.size:
-                told[kind] = dict(zip("xy", ((places - corner) * 256 / tile.side_px).tolist()))
+                content[kind] = dict(zip("xy", ((places - corner) * 256 / tile.side_px).tolist()))
     if tile.density is not None:
-        told |= {kind: cells.tolist() for kind, cells in tile.density.items()}
-        told["cells"] = len(tile.density["food"])
-    return told
+        content |= {kind: cells.tolist() for kind, cells in tile.density.items()}
+        content["cells"] = len(tile.density["food"])
+    return content
 
 
 def together(tiles):
-    """The tiles without what is told at DETAIL_FULL, and that of all of them, by rising id."""
+    """The tiles without their entities at DETAIL_FULL, and those entities of all tiles, in ascending order of ids."""
     rest, rows = [], collections.defaultdict(dict)
     for tile in tiles:
         if tile["detail"] == "DETAIL_FULL":
@@ -84,15 +84,15 @@ class Vectors(unittest.TestCase):
     def setUp(self):
         self.vectors = vectors()
 
-    def test_frames_are_the_bytes_that_the_lines_say(self):
+    def test_frames_have_the_listed_size_and_checksum(self):
         for vector in self.vectors:
             frame = b"EV\x01\x02" + len(vector.body).to_bytes(4, "little") + vector.body
             self.assertEqual({"frame_bytes": len(frame), "frame_crc32": zlib.crc32(frame)},
                              {field: vector.head[field] for field in ("frame_bytes", "frame_crc32")}, vector.name)
             self.assertEqual(stream_pb2.Codec.Name(vector.snapshot.codec), vector.head["codec"], vector.name)
 
-    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not there")
-    def test_they_decode_to_what_the_lines_say(self):
+    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not installed")
+    def test_frames_decode_to_the_listed_values(self):
         decoders = collections.defaultdict(picture_decoder.FrameDecoder)  # by case and island
         for vector in self.vectors:
             decoder = decoders[vector.head["case"], vector.snapshot.island]
@@ -104,13 +104,13 @@ class Vectors(unittest.TestCase):
             snapshot, expected = decoder.decode(vector.snapshot), dict(vector.decoded)
             shown = {field: getattr(snapshot, field) for field in ABOUT} | entities_of(snapshot, "tiles" in expected)
             if "tiles" in expected:
-                shown |= {"tile_px": vector.snapshot.tile_px, "tiles": [told_of(tile) for tile in snapshot.tiles]}
+                shown |= {"tile_px": vector.snapshot.tile_px, "tiles": [tile_of(tile) for tile in snapshot.tiles]}
                 expected["tiles"], entities = together(expected["tiles"])
                 expected |= entities
             self.assertEqual(shown, expected, vector.name)
 
-    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not there")
-    def test_they_have_every_form_that_a_delta_can_take(self):
+    @unittest.skipUnless(picture_decoder.can_unpack, "the package zstandard is not installed")
+    def test_vectors_cover_every_form_of_a_delta(self):
         seen = set()
 
         class Body(delta_decoder.Body):
@@ -121,11 +121,11 @@ class Vectors(unittest.TestCase):
 
         class Decoder(delta_decoder.Decoder):
             def section(self, body, name, sizes, base, ticks, position_bytes):
-                told = "tile" if "crates" in self.have_ids else "island"
+                scope = "tile" if "crates" in self.have_ids else "island"
                 form = "keyframe" if base is None else "delta"
-                seen.add((told, form, name, "parts", body.body[body.offset]))
-                seen.add((told, form, "ticks", min(ticks, 2)))
-                seen.add((told, "position_bytes", position_bytes))
+                seen.add((scope, form, name, "parts", body.body[body.offset]))
+                seen.add((scope, form, "ticks", min(ticks, 2)))
+                seen.add((scope, "position_bytes", position_bytes))
                 return super().section(body, name, sizes, base, ticks, position_bytes)
 
         decoders, refused = {}, 0
@@ -149,14 +149,14 @@ class Vectors(unittest.TestCase):
         finally:
             delta_decoder.Body, delta_decoder.Decoder = originals
         columns = {("column", width, form) for width in (0, 1, 2) for form in ("plain", "with exceptions")}
-        columns.add(("column", 4, "plain"))  # what an exception takes the place of is narrower
-        sections = {(told, "delta", "food", "parts", parts) for told in ("island", "tile") for parts in range(4)}
+        columns.add(("column", 4, "plain"))  # columns with exceptions are narrower
+        sections = {(scope, "delta", "food", "parts", parts) for scope in ("island", "tile") for parts in range(4)}
         sections |= {("tile", "delta", "organisms", "parts", parts) for parts in range(4)}
         sections |= {("tile", "delta", "crates", "parts", parts) for parts in range(3)}
-        sections |= {("island", "delta", "organisms", "parts", parts) for parts in range(2)}  # none are born meanwhile
-        ticks = {(told, "delta", "ticks", ticks) for told in ("island", "tile") for ticks in range(3)}
+        sections |= {("island", "delta", "organisms", "parts", parts) for parts in range(2)}  # no organism is born within a generation
+        ticks = {(scope, "delta", "ticks", ticks) for scope in ("island", "tile") for ticks in range(3)}
         ticks |= {("island", "keyframe", "ticks", ticks) for ticks in range(3)}
-        positions = {(told, "position_bytes", count) for told in ("island", "tile") for count in (2, 4)}
+        positions = {(scope, "position_bytes", count) for scope in ("island", "tile") for count in (2, 4)}
         packed = {(detail, form, "compression", 2) for detail in ("island", stream_pb2.DETAIL_FULL)
                   for form in ("keyframe", "delta")}
         packed.add((stream_pb2.DETAIL_DENSITY, "keyframe", "compression", 2))

@@ -48,7 +48,7 @@ class Link:
         """Changes the core and sends what that produces."""
         try:
             self._run(self._inner.apply(change))
-        except NoConnection:  # closed: the core is told nothing any more, and no other thread uses it
+        except NoConnection:  # the connection thread has ended, so this thread may use the core
             self._thread.join()
             change()
 

@@ -1,0 +1,65 @@
+"""Connecting: addresses, missing servers, servers that are no evod, and the life of private servers."""
+import os
+import socket
+import subprocess
+import threading
+import unittest
+
+import numpy
+
+import evod
+from evod.endpoint import Endpoint
+from support import until
+
+
+class Connect(unittest.TestCase):
+    def test_addresses_are_parsed(self):
+        for text, host, port in (("lab", "lab", 7744), ("lab:1", "lab", 1), ("::1", "::1", 7744), ("[::1]:65535", "::1", 65535)):
+            self.assertEqual(Endpoint.parse(text), Endpoint(host, port))
+        for text in ("", ":1", "lab:", "lab:0", "lab:65536", "lab:x", "lab:1²", "[::1", "[::1]x", "[::1]:"):
+            with self.assertRaisesRegex(evod.Error, "server: got .*, allowed HOST, HOST:PORT"):
+                Endpoint.parse(text)
+
+    def test_missing_servers_and_programs_are_reported(self):
+        with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1:1: start one with `evod`"):
+            evod.connect("127.0.0.1:1")
+        with self.assertRaisesRegex(evod.Error, "there is no program no-such-evod"):
+            evod.local(program="no-such-evod")
+        with self.assertRaisesRegex(evod.Error, "evod did not start: .*population_size"):
+            evod.local(experiment={"population_size": 0})
+
+    def test_another_protocol_is_refused_at_once(self):
+        with socket.create_server(("127.0.0.1", 0)) as other:
+            def greet():
+                with other.accept()[0] as line:
+                    line.sendall(b"220 mail.example ESMTP\r\n")
+                    line.recv(100)
+            threading.Thread(target=greet).start()
+            with self.assertRaisesRegex(evod.DamagedData, "is not an evod server: a frame begins with 32 32, not with 45 56"):
+                evod.connect("127.0.0.1:%d" % other.getsockname()[1])
+
+    def test_a_local_server_ends_with_a_killed_program(self):
+        script = ("import evod, os, signal; lab = evod.local(); print(lab.address, flush=True); "
+                  "os.kill(os.getpid(), signal.SIGKILL)")
+        done = subprocess.run(["/usr/bin/python3", "-c", script], capture_output=True, text=True)
+        until(lambda: self.has_ended(done.stdout.strip()), "the server has ended")
+
+    def test_a_garbage_collected_local_server_ends(self):
+        lab = evod.local(experiment={"population_size": numpy.int64(7)})
+        address, run = lab.address, lab.world().run(1)
+        del lab
+        self.assertEqual(next(run).organism_count, 7)
+        self.assertFalse(self.has_ended(address))
+        del run
+        until(lambda: self.has_ended(address), "the server has ended")
+
+    def has_ended(self, address):
+        try:
+            evod.connect(address).close()
+        except evod.NoConnection:
+            return True
+        return False
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,71 @@
+"""Plots of islands and runs: the drawn data are those of the snapshot or the statistics."""
+import tempfile
+import unittest
+
+import numpy
+
+import evod
+
+
+class Plots(unittest.TestCase):
+    def test_an_island_is_plotted_true_to_scale(self):
+        with evod.local(seed=3, experiment={"crate_count": 3, "obstacle_count": 2}) as lab:
+            snapshot = lab.world().snapshot()
+        axes = snapshot.plot()
+        obstacles, crates, food, poison, organisms = axes.collections
+        numpy.testing.assert_array_equal(organisms.get_offsets()[:, 0], snapshot.organisms.x_px)
+        numpy.testing.assert_array_equal(organisms.get_array(), snapshot.organisms.health)
+        self.assertEqual([len(x.get_offsets()) for x in (food, poison)], [len(snapshot.food), len(snapshot.poison)])
+        self.assertEqual([len(x.get_paths()) for x in (obstacles, crates)], [2, 3])
+        left = crates.get_paths()[0].vertices[:, 0].min()
+        self.assertEqual(left, snapshot.crates.x_px[0] - snapshot.crates.half_width_px[0])
+        self.assertEqual((axes.get_xlim(), axes.get_ylim()), ((0, snapshot.width_px), (snapshot.height_px, 0)))
+
+    def test_curves_show_the_statistics_of_all_islands(self):
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2}
+        with evod.local(seed=3, experiment=experiment) as lab:
+            world = lab.world()
+            with self.assertRaisesRegex(evod.Error, "no generation has ended yet"):
+                world.plot_fitness()
+            generations = list(world.run(3))
+            mean, best = world.plot_fitness().lines
+            numpy.testing.assert_allclose(mean.get_ydata(), [g.mean for g in generations])
+            numpy.testing.assert_allclose(best.get_ydata(), [g.best for g in generations])
+            genes = world.plot_genes().lines
+            numpy.testing.assert_allclose([line.get_ydata() for line in genes], numpy.array([g.genes for g in generations]).T)
+
+    def test_selection_plots_show_all_islands(self):
+        experiment = {"island_count": 2, "population_size": 10, "generation_s": 2, "migration": "ring", "migration_epoch": 1}
+        with tempfile.TemporaryDirectory() as folder:
+            with evod.local(seed=3, experiment=experiment, data=folder) as lab:
+                world = lab.world()
+                generations = list(world.run(4))
+                axes = world.plot_selection("body_size")
+                with self.assertRaisesRegex(evod.Error, "gene: got 'size', allowed normal_speed, impulse, body_size"):
+                    world.plot_selection("size")
+            with evod.open_run(folder + "/default.evod") as run:
+                from_file = run.plot_selection("body_size")
+                table = run.generations()
+        lines = {line.get_label(): line.get_ydata() for line in axes.lines}
+        for part in ("selection", "transmission", "migration", "change"):
+            numpy.testing.assert_allclose(lines[part], [getattr(g, part)[2] for g in generations])
+            (again,) = (line.get_ydata() for line in from_file.lines if line.get_label() == part)
+            numpy.testing.assert_array_equal(again, lines[part])
+            self.assertTrue(numpy.isnan(lines[part][0]))
+            self.assertFalse(numpy.isnan(lines[part][1:]).any())
+            self.assertTrue((lines[part][1:] != 0).all(), part)
+        sums = lines["selection"] + lines["transmission"] + lines["migration"]
+        numpy.testing.assert_allclose(sums[1:], lines["change"][1:], rtol=1e-9)
+        numpy.testing.assert_allclose(lines["change"][1:], numpy.diff([g.genes[2] for g in generations]), atol=1e-10)
+        self.assertEqual(list(table["body_size_change"].isna()), [True, True] + [False] * 6)
+
+    def test_a_notebook_plays_the_animation(self):
+        with evod.local(seed=3, speed=10) as lab:
+            world = lab.world()
+            self.assertIn("</script>", world.animate(3)._repr_html_())  # paused: one snapshot
+            world.run()
+            self.assertIn("frames[2]", world.animate(3)._repr_html_())
+
+
+if __name__ == "__main__":
+    unittest.main()
