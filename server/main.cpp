@@ -60,8 +60,8 @@ struct ServeOptions {
     network::SessionBounds session_bounds;
     access::TlsFiles tls;
     std::string durability = "full";
-    std::int64_t file_bytes_max = storage::RunFile::Options{}.file_bytes_max;
-    std::uint64_t keep_every = storage::RunFile::Options{}.keep_every;
+    std::int64_t file_bytes_max = run_file::RunFile::Options{}.file_bytes_max;
+    std::uint64_t keep_every = run_file::RunFile::Options{}.keep_every;
 };
 
 /// Says why evod cannot start, and what to do.
@@ -278,7 +278,7 @@ int serve(ServeOptions& options) {
         .token_needed = options.token_needed,
         .tls = options.tls,
         .run_files = {.durability =
-                          options.durability == "relaxed" ? storage::Durability::Relaxed : storage::Durability::Full,
+                          options.durability == "relaxed" ? run_file::Durability::Relaxed : run_file::Durability::Full,
                       .vfs = nullptr,
                       .file_bytes_max = options.file_bytes_max,
                       .keep_every = options.keep_every},

@@ -11,7 +11,7 @@
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/trials.h"
 #include "server/experiments/verdict.h"
-#include "server/tables/table.h"
+#include "server/replay/table.h"
 
 #include <algorithm>
 #include <chrono>
@@ -107,9 +107,9 @@ bool can_be_written(const std::string& path) {
 }
 
 void write_csv(std::ostream& out, const Plan& plan, std::span<const std::vector<Course>> courses) {
-    tables::Table table{
+    replay::Table table{
         out,
-        tables::Table::Format::Csv,
+        replay::Table::Format::Csv,
         {"arm", "replicate", "seed", "generation", "fitness_mean", "fitness_best", "organism_count", "alive_count"}};
     for (std::size_t arm = 0; arm < courses.size(); ++arm) {
         for (std::size_t replicate = 0; replicate < courses[arm].size(); ++replicate) {

@@ -3,8 +3,8 @@
 #include "proto/command_line/command.h"
 #include "server/commands/common_options.h"
 #include "server/experiments/bundle.h"
+#include "server/replay/run_tables.h"
 #include "server/runtime/worker_pool.h"
-#include "server/tables/run_tables.h"
 
 #include <cerrno>
 #include <charconv>
@@ -19,7 +19,7 @@ namespace {
 
 using base::Refusal;
 using base::Result;
-using storage::RunFile;
+using run_file::RunFile;
 
 Refusal cannot_write(const std::string& what) {
     return {.code = base::RefusalCode::Unavailable, .message = what, .violations = {}};
@@ -32,8 +32,8 @@ Refusal wrong_option(const std::string& option, const std::string& allowed, cons
 }
 
 /// "30:0:12".
-std::optional<tables::OrganismName> organism_named(const std::string& text) {
-    tables::OrganismName name;
+std::optional<replay::OrganismName> organism_named(const std::string& text) {
+    replay::OrganismName name;
     const char* at = text.data();
     const char* const end = at + text.size();
     const auto read = [&](auto& number, char before) {
@@ -49,8 +49,8 @@ std::optional<tables::OrganismName> organism_named(const std::string& text) {
 }
 
 /// What the options together ask for, as far as they alone tell; nothing for a bundle.
-Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& options) {
-    using tables::RunTable;
+Result<std::optional<replay::WantedTable>> wanted_table(const ExportOptions& options) {
+    using replay::RunTable;
     static const std::map<std::string, RunTable> tables{{"generations", RunTable::Generations},
                                                         {"organisms", RunTable::Organisms},
                                                         {"lineage", RunTable::Lineage},
@@ -76,15 +76,15 @@ Result<std::optional<tables::WantedTable>> wanted_table(const ExportOptions& opt
     if (table == tables.end()) {
         return std::nullopt;
     }
-    return tables::WantedTable{.table = table->second,
-                               .format = options.format == "jsonl" ? tables::Table::Format::JsonLines
-                                                                   : tables::Table::Format::Csv,
+    return replay::WantedTable{.table = table->second,
+                               .format = options.format == "jsonl" ? replay::Table::Format::JsonLines
+                                                                   : replay::Table::Format::Csv,
                                .generation = options.generation,
                                .of = of};
 }
 
 void tell_what_is_left_out(RunFile& file) {
-    if (const auto count = tables::generations_out_of_reach(file)) {
+    if (const auto count = replay::generations_out_of_reach(file)) {
         std::cerr << "evod export: " << count
                   << " generations are left out: they are not held any more, and "
                      "follow another version of the model than this evod, which cannot simulate them again\n";
@@ -120,8 +120,8 @@ Result<void> export_to(const ExportOptions& options) {
         return sound;
     }
     const auto executor = runtime::make_executor(options.threads);
-    const tables::RunSource run{**file, *executor};
-    using tables::RunTable;
+    const replay::RunSource run{**file, *executor};
+    using replay::RunTable;
     if (!*wanted || (*wanted)->table == RunTable::Organisms || (*wanted)->table == RunTable::Lineage) {
         tell_what_is_left_out(**file);
     }
@@ -137,7 +137,7 @@ Result<void> export_to(const ExportOptions& options) {
     }
     std::ios::sync_with_stdio(false);
     std::ostream& out = options.output.empty() ? std::cout : output;
-    if (Result<void> written = tables::write_table(run, **wanted, out); !written) {
+    if (Result<void> written = replay::write_table(run, **wanted, out); !written) {
         return with_options(written.error());
     }
     if (!out.flush()) {

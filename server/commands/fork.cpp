@@ -3,9 +3,9 @@
 #include "proto/command_line/command.h"
 #include "server/base/inline_executor.h"
 #include "server/commands/common_options.h"
+#include "server/replay/fork.h"
+#include "server/run_file/data_folder.h"
 #include "server/simulation/world_name.h"
-#include "server/storage/data_folder.h"
-#include "server/storage/fork.h"
 
 #include <filesystem>
 #include <iostream>
@@ -21,20 +21,20 @@ int fork(const ForkOptions& options) {
         return fail("--name: got \"" + options.name + "\", allowed " + std::string{simulation::world_name_allowed});
     }
     // Only read, so a server may be writing it.
-    const auto origin = storage::RunFile::open_checked(options.run_file);
+    const auto origin = run_file::RunFile::open_checked(options.run_file);
     if (!origin) {
         return fail(to_text(origin.error()));
     }
     if (const auto held = (*origin)->hold_still(); !held) { // what is thinned meanwhile is still there
         return fail(to_text(held.error()));
     }
-    const auto folder = storage::DataFolder::open(options.data_folder);
+    const auto folder = run_file::DataFolder::open(options.data_folder);
     if (!folder) {
         return fail(to_text(folder.error()));
     }
     const std::string path = folder->file_of(options.name);
     base::InlineExecutor executor;
-    const auto moment = storage::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
+    const auto moment = replay::fork(**origin, options.at_generation, path, options.name, options.run_id, executor);
     if (!moment) {
         base::Refusal refused = moment.error();
         for (base::Violation& violation : refused.violations) {

@@ -8,9 +8,9 @@
 #include "server/commands/report.h"
 #include "server/experiments/experiment_file.h"
 #include "server/experiments/population_file.h"
+#include "server/replay/columns.h"
 #include "server/runtime/worker_pool.h"
 #include "server/simulation/world.h"
-#include "server/tables/columns.h"
 
 #include <cerrno>
 #include <chrono>
@@ -134,11 +134,11 @@ int run(const RunOptions& options) {
         return RunError;
     }
     std::ofstream csv;
-    std::optional<tables::Table> table;
+    std::optional<replay::Table> table;
     if (!options.csv.empty()) {
         errno = 0;
         csv.open(options.csv);
-        table.emplace(csv, tables::Table::Format::Csv, tables::statistics_columns());
+        table.emplace(csv, replay::Table::Format::Csv, replay::statistics_columns());
         if (!csv.flush()) {
             std::cerr << "evod run: --csv: cannot write " << options.csv << ": " << std::strerror(errno) << '\n';
             return RunError;
@@ -176,7 +176,7 @@ int run(const RunOptions& options) {
         for (const simulation::GenerationStatistics& statistics : world.history().back()) {
             std::puts(table_row(statistics, several_islands).c_str());
             if (table) {
-                tables::write_row(*table, statistics);
+                replay::write_row(*table, statistics);
             }
         }
         std::fflush(stdout);

@@ -10,8 +10,8 @@
 #include "server/experiments/sweep_file.h"
 #include "server/experiments/sweep_folder.h"
 #include "server/experiments/trials.h"
+#include "server/replay/columns.h"
 #include "server/simulation/world.h"
-#include "server/tables/columns.h"
 
 #include <algorithm>
 #include <atomic>
@@ -179,7 +179,7 @@ class Runs {
         }
         NewFile part{folder_.part_of(run)};
         std::ostringstream rows;
-        tables::Table table{rows, tables::Table::Format::Csv, sweep_columns(sweep_)};
+        replay::Table table{rows, replay::Table::Format::Csv, sweep_columns(sweep_)};
         rows.str({}); // without the heading
         RunEnd end;
         base::InlineExecutor executor;
@@ -201,7 +201,7 @@ class Runs {
                 for (const parameters::ParameterValue& value : sweep_.cells[cell]) {
                     table.text(parameters::to_text(value));
                 }
-                tables::write_row(table, statistics);
+                replay::write_row(table, statistics);
                 ++end.rows;
             }
             part.write(rows.str());

@@ -3,8 +3,8 @@
 #include "proto/command_line/command.h"
 #include "server/commands/common_options.h"
 #include "server/commands/progress_line.h"
+#include "server/replay/verify.h"
 #include "server/runtime/worker_pool.h"
-#include "server/storage/verify.h"
 
 #include <chrono>
 #include <cstdio>
@@ -15,9 +15,9 @@
 namespace evod::commands {
 namespace {
 
-using storage::Difference;
-using storage::StoredMoment;
-using storage::VerifyProgress;
+using replay::Difference;
+using replay::StoredMoment;
+using replay::VerifyProgress;
 using Clock = std::chrono::steady_clock;
 
 std::string text_of(const StoredMoment& moment) {
@@ -55,7 +55,7 @@ int verify(const VerifyOptions& options) {
         std::cerr << "evod verify: " << base::to_text(why) << '\n';
         return 1;
     };
-    const auto file = storage::RunFile::open_checked(options.run);
+    const auto file = run_file::RunFile::open_checked(options.run);
     if (!file) {
         return fail(file.error());
     }
@@ -64,7 +64,7 @@ int verify(const VerifyOptions& options) {
     std::mutex progress_mutex; // guards the line, which any thread may write, and what follows
     std::optional<Clock::time_point> simulating_since;
     const auto executor = runtime::make_executor(options.threads);
-    const auto verified = storage::verify(**file, *executor, [&](const VerifyProgress& now) {
+    const auto verified = replay::verify(**file, *executor, [&](const VerifyProgress& now) {
         const std::unique_lock lock{progress_mutex, std::try_to_lock};
         if (!lock) {
             return;

@@ -1,7 +1,7 @@
 #include "server/experiments/bundle.h"
 
 #include "server/parameters/experiment.h"
-#include "server/storage/rerun.h"
+#include "server/replay/rerun.h"
 
 #include <openssl/evp.h>
 
@@ -35,7 +35,7 @@ Result<void> write_file(const fs::path& path, Write&& write) {
 }
 
 /// With the seed, as experiment files have it.
-std::string experiment_text(const storage::RunIdentity& identity) {
+std::string experiment_text(const run_file::RunIdentity& identity) {
     // A fork's own parameters are those of the generation that it begins with, not of its schedule's first.
     const std::string parameters =
         to_experiment_text(identity.parameters, parameters::Written::Everything,
@@ -86,9 +86,9 @@ Result<void> write_checksums(const fs::path& folder) {
 }
 
 /// How `evod run` gives the same numbers; or why it does not.
-Result<std::string> rerun_text(storage::RunFile& file) {
-    const storage::RunIdentity& identity = file.identity();
-    const auto changes = parameter_changes(file);
+Result<std::string> rerun_text(run_file::RunFile& file) {
+    const run_file::RunIdentity& identity = file.identity();
+    const auto changes = replay::parameter_changes(file);
     if (!changes) {
         return changes.error();
     }
@@ -113,21 +113,21 @@ Result<std::string> rerun_text(storage::RunFile& file) {
            "seed alone; the second says nothing if every number is the same.\n";
 }
 
-Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_name) {
-    const storage::RunIdentity& identity = file.identity();
+Result<std::string> repeat_text(run_file::RunFile& file, const std::string& file_name) {
+    const run_file::RunIdentity& identity = file.identity();
     const auto rerun = rerun_text(file);
     if (!rerun) {
         return rerun.error();
     }
     const std::string model = std::to_string(identity.model_version);
-    const std::uint64_t left_out = tables::generations_out_of_reach(file);
+    const std::uint64_t left_out = replay::generations_out_of_reach(file);
     return "# How to repeat the run \"" + identity.name + "\"\n\n| | |\n|---|---|\n| run | " +
            to_text(identity.run_id) + " |\n| seed | " + std::to_string(identity.seed.value) +
            " |\n| made with | evod " + identity.evod_version + ", model version " + model +
            (identity.build.empty() ? "" : ", built from " + identity.build) + " |\n| generations that have ended | " +
            std::to_string(file.last_generation_ended()) + " |\n| ticks | " + std::to_string(file.contents().tick) +
            " |\n| folder made with | evod " + EVOD_VERSION + ", model version " +
-           std::to_string(simulation::model_version) + ", built from " + storage::build_text() +
+           std::to_string(simulation::model_version) + ", built from " + run_file::build_text() +
            " |\n\nAny evod of model version " + model +
            " gives the same bits, on any number of threads.\n\n    sha256sum --check SHA256SUMS\n" +
            "    evod verify " + file_name +
@@ -140,7 +140,7 @@ Result<std::string> repeat_text(storage::RunFile& file, const std::string& file_
                                 "them any more, and the evod that made this folder cannot simulate them again.\n");
 }
 
-Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
+Result<void> fill(const replay::RunSource& run, const fs::path& folder) {
     const std::string file_name = run.file.identity().name + ".evod";
     if (auto copied = run.file.copy_to((folder / file_name).string()); !copied) {
         return copied;
@@ -154,23 +154,23 @@ Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
     if (auto done = write_text("experiment.json", experiment_text(run.file.identity())); !done) {
         return done;
     }
-    constexpr auto csv = tables::Table::Format::Csv;
-    using tables::RunTable;
+    constexpr auto csv = replay::Table::Format::Csv;
+    using replay::RunTable;
     constexpr std::pair<const char*, RunTable> names[] = {{"generations.csv", RunTable::Generations},
                                                           {"organisms.csv", RunTable::Organisms},
                                                           {"lineage.csv", RunTable::Lineage},
                                                           {"events.csv", RunTable::Events}};
     for (const auto& [name, table] : names) {
-        const tables::WantedTable wanted{.table = table, .format = csv};
+        const replay::WantedTable wanted{.table = table, .format = csv};
         if (auto done =
-                write_file(folder / name, [&](std::ostream& out) { return tables::write_table(run, wanted, out); });
+                write_file(folder / name, [&](std::ostream& out) { return replay::write_table(run, wanted, out); });
             !done) {
             return done;
         }
     }
     if (const auto& first = run.file.identity().first_population) {
         const auto write = [&](std::ostream& out) -> Result<void> {
-            tables::write_population(*first, csv, out);
+            replay::write_population(*first, csv, out);
             return {};
         };
         if (auto done = write_file(folder / "population.csv", write); !done) {
@@ -189,7 +189,7 @@ Result<void> fill(const tables::RunSource& run, const fs::path& folder) {
 
 } // namespace
 
-Result<void> write_bundle(const tables::RunSource& run, const std::string& folder) {
+Result<void> write_bundle(const replay::RunSource& run, const std::string& folder) {
     std::error_code error;
     if (!fs::create_directory(folder, error)) {
         return error ? refusal(RefusalCode::Unavailable, "--bundle: cannot make " + folder + ": " + error.message())

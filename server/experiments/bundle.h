@@ -8,13 +8,13 @@
 //   SHA256SUMS       of all these, for `sha256sum --check`
 #pragma once
 
-#include "server/tables/run_tables.h"
+#include "server/replay/run_tables.h"
 
 #include <string>
 
 namespace evod::experiments {
 
 /// folder  is made; refused if there is something of that name. Nothing of it is left if anything else is refused.
-base::Result<void> write_bundle(const tables::RunSource& run, const std::string& folder);
+base::Result<void> write_bundle(const replay::RunSource& run, const std::string& folder);
 
 } // namespace evod::experiments

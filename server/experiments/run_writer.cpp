@@ -12,22 +12,22 @@ RunWriter::RunWriter(std::string path, std::string name, const simulation::RunId
                      const simulation::World& world)
     : path_{std::move(path)}
     , unfinished_{NewFile::unfinished_name(path_)}
-    , file_{storage::RunFile::begin_new(unfinished_, storage::identity_of(std::move(name), run_id, world),
-                                        {.durability = storage::Durability::Relaxed})} {}
+    , file_{run_file::RunFile::begin_new(unfinished_, recording::identity_of(std::move(name), run_id, world),
+                                         {.durability = run_file::Durability::Relaxed})} {}
 
 RunWriter::~RunWriter() {
     if (!file_ || *file_ == nullptr) {
         return;
     }
     file_->reset();
-    (void)storage::RunFile::remove(unfinished_); // at worst it is left there, under a name that nobody reads
+    (void)run_file::RunFile::remove(unfinished_); // at worst it is left there, under a name that nobody reads
 }
 
 base::Result<void> RunWriter::follow(const simulation::World& world) {
     if (!file_) {
         return file_.error();
     }
-    storage::RunFile& file = **file_;
+    run_file::RunFile& file = **file_;
     news_.tell(world, [&file](const auto& record) { file.write(record); });
     if (!world.generation_over()) {
         return {};
@@ -46,8 +46,8 @@ base::Result<void> RunWriter::finish() {
     if (!file_) {
         return file_.error();
     }
-    storage::RunFile& file = **file_;
-    file.write(storage::EndMark{.tick = news_.tick()});
+    run_file::RunFile& file = **file_;
+    file.write(run_file::EndMark{.tick = news_.tick()});
     if (auto committed = file.commit(); !committed) {
         return committed;
     }
@@ -58,7 +58,7 @@ base::Result<void> RunWriter::finish() {
     if (auto kept = NewFile::keep(unfinished_); !kept) {
         return kept;
     }
-    if (auto named = storage::RunFile::rename(unfinished_, path_); !named) {
+    if (auto named = run_file::RunFile::rename(unfinished_, path_); !named) {
         return named;
     }
     return NewFile::keep(std::filesystem::path{path_}.parent_path().string());

@@ -7,7 +7,7 @@
 // Determinism  it only looks.
 #pragma once
 
-#include "server/storage/recorder.h"
+#include "server/recording/recorder.h"
 
 #include <memory>
 #include <string>
@@ -30,8 +30,8 @@ class RunWriter {
 
   private:
     const std::string path_, unfinished_;
-    base::Result<std::unique_ptr<storage::RunFile>> file_;
-    storage::RunNews news_; // that is in it
+    base::Result<std::unique_ptr<run_file::RunFile>> file_;
+    recording::RunNews news_; // that is in it
 };
 
 } // namespace evod::experiments

@@ -2,9 +2,9 @@
 
 #include "server/experiments/new_file.h"
 #include "server/files/regular_file.h"
+#include "server/replay/columns.h"
+#include "server/run_file/build.h"
 #include "server/simulation/model_version.h"
-#include "server/storage/build.h"
-#include "server/tables/columns.h"
 
 #include <algorithm>
 #include <array>
@@ -48,7 +48,7 @@ std::vector<Fact> facts_of(const Sweep& sweep) {
     while (text.ends_with('\n')) {
         text.pop_back();
     }
-    return {{"evod", std::string{EVOD_VERSION} + ", " + storage::build_text()},
+    return {{"evod", std::string{EVOD_VERSION} + ", " + run_file::build_text()},
             {"model", std::to_string(simulation::model_version)},
             {"seed", std::to_string(sweep.seed.value)},
             {"runs", std::to_string(sweep.run_count()) + ": " + std::to_string(sweep.cells.size()) + " cells of " +
@@ -177,7 +177,7 @@ std::vector<std::string> sweep_columns(const Sweep& sweep) {
     for (const parameters::ParameterDescription* parameter : sweep.swept) {
         columns.emplace_back(parameter->name);
     }
-    const std::vector<std::string> statistics = tables::statistics_columns();
+    const std::vector<std::string> statistics = replay::statistics_columns();
     columns.insert(columns.end(), statistics.begin(), statistics.end());
     return columns;
 }
@@ -281,7 +281,7 @@ Result<SweepFolder::Gathered> SweepFolder::gather() const {
     NewFile table{this->table()};
     table.write(provenance_of(*sweep_));
     std::ostringstream heading;
-    const tables::Table columns{heading, tables::Table::Format::Csv, sweep_columns(*sweep_)};
+    const replay::Table columns{heading, replay::Table::Format::Csv, sweep_columns(*sweep_)};
     table.write(heading.str());
     Gathered gathered;
     for (std::size_t run = 0; run < sweep_->run_count() && table.trouble().empty(); ++run) {

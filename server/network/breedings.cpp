@@ -3,8 +3,8 @@
 #include "server/base/within_memory.h"
 #include "server/protocol/breeding.h"
 #include "server/protocol/refusals.h"
+#include "server/replay/breeding.h"
 #include "server/runtime/worker_pool.h"
-#include "server/storage/breeding.h"
 
 #include <pthread.h>
 
@@ -17,8 +17,8 @@ namespace {
 // What an answer comes to, and some more.
 constexpr std::ptrdiff_t answer_bytes = 2 << 20;
 
-base::Result<storage::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
-                                        const std::stop_token& stop) {
+base::Result<replay::Bred> breeding_of(const v1::GetBreeding& request, const runtime::FoundRun& run,
+                                       const std::stop_token& stop) {
     const auto file = run.past.open();
     if (!file) {
         return file.error();
@@ -26,15 +26,15 @@ base::Result<storage::Bred> breeding_of(const v1::GetBreeding& request, const ru
     if (auto held = (*file)->hold_still(); !held) {
         return held.error();
     }
-    storage::WantedBreeding wanted{.generation = {},
-                                   .seen_from = run.generation,
-                                   .island = request.island(),
-                                   .rows = protocol::wanted_rows(request)};
+    replay::WantedBreeding wanted{.generation = {},
+                                  .seen_from = run.generation,
+                                  .island = request.island(),
+                                  .rows = protocol::wanted_rows(request)};
     if (request.has_generation()) {
         wanted.generation = request.generation();
     }
     const auto executor = runtime::make_executor(1);
-    return storage::breeding_of(**file, wanted, *executor, stop);
+    return replay::breeding_of(**file, wanted, *executor, stop);
 }
 
 /// Whether there is more than it tells of.

@@ -72,8 +72,8 @@ v1::Response response_to(const v1::Request& request, const simulation::Laborator
     return response;
 }
 
-storage::WantedMoment wanted(const v1::RunMoment& moment) {
-    storage::WantedMoment to;
+replay::WantedMoment wanted(const v1::RunMoment& moment) {
+    replay::WantedMoment to;
     if (moment.has_generation()) {
         to.generation = moment.generation();
     }
@@ -101,12 +101,12 @@ runtime::PastMail past_mail(const v1::Request& request, std::uint64_t owner, run
 }
 
 /// request  without faults.
-tables::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
-    tables::WantedTable to;
+replay::WantedTable wanted(const v1::ExportRun& request, access::Role role) {
+    replay::WantedTable to;
     to.only_users = role < access::Role::Admin;
-    to.table = static_cast<tables::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
+    to.table = static_cast<replay::RunTable>(request.table() - v1::RUN_TABLE_GENERATIONS);
     to.format =
-        request.format() == v1::TEXT_FORMAT_JSON_LINES ? tables::Table::Format::JsonLines : tables::Table::Format::Csv;
+        request.format() == v1::TEXT_FORMAT_JSON_LINES ? replay::Table::Format::JsonLines : replay::Table::Format::Csv;
     if (request.has_generation()) {
         to.generation = request.generation();
     }
@@ -271,9 +271,9 @@ void Dispatcher::serve(Session& session, v1::Request request) {
     }
 }
 
-void Dispatcher::restore(const std::vector<storage::JournalEntry>& answers) {
-    for (const storage::JournalEntry& entry : answers) {
-        retries_.restore(Retries::key_of(storage::user_of(entry.origin), entry.origin.client_key),
+void Dispatcher::restore(const std::vector<run_file::JournalEntry>& answers) {
+    for (const run_file::JournalEntry& entry : answers) {
+        retries_.restore(Retries::key_of(run_file::user_of(entry.origin), entry.origin.client_key),
                          entry.origin.request_id, entry.origin.request,
                          std::make_shared<const std::string>(entry.answer));
     }

@@ -36,7 +36,7 @@ class Dispatcher {
     void lend_again(const std::string& world) { leases_.begin(world, 0, {}); }
 
     /// Answers that were given before this server started.
-    void restore(const std::vector<storage::JournalEntry>& answers);
+    void restore(const std::vector<run_file::JournalEntry>& answers);
 
     /// A session has ended: what it looked at is let go of.
     void forget(const Session& session);

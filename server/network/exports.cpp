@@ -22,8 +22,8 @@ void Exports::give_up(std::map<std::uint64_t, Export>::iterator of) {
     exports_.erase(of);
 }
 
-void Exports::begin(Session& session, std::uint64_t request_id, const storage::Past& run,
-                    const tables::WantedTable& wanted) {
+void Exports::begin(Session& session, std::uint64_t request_id, const replay::Past& run,
+                    const replay::WantedTable& wanted) {
     if (const auto before = exports_.find(session.number()); before != exports_.end()) {
         give_up(before);
     }

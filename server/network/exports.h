@@ -21,7 +21,7 @@ class Exports {
         : outbox_{outbox}, limit_counters_{limit_counters} {}
 
     /// Answers the request with the first part. The session's export before this one is given up.
-    void begin(Session& session, std::uint64_t request_id, const storage::Past& run, const tables::WantedTable& wanted);
+    void begin(Session& session, std::uint64_t request_id, const replay::Past& run, const replay::WantedTable& wanted);
     /// Answers with the next part.
     void go_on(Session& session, std::uint64_t request_id, const v1::ContinueExport& request);
     /// The session has ended.

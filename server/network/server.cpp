@@ -138,19 +138,19 @@ base::Result<void> Server::open_archive() {
     if (path.empty()) {
         return {};
     }
-    auto archive = storage::Archive::open(path, options_.run_files, *executor_);
+    auto archive = replay::Archive::open(path, options_.run_files, *executor_);
     if (!archive) {
         return archive.error();
     }
     archive_ = *std::move(archive);
     host_.storage = protocol::to_proto(simulation::Storage{});
     host_.durability =
-        options_.run_files.durability == storage::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
+        options_.run_files.durability == run_file::Durability::Full ? v1::DURABILITY_FULL : v1::DURABILITY_RELAXED;
     if (!options_.first_world_asked) {
         return {};
     }
     const simulation::CreateWorld& wanted = options_.first_world;
-    const storage::RunIdentity* there = archive_->identity_of(wanted.name);
+    const run_file::RunIdentity* there = archive_->identity_of(wanted.name);
     const auto differs = [&](const std::string& in_what) {
         return base::Refusal{.code = base::RefusalCode::FailedPrecondition,
                              .message = path + " holds a world \"" + wanted.name + "\" that began with other " +
@@ -213,7 +213,7 @@ std::optional<base::Seed> Server::first_seed() const {
     if (!archive_) {
         return std::nullopt;
     }
-    const storage::RunIdentity* there = archive_->identity_of(options_.first_world.name);
+    const run_file::RunIdentity* there = archive_->identity_of(options_.first_world.name);
     return there ? std::optional{there->seed} : std::nullopt;
 }
 
@@ -260,8 +260,8 @@ void Server::begin_first_world() {
 bool Server::run() {
     simulation::Laboratory worlds;
     if (archive_) {
-        static_assert(storage::Archive::answers_kept_of_ended == retries_kept &&
-                      storage::Archive::answers_of_ended_bytes_max == retry_bytes_max);
+        static_assert(replay::Archive::answers_kept_of_ended == retries_kept &&
+                      replay::Archive::answers_of_ended_bytes_max == retry_bytes_max);
         dispatcher_.restore(archive_->take_answers());
         worlds = archive_->take_laboratory();
         for (const auto& entry : worlds.entries()) {

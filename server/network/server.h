@@ -8,8 +8,8 @@
 #include "server/network/http.h"
 #include "server/network/listener.h"
 #include "server/network/pulse.h"
+#include "server/replay/archive.h"
 #include "server/runtime/simulation_thread.h"
-#include "server/storage/archive.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -32,7 +32,7 @@ struct ServerOptions {
     SessionBounds session_bounds;
     bool token_needed = false; // on the loopback interface too; on others it always is
     access::TlsFiles tls;
-    storage::RunFile::Options run_files;
+    run_file::RunFile::Options run_files;
     struct Replay {
         std::string path;
         std::optional<std::uint64_t> generation; // nullopt: the first
@@ -121,7 +121,7 @@ class Server {
     asio::steady_timer look_timer_{context_};
 
     std::unique_ptr<base::Executor> executor_;
-    std::unique_ptr<storage::Archive> archive_;         // nullptr: nothing is kept
+    std::unique_ptr<replay::Archive> archive_;          // nullptr: nothing is kept
     std::optional<runtime::TimeTravel::Replay> replay_; // until the simulation has it
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;

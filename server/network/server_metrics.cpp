@@ -95,7 +95,7 @@ void add_limits(v1::Metrics& to, const LimitCounters& counters) {
     }
 }
 
-void add_storage(v1::Metrics& to, storage::StorageThread& thread, const v1::Storage& storage) {
+void add_storage(v1::Metrics& to, recording::StorageThread& thread, const v1::Storage& storage) {
     auto state = add_gauge(to, "evod_storage_state", "How it stands with the disk: 1 of the state that holds");
     for (const auto& [value, name] : storage_states) {
         state.add(storage.state() == value, {{"state", name}});
@@ -106,7 +106,7 @@ void add_storage(v1::Metrics& to, storage::StorageThread& thread, const v1::Stor
     add_gauge(to, "evod_journal_waiting_bytes", "What waits to be written to run files")
         .add(number(thread.waiting_bytes()));
     add_gauge(to, "evod_journal_waiting_bytes_max", "From here on worlds wait for the disk")
-        .add(number(storage::StorageThread::waiting_bytes_max));
+        .add(number(recording::StorageThread::waiting_bytes_max));
     add_gauge(to, "evod_journal_lag_seconds", "For how long the oldest of it has waited; 0.2 s is usual")
         .add(std::max(lag.count(), 0.0));
     add_histogram(to, "evod_journal_wait_seconds",

@@ -48,7 +48,7 @@ class ExportThread::PartBuffer : public std::streambuf {
     const std::stop_token& stop_;
 };
 
-ExportThread::ExportThread(storage::Past run, const tables::WantedTable& wanted, std::chrono::milliseconds asked_within)
+ExportThread::ExportThread(replay::Past run, const replay::WantedTable& wanted, std::chrono::milliseconds asked_within)
     : run_{std::move(run)}
     , wanted_{wanted}
     , patience_{asked_within}
@@ -97,13 +97,13 @@ Result<void> ExportThread::write(const std::stop_token& stop) {
     if (auto held = (*file)->hold_still(); !held) {
         return held;
     }
-    if (wanted_.table == tables::RunTable::Organisms || wanted_.table == tables::RunTable::Lineage) {
-        generations_left_out_ = tables::generations_out_of_reach(**file);
+    if (wanted_.table == replay::RunTable::Organisms || wanted_.table == replay::RunTable::Lineage) {
+        generations_left_out_ = replay::generations_out_of_reach(**file);
     }
     const auto executor = make_executor(1);
     PartBuffer buffer{*this, stop};
     std::ostream out{&buffer};
-    return tables::write_table({**file, *executor, stop}, wanted_, out);
+    return replay::write_table({**file, *executor, stop}, wanted_, out);
 }
 
 void ExportThread::work(const std::stop_token& stop) {

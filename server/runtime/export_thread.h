@@ -6,8 +6,8 @@
 //           after `patience`.
 #pragma once
 
-#include "server/storage/past.h"
-#include "server/tables/run_tables.h"
+#include "server/replay/past.h"
+#include "server/replay/run_tables.h"
 
 #include <chrono>
 #include <condition_variable>
@@ -26,12 +26,12 @@ class ExportThread {
     struct Part {
         std::string text;
         bool last = false;                      // the table ends with it
-        std::uint64_t generations_left_out = 0; // tables::generations_out_of_reach(), of organisms or their lineage
+        std::uint64_t generations_left_out = 0; // replay::generations_out_of_reach(), of organisms or their lineage
     };
     /// Called on the export's thread; must not block.
     using Reply = std::function<void(base::Result<Part>)>;
 
-    ExportThread(storage::Past run, const tables::WantedTable& wanted,
+    ExportThread(replay::Past run, const replay::WantedTable& wanted,
                  std::chrono::milliseconds asked_within = patience);
     /// Stops the work under way, and waits for that.
     ~ExportThread();
@@ -52,8 +52,8 @@ class ExportThread {
     /// Gives a part to whoever has asked or asks within the patience; false if nobody does.
     bool give(Part part, const std::stop_token& stop);
 
-    const storage::Past run_;
-    const tables::WantedTable wanted_;
+    const replay::Past run_;
+    const replay::WantedTable wanted_;
     const std::chrono::milliseconds patience_;
     std::uint64_t generations_left_out_ = 0;
     std::string text_; // of the part that is being made

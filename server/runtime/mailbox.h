@@ -5,9 +5,9 @@
 #pragma once
 
 #include "server/base/result.h"
+#include "server/replay/past.h"
 #include "server/runtime/clock.h"
 #include "server/simulation/laboratory.h"
-#include "server/storage/past.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -36,7 +36,7 @@ using CommandReply = std::function<CommandAnswer(const simulation::Laboratory&, 
 
 struct CommandMail {
     simulation::Command command;
-    storage::Origin origin;
+    run_file::Origin origin;
     CommandReply reply;
 };
 
@@ -55,13 +55,13 @@ struct CallMail {
 /// A world that shows the past of `world`.
 struct OpenReplay {
     std::string world;
-    storage::WantedMoment at; // nothing: the first moment of the run
-    std::uint64_t owner = 0;  // who asks, >= 1
+    replay::WantedMoment at; // nothing: the first moment of the run
+    std::uint64_t owner = 0; // who asks, >= 1
 };
 /// Takes one to another moment.
 struct Seek {
     std::string world;
-    storage::WantedMoment to;
+    replay::WantedMoment to;
     std::uint64_t owner = 0; // who asks, >= 1
 };
 struct CloseReplay {
@@ -79,7 +79,7 @@ struct PastMail {
 };
 
 struct FoundRun {
-    storage::Past past;
+    replay::Past past;
     std::uint64_t generation = 0; // in which the world was when its run was asked for
 };
 /// Where a world's run is told, once all of it until now is on the disk, or cannot get there.

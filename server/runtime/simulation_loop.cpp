@@ -46,7 +46,7 @@ bool changes_something(const simulation::Command& command) {
 } // namespace
 
 SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                               LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder,
+                               LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
                                std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
     , demand_{demand}
@@ -356,11 +356,11 @@ void SimulationLoop::record(CommandMail& mail, const simulation::Applied& applie
     if (entry && (*entry)->replay) {
         return give(answer); // how somebody looks at the past is nobody else's
     }
-    storage::CommandRecord command{.tick = applied.tick,
-                                   .control = ends ? simulation::RunControl{} : (*entry)->control,
-                                   .origin = std::move(mail.origin),
-                                   .answer = std::move(answer.frame),
-                                   .done = std::move(answer.give)};
+    recording::CommandRecord command{.tick = applied.tick,
+                                     .control = ends ? simulation::RunControl{} : (*entry)->control,
+                                     .origin = std::move(mail.origin),
+                                     .answer = std::move(answer.frame),
+                                     .done = std::move(answer.give)};
     if (ends) {
         recorder_->end(applied.world, before->run_id, std::move(command));
     } else if (std::holds_alternative<simulation::CreateWorld>(mail.command)) {
@@ -413,7 +413,7 @@ void SimulationLoop::mind_storage() {
         now = {worlds_wait_ ? simulation::StorageState::Stalled : simulation::StorageState::Failing, *trouble};
     } else if (waiting_since_ && clock_.now() - *waiting_since_ >= slow_disk_patience) {
         now = {simulation::StorageState::Behind,
-               std::to_string(storage::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
+               std::to_string(recording::StorageThread::waiting_bytes_max >> 20) + " MiB wait to be written"};
     }
     const simulation::Storage before = *laboratory_.storage();
     if (now == before) {

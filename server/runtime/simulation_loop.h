@@ -18,6 +18,7 @@
 
 #include "server/base/executor.h"
 #include "server/metrics/worlds.h"
+#include "server/recording/recorder.h"
 #include "server/runtime/clock.h"
 #include "server/runtime/demand.h"
 #include "server/runtime/mailbox.h"
@@ -25,7 +26,6 @@
 #include "server/runtime/snapshot.h"
 #include "server/runtime/time_travel.h"
 #include "server/simulation/laboratory.h"
-#include "server/storage/recorder.h"
 
 #include <deque>
 #include <functional>
@@ -64,7 +64,7 @@ class SimulationLoop {
     /// recorder    what is done is written down there, and commands are answered once they are; nullptr: nothing is.
     /// replay      a world that shows the run of a file.
     SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-                   simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr,
+                   simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
                    std::optional<TimeTravel::Replay> replay = {});
 
     /// Minds the mail and advances what is due, for about a slice per world. Returns when it wants to be called again
@@ -81,7 +81,7 @@ class SimulationLoop {
   private:
     /// What is known of a world here; by name, and forgotten when the run id is another.
     struct Track {
-        storage::RunRecorder* recorder = nullptr;
+        recording::RunRecorder* recorder = nullptr;
         std::shared_ptr<metrics::World> counted; // nullptr: nothing is
         simulation::RunId run_id;
         simulation::Speed speed;
@@ -145,7 +145,7 @@ class SimulationLoop {
     Clock& clock_;
     const LoopOutputs outputs_;
     simulation::Laboratory laboratory_;
-    storage::Recorder* recorder_;
+    recording::Recorder* recorder_;
     bool worlds_wait_ = false;                       // those that live, for the disk
     std::optional<Clock::time_point> waiting_since_; // for one that does write
     TimeTravel past_;

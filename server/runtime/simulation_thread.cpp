@@ -7,8 +7,8 @@
 namespace evod::runtime {
 
 SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
-                                   LoopOutputs outputs, simulation::Laboratory laboratory, storage::Recorder* recorder,
-                                   std::optional<TimeTravel::Replay> replay)
+                                   LoopOutputs outputs, simulation::Laboratory laboratory,
+                                   recording::Recorder* recorder, std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
     , recorder_{recorder}
     , loop_{mailbox, demand, executor, clock, std::move(outputs), std::move(laboratory), recorder, std::move(replay)}

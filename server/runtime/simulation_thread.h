@@ -15,7 +15,7 @@ class SimulationThread {
   public:
     /// Starts. Everything handed in outlives the thread.
     SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
-                     simulation::Laboratory laboratory = {}, storage::Recorder* recorder = nullptr,
+                     simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
                      std::optional<TimeTravel::Replay> replay = {});
     ~SimulationThread() { stop(); }
 
@@ -27,7 +27,7 @@ class SimulationThread {
 
   private:
     Mailbox& mailbox_;
-    storage::Recorder* const recorder_;
+    recording::Recorder* const recorder_;
     std::atomic<bool> stopping_ = false;
     SimulationLoop loop_;
     std::thread thread_;

@@ -41,7 +41,7 @@ Refusal closed_since() {
 
 Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::optional<std::uint64_t> generation,
                                                  base::Executor& executor) {
-    auto past = storage::Past::of_file(path);
+    auto past = replay::Past::of_file(path);
     if (!past) {
         return past.error();
     }
@@ -49,9 +49,9 @@ Result<TimeTravel::Replay> TimeTravel::replay_of(const std::string& path, std::o
     if (!name) {
         return name.error();
     }
-    std::optional<storage::WantedMoment> wanted;
+    std::optional<replay::WantedMoment> wanted;
     if (generation) {
-        wanted = storage::WantedMoment{.generation = generation, .tick = {}};
+        wanted = replay::WantedMoment{.generation = generation, .tick = {}};
     }
     auto departure = past->depart(wanted, {}, executor);
     if (!departure) {
@@ -72,10 +72,10 @@ void TimeTravel::show(Replay replay) {
     show(replay.name, std::move(replay.past), 0, {std::move(replay.rerun), std::move(replay.replay)});
 }
 
-void TimeTravel::show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival) {
+void TimeTravel::show(const std::string& name, replay::Past past, std::uint64_t owner, Arrival arrival) {
     simulation::RunControl control;
     control.endless = control.paused = true;
-    const storage::ComingChanges& changes = arrival.rerun.changes();
+    const replay::ComingChanges& changes = arrival.rerun.changes();
     looks_.emplace(name, Look{past, changes, changes.last_entry(), owner, {}, false, 0});
     laboratory_.adopt(std::make_unique<simulation::Entry>(simulation::Entry{
         name, past.run_id(), control, std::move(arrival.rerun).take(), 0, false, std::move(arrival.there)}));
@@ -113,7 +113,7 @@ void TimeTravel::find_run(const FindRun& mail) {
                                   run = FoundRun{*past, (*entry)->world.moment().generation}](bool) { found(run); });
 }
 
-Result<storage::Past> TimeTravel::replay_of(const std::string& world) const {
+Result<replay::Past> TimeTravel::replay_of(const std::string& world) const {
     const auto entry = std::as_const(laboratory_).find(world);
     if (!entry) {
         return entry.error();
@@ -126,11 +126,11 @@ Result<storage::Past> TimeTravel::replay_of(const std::string& world) const {
                        "this server keeps no runs, so nothing tells of their past: start it without --keep-nothing",
                        base::Reason::RunsNotKept);
     }
-    return storage::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
+    return replay::Past{recorder_->paths_of((*entry)->name, (*entry)->run_id), (*entry)->run_id};
 }
 
 void TimeTravel::once_written(const std::string& world, std::function<void(bool)> then) {
-    storage::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
+    recording::RunRecorder* recorder = recorder_ ? recorder_->of(world) : nullptr;
     if (!recorder || recorder_->refusal()) {
         return then(false); // what is in the file is what there is
     }
@@ -145,7 +145,7 @@ void TimeTravel::once_written(const std::string& world, std::function<void(bool)
     });
 }
 
-storage::KnownUntil TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
+replay::KnownUntil TimeTravel::known_of(const std::string& world, const simulation::RunId& run_id) const {
     const auto living = std::as_const(laboratory_).find(world);
     if (!living || (*living)->replay || (*living)->run_id != run_id) {
         return {};
@@ -160,8 +160,8 @@ void TimeTravel::stop_waiting() {
     }
 }
 
-void TimeTravel::set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to,
-                         storage::KnownUntil known, std::uint64_t owner, Arrived arrived, const Departed& departed) {
+void TimeTravel::set_out(const replay::Past& past, const std::optional<replay::WantedMoment>& to,
+                         replay::KnownUntil known, std::uint64_t owner, Arrived arrived, const Departed& departed) {
     if (departing_.size() + journeys_.size() >= journeys_max) {
         return arrived(refusal(RefusalCode::ResourceExhausted, "too many are on their way into the past: try again",
                                base::Reason::PastsMax));
@@ -170,13 +170,13 @@ void TimeTravel::set_out(const storage::Past& past, const std::optional<storage:
     departing_.emplace(number, Departing{.owner = owner, .departed = departed, .arrived = std::move(arrived)});
     reader_.ask([this, number, past, to, known]() -> PastReader::Then {
         base::InlineExecutor executor;
-        const auto departure = std::make_shared<Result<storage::Departure>>(
+        const auto departure = std::make_shared<Result<replay::Departure>>(
             base::within_memory([&] { return past.depart(to, known, executor); }));
         return [this, number, departure] { depart(number, std::move(*departure)); };
     });
 }
 
-void TimeTravel::depart(std::uint64_t number, Result<storage::Departure> departure) {
+void TimeTravel::depart(std::uint64_t number, Result<replay::Departure> departure) {
     const auto found = departing_.extract(number);
     if (!found) { // its owner is gone
         return;
@@ -213,8 +213,8 @@ void TimeTravel::begin_journey(const std::string& world, std::uint64_t generatio
     }
     const auto known = known_of(world, past->run_id());
     once_written(world, [this, generation, known, past = *past, arrived = std::move(arrived)](bool all_is_written) {
-        set_out(past, storage::WantedMoment{.generation = generation, .tick = {}},
-                all_is_written ? known : storage::KnownUntil{}, 0, arrived);
+        set_out(past, replay::WantedMoment{.generation = generation, .tick = {}},
+                all_is_written ? known : replay::KnownUntil{}, 0, arrived);
     });
 }
 
@@ -305,7 +305,7 @@ void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
     };
     const auto known = known_of(world, past->run_id());
     once_written(world, [this, name, known, past = *past, request, opened](bool all_is_written) {
-        std::optional<storage::WantedMoment> at;
+        std::optional<replay::WantedMoment> at;
         if (request.at.generation || request.at.tick) {
             at = request.at;
         }
@@ -321,7 +321,7 @@ void TimeTravel::open(const OpenReplay& request, const PastReply& reply) {
         if (!opening_.contains(request.owner)) {
             return opened(owner_gone());
         }
-        set_out(past, at, all_is_written ? known : storage::KnownUntil{}, request.owner, arrived);
+        set_out(past, at, all_is_written ? known : replay::KnownUntil{}, request.owner, arrived);
     });
 }
 
@@ -359,10 +359,10 @@ void TimeTravel::seek(const Seek& request, const PastReply& reply) {
         if (!seeking_.contains(request.owner)) {
             return sought(owner_gone());
         }
-        const storage::Past& past = look->second.past;
+        const replay::Past& past = look->second.past;
         // The world may have begun another run: what is looked at is still the one of the look.
         const simulation::Replay& seen = *entry_of(name)->replay;
-        storage::KnownUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
+        replay::KnownUntil known{.generation = seen.last_generation, .tick = seen.last_tick};
         if (all_is_written) {
             known.generation = std::max(known.generation, known_now.generation);
             known.tick = std::max(known.tick, known_now.tick);
@@ -474,7 +474,7 @@ void TimeTravel::ask_for_news(const std::string& name, Look& look) {
     });
 }
 
-void TimeTravel::go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news) {
+void TimeTravel::go_on(simulation::Entry& entry, Look& look, const replay::PastNews& news) {
     // Asked for before the look was taken to another moment, the news may begin after what is known there.
     if (news.there.last_tick <= entry.replay->last_tick || news.after_entry > look.entries_read) {
         return;

@@ -8,10 +8,10 @@
 // Determinism  the past is made again bit for bit; living worlds are only looked at.
 #pragma once
 
+#include "server/recording/recorder.h"
+#include "server/replay/past.h"
 #include "server/runtime/mailbox.h"
 #include "server/runtime/past_reader.h"
-#include "server/storage/past.h"
-#include "server/storage/recorder.h"
 
 #include <functional>
 #include <map>
@@ -30,14 +30,14 @@ class TimeTravel {
 
     /// Everything handed in outlives this. recorder: nullptr if runs are not kept.
     TimeTravel(simulation::Laboratory& laboratory, Mailbox& mailbox, base::Executor& executor,
-               storage::Recorder* recorder)
+               recording::Recorder* recorder)
         : laboratory_{laboratory}, mailbox_{mailbox}, executor_{executor}, recorder_{recorder}, reader_{mailbox} {}
 
     /// A world that shows the run of a file and is there for good.
     struct Replay {
         std::string name;
-        storage::Past past;
-        storage::Rerun rerun;
+        replay::Past past;
+        replay::Rerun rerun;
         simulation::Replay replay;
     };
     /// At its first moment, or that of a generation.
@@ -56,7 +56,7 @@ class TimeTravel {
 
     /// A journey's end, or why it came to none.
     struct Arrival {
-        storage::Rerun rerun;
+        replay::Rerun rerun;
         simulation::Replay there;
     };
     using Arrived = std::function<void(base::Result<Arrival>)>;
@@ -74,8 +74,8 @@ class TimeTravel {
 
   private:
     struct Look {
-        storage::Past past;
-        storage::ComingChanges changes;
+        replay::Past past;
+        replay::ComingChanges changes;
         std::uint64_t entries_read = 0; // of the journal, into `changes`
         std::uint64_t owner = 0;        // 0: nobody's, there for good
         Clock::time_point refreshed;
@@ -84,8 +84,8 @@ class TimeTravel {
     };
     struct Journey {
         std::uint64_t number = 0, owner = 0; // owner 0: the server itself
-        storage::Rerun rerun;
-        storage::PastMoment to;
+        replay::Rerun rerun;
+        replay::PastMoment to;
         simulation::Replay there;
         Arrived arrived;
     };
@@ -103,33 +103,33 @@ class TimeTravel {
     base::Result<std::string> close(const CloseReplay& request);
     void close_all_of(std::uint64_t owner);
     /// Where the past of a world is told; refused where it is not.
-    base::Result<storage::Past> replay_of(const std::string& world) const;
+    base::Result<replay::Past> replay_of(const std::string& world) const;
     /// Calls `then` on this thread when all that a world has done is on the disk; with false if nobody knows, because
     /// the disk makes trouble, or nothing of it is written.
     void once_written(const std::string& world, std::function<void(bool all_is_written)> then);
     /// Where a world is, if it lives and this is its run. To be called before once_written().
-    storage::KnownUntil known_of(const std::string& world, const simulation::RunId& run_id) const;
+    replay::KnownUntil known_of(const std::string& world, const simulation::RunId& run_id) const;
     /// to     nothing: the first moment.
     /// known  as Past::depart takes it.
-    void set_out(const storage::Past& past, const std::optional<storage::WantedMoment>& to, storage::KnownUntil known,
+    void set_out(const replay::Past& past, const std::optional<replay::WantedMoment>& to, replay::KnownUntil known,
                  std::uint64_t owner, Arrived arrived, const Departed& departed = {});
-    void depart(std::uint64_t number, base::Result<storage::Departure> departure);
+    void depart(std::uint64_t number, base::Result<replay::Departure> departure);
     /// Ends a journey that is still under way with this refusal.
     void give_up(std::uint64_t number, const base::Refusal& why);
     /// Whether a journey is over: at its moment, or beyond it.
     static bool is_over(const Journey& journey);
     /// A tick; true if the journey is over. Every journey ends, whatever moment it goes to.
     static bool advance(Journey& journey, base::Executor& executor);
-    void show(const std::string& name, storage::Past past, std::uint64_t owner, Arrival arrival);
+    void show(const std::string& name, replay::Past past, std::uint64_t owner, Arrival arrival);
     void arrive_in(simulation::Entry& entry, Look& look, Arrival arrival);
     void ask_for_news(const std::string& name, Look& look);
-    void go_on(simulation::Entry& entry, Look& look, const storage::PastNews& news);
+    void go_on(simulation::Entry& entry, Look& look, const replay::PastNews& news);
     simulation::Entry* entry_of(const std::string& world);
 
     simulation::Laboratory& laboratory_;
     Mailbox& mailbox_;
     base::Executor& executor_;
-    storage::Recorder* recorder_;
+    recording::Recorder* recorder_;
     std::map<std::string, Look, std::less<>> looks_; // by the name of the world that shows it
     // How many are on their way, by the owner; one that is gone is not in them.
     std::map<std::uint64_t, std::size_t> opening_, seeking_;

@@ -2,9 +2,9 @@
 // and what packing one takes. As a server does it: ticks and copying on this thread and its workers, the rest on the
 // storage thread.
 #include "server/base/inline_executor.h"
+#include "server/recording/recorder.h"
+#include "server/run_file/checkpoint.h"
 #include "server/runtime/worker_pool.h"
-#include "server/storage/checkpoint.h"
-#include "server/storage/recorder.h"
 #include "tests/bench/experiment.h"
 #include "tests/bench/stopwatch.h"
 
@@ -49,10 +49,10 @@ int main(int argc, char** argv) {
     simulation::World world{bench::bench_world(organisms), base::Seed{1}};
     std::vector<double> plain_ms, with_checkpoint_ms, copying_ms;
     {
-        storage::StorageThread thread{{}};
+        recording::StorageThread thread{{}};
         const auto number = thread.create(
             path, {.name = "w", .run_id = {}, .seed = {1}, .parameters = world.parameters().requested}, {});
-        storage::RunRecorder recorder{thread, number, {}, 0};
+        recording::RunRecorder recorder{thread, number, {}, 0};
         recorder.follow(world);
         for (std::uint32_t tick = 0; tick < 60; ++tick) {
             world.advance_tick(*executor);
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     }
     const simulation::WorldState state = world.state(*executor);
     const bench::Stopwatch packing;
-    const std::string packed = storage::pack(state);
+    const std::string packed = run_file::pack(state);
     const double packing_ms = 1e3 * packing.elapsed().wall;
     std::cout << boost::json::object{{"organisms", organisms},
                                      {"threads", executor->thread_count()},

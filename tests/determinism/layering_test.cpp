@@ -2,7 +2,8 @@
 //
 // Covered      every .h and .cpp below server/, client/, proto/ and tests/ for includes of ours; server/{base, physics,
 //              evolution, simulation} for headers and calls that would make a run depend on time, disk, threads, a
-//              device or the C library's last bits; server/{protocol, storage} for sockets.
+//              device or the C library's last bits; server/{protocol, run_file, recording,
+//              replay} for sockets.
 // Not covered  what a header of a library does inside; python and scripts.
 
 #include <gtest/gtest.h>
@@ -45,33 +46,36 @@ const std::map<std::string, std::set<std::string>> arrows = {
     {"server/access", {"server/files", "server/base", "proto/evod"}},
     {"server/log", {}},
     {"server/metrics", {"proto/evod"}},
-    {"server/storage",
-     {"server/protocol", "server/metrics", "server/log", "server/files", "server/simulation", "server/parameters",
-      "server/evolution", "server/base", "proto/codec", "proto/evod"}},
-    {"server/tables",
-     {"server/storage", "server/simulation", "server/parameters", "server/evolution", "server/base", "proto/evod"}},
+    {"server/run_file", {"server/files", "server/simulation", "server/parameters", "server/evolution", "server/base"}},
+    {"server/recording",
+     {"server/run_file", "server/metrics", "server/log", "server/simulation", "server/parameters", "server/evolution",
+      "server/base"}},
+    {"server/replay",
+     {"server/recording", "server/run_file", "server/protocol", "server/log", "server/simulation", "server/parameters",
+      "server/evolution", "server/base", "proto/evod"}},
     {"server/runtime",
-     {"server/tables", "server/storage", "server/protocol", "server/metrics", "server/log", "server/simulation",
-      "server/parameters", "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod",
-      "tests/support"}}, // the tsan preset's worker pool is that of tests/support
+     {"server/replay", "server/recording", "server/run_file", "server/protocol", "server/metrics", "server/log",
+      "server/simulation", "server/parameters", "server/evolution", "server/physics", "server/base", "proto/codec",
+      "proto/evod", "tests/support"}}, // the tsan preset's worker pool is that of tests/support
     {"server/experiments",
-     {"server/tables", "server/storage", "server/protocol", "server/files", "server/simulation", "server/parameters",
-      "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod"}},
+     {"server/replay", "server/recording", "server/run_file", "server/protocol", "server/files", "server/simulation",
+      "server/parameters", "server/evolution", "server/physics", "server/base", "proto/codec", "proto/evod"}},
     {"server/commands",
-     {"server/experiments", "server/network", "server/access", "server/log", "server/runtime", "server/tables",
-      "server/storage", "server/protocol", "server/simulation", "server/parameters", "server/evolution", "server/base",
-      "proto/command_line", "proto/codec", "proto/evod"}},
+     {"server/experiments", "server/network", "server/access", "server/log", "server/runtime", "server/replay",
+      "server/recording", "server/run_file", "server/protocol", "server/simulation", "server/parameters",
+      "server/evolution", "server/base", "proto/command_line", "proto/codec", "proto/evod"}},
     {"server/streaming",
      {"server/runtime", "server/protocol", "server/simulation", "server/parameters", "server/physics", "server/base",
       "proto/codec", "proto/evod"}},
     {"server/network",
-     {"server/access", "server/streaming", "server/runtime", "server/tables", "server/storage", "server/protocol",
-      "server/metrics", "server/log", "server/simulation", "server/parameters", "server/evolution", "server/base",
-      "proto/codec", "proto/evod"}},
+     {"server/access", "server/streaming", "server/runtime", "server/replay", "server/recording", "server/run_file",
+      "server/protocol", "server/metrics", "server/log", "server/simulation", "server/parameters", "server/evolution",
+      "server/base", "proto/codec", "proto/evod"}},
     {"server", // main.cpp knows everyone
      {"server/network", "server/commands", "server/experiments", "server/access", "server/log", "server/runtime",
-      "server/storage", "server/protocol", "server/simulation", "server/parameters", "server/evolution",
-      "server/physics", "server/base", "proto/command_line", "proto/codec", "proto/evod"}},
+      "server/replay", "server/recording", "server/run_file", "server/protocol", "server/simulation",
+      "server/parameters", "server/evolution", "server/physics", "server/base", "proto/command_line", "proto/codec",
+      "proto/evod"}},
     {"proto/command_line", {}},
     {"proto/codec", {"proto/evod"}},
     {"client/core", {"proto/command_line", "proto/codec", "proto/evod"}},
@@ -279,9 +283,10 @@ TEST(Core, AsksNoReductionOfTheStandardLibraryForFloats) {
                            "a sum in no stated order: ");
 }
 
-TEST(ProtocolAndStorage, OpenNoSockets) {
+TEST(ProtocolAndRunFiles, OpenNoSockets) {
     for (const Source& source : sources()) {
-        if (source.folder == "server/protocol" || source.folder == "server/storage" || source.folder == "proto/codec") {
+        if (source.folder == "server/protocol" || source.folder == "server/run_file" ||
+            source.folder == "server/recording" || source.folder == "server/replay" || source.folder == "proto/codec") {
             for (const std::string& include : source.libraries) {
                 EXPECT_FALSE(include.starts_with("boost/asio") || include.starts_with("boost/beast") ||
                              include.starts_with("sys/socket"))

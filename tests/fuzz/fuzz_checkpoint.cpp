@@ -2,8 +2,8 @@
 //
 // The first byte says whether the rest is compressed, and after which tick the state is said to be.
 #include "server/base/inline_executor.h"
+#include "server/run_file/checkpoint.h"
 #include "server/simulation/world.h"
-#include "server/storage/checkpoint.h"
 
 #include <cstdlib>
 
@@ -38,7 +38,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                  .islands = {},
                                  .ended = {}};
     const bool packed = data[0] >= 128;
-    if (const auto read = packed ? storage::unpack(bytes, shapes, state) : storage::read_columns(bytes, shapes, state);
+    if (const auto read =
+            packed ? run_file::unpack(bytes, shapes, state) : run_file::read_columns(bytes, shapes, state);
         !read) {
         return 0;
     }
@@ -52,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     // Packed again and unpacked it is the same.
     simulation::WorldState again;
-    if (!storage::unpack(storage::pack(world.state(executor)), shapes, again) ||
+    if (!run_file::unpack(run_file::pack(world.state(executor)), shapes, again) ||
         again.islands != world.state(executor).islands) {
         std::abort();
     }

@@ -5,8 +5,8 @@
 #include "evod/v1/commands.pb.h"
 #include "server/base/inline_executor.h"
 #include "server/commands/export.h"
-#include "server/storage/row.h"
-#include "server/storage/run_file.h"
+#include "server/run_file/row.h"
+#include "server/run_file/run_file.h"
 #include "tests/support/older_run_file.h"
 
 #include <sqlite3.h>
@@ -67,7 +67,7 @@ struct Place {
 
     /// Of three generations, or of what follows on a moment within the third.
     void write_sound(bool fork) const {
-        storage::RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {3}, .parameters = {}};
+        run_file::RunIdentity identity{.name = "w", .run_id = {1, 2}, .seed = {3}, .parameters = {}};
         identity.parameters.population_size = 4;
         identity.parameters.generation_s = 1;
         identity.parameters.island_count = 2;
@@ -82,35 +82,35 @@ struct Place {
             identity.first_generation = world.moment().generation;
             identity.first_tick = world.moment().tick;
         }
-        const storage::Inherited inherited = storage::inherited_by(world);
+        const run_file::Inherited inherited = run_file::inherited_by(world);
         identity.inherited_generations = inherited.history.size();
-        const storage::GenerationBegun begun = storage::beginning_of(world);
-        const storage::Checkpoint checkpoint = storage::checkpoint_of(world, 0, executor);
+        const run_file::GenerationBegun begun = run_file::beginning_of(world);
+        const run_file::Checkpoint checkpoint = run_file::checkpoint_of(world, 0, executor);
         const auto file =
-            storage::RunFile::create(path, identity, {}, &begun, fork ? &checkpoint : nullptr, &inherited);
+            run_file::RunFile::create(path, identity, {}, &begun, fork ? &checkpoint : nullptr, &inherited);
         require(file.has_value());
         (*file)->begin();
         v1::Request request;
         request.mutable_pause();
-        (*file)->write(storage::JournalEntry{.number = 1,
-                                             .tick = identity.first_tick,
-                                             .origin = {"client", "key", 1, request.SerializeAsString()},
-                                             .answer = "answer",
-                                             .control = {}});
+        (*file)->write(run_file::JournalEntry{.number = 1,
+                                              .tick = identity.first_tick,
+                                              .origin = {"client", "key", 1, request.SerializeAsString()},
+                                              .answer = "answer",
+                                              .control = {}});
         while (world.moment().generation < identity.first_generation + 2) {
             const std::uint64_t generation = world.moment().generation;
             world.advance_tick(executor);
             if (world.moment().generation != generation) {
-                (*file)->write(storage::beginning_of(world));
+                (*file)->write(run_file::beginning_of(world));
             }
-            if (world.moment().tick % storage::ticks_per_link == 0) {
-                (*file)->write(storage::HashLink{world.moment().tick, world.hash()});
+            if (world.moment().tick % run_file::ticks_per_link == 0) {
+                (*file)->write(run_file::HashLink{world.moment().tick, world.hash()});
             }
             if (world.generation_over()) {
-                (*file)->write(storage::end_of(world));
+                (*file)->write(run_file::end_of(world));
             }
         }
-        (*file)->write(storage::EndMark{.tick = world.moment().tick});
+        (*file)->write(run_file::EndMark{.tick = world.moment().tick});
         require((*file)->commit().has_value());
         require((*file)->check().has_value());
     }
@@ -122,7 +122,7 @@ struct Place {
         const std::string older = support::as_of_format(2) + "; DELETE FROM run WHERE key = 'build'";
         require(sqlite3_exec(database, older.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
         sqlite3_close(database);
-        const auto file = storage::RunFile::open_read_only(path);
+        const auto file = run_file::RunFile::open_read_only(path);
         require(file.has_value() && (*file)->check().has_value());
     }
 
@@ -164,7 +164,7 @@ void change_row(sqlite3* database, Bytes& bytes) {
     }
     if (sqlite3_step(read) == SQLITE_ROW) {
         const int columns = sqlite3_column_count(read) - 2; // without rowid and checksum
-        storage::RowChecksum checksum{table};
+        run_file::RowChecksum checksum{table};
         std::string sql = "UPDATE " + table + " SET checksum = ?1, " + sqlite3_column_name(read, 1 + wanted % columns) +
                           " = ?2 WHERE rowid = ?3";
         sqlite3_stmt* write = nullptr;
@@ -273,7 +273,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         sqlite3_close(database);
     }
     }
-    if (const auto file = storage::RunFile::open_read_only(place.path)) {
+    if (const auto file = run_file::RunFile::open_read_only(place.path)) {
         require(!foreign);
         (void)(*file)->check();
         (void)(*file)->history((*file)->last_generation() + 1, simulation::World::history_generations_kept);

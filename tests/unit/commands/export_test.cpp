@@ -1,7 +1,7 @@
 // Exports and bundles of files that another model made.
 #include "server/commands/export.h"
-#include "tests/unit/storage/other_model.h"
-#include "tests/unit/storage/recorded_run.h"
+#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/other_model.h"
 
 #include <gmock/gmock.h>
 
@@ -14,9 +14,9 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Bundle, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
-    const storage::TemporaryFolder folder;
+    const recording::TemporaryFolder folder;
     const std::string run = folder.path() + "/w.evod", bundle = folder.path() + "/bundle";
-    storage::record_other_model(run, storage::small_world()).reset();
+    replay::record_other_model(run, recording::small_world()).reset();
     testing::internal::CaptureStderr();
     ExportOptions options;
     options.run = run;
@@ -35,9 +35,9 @@ TEST(Bundle, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
 }
 
 TEST(Lineage, OfAFileOfAnotherModelSaysWhatIsLeftOut) {
-    const storage::TemporaryFolder folder;
+    const recording::TemporaryFolder folder;
     const std::string run = folder.path() + "/w.evod";
-    storage::record_other_model(run, storage::small_world()).reset();
+    replay::record_other_model(run, recording::small_world()).reset();
     testing::internal::CaptureStderr();
     ExportOptions options;
     options.run = run;

@@ -1,7 +1,7 @@
 #include "server/experiments/sweep_folder.h"
 
 #include "server/experiments/new_file.h"
-#include "tests/unit/storage/recorded_run.h"
+#include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
 
@@ -34,7 +34,7 @@ std::string text_of(const std::string& path) {
 }
 
 TEST(NewFile, IsThereWholeOrNotAtAll) {
-    const storage::TemporaryFolder folder;
+    const recording::TemporaryFolder folder;
     const std::string path = folder.path() + "/file";
     {
         NewFile file{path};
@@ -62,7 +62,7 @@ TEST(NewFile, SaysWhereItCannotBe) {
 }
 
 TEST(SweepFolder, OfAnotherSweepIsRefusedWithWhatDiffers) {
-    const storage::TemporaryFolder folder;
+    const recording::TemporaryFolder folder;
     const Sweep sweep = two_cells();
     ASSERT_TRUE(SweepFolder::open(folder.path() + "/a/b", sweep));
     ASSERT_TRUE(SweepFolder::open(folder.path() + "/a/b", sweep)); // again
@@ -97,7 +97,7 @@ TEST(SweepFolder, OfAnotherSweepIsRefusedWithWhatDiffers) {
 }
 
 TEST(SweepFolder, WithResultsOfNobodyKnowsWhomIsRefused) {
-    const storage::TemporaryFolder folder;
+    const recording::TemporaryFolder folder;
     write(folder.path() + "/runs.csv", "mine");
     const Sweep sweep = two_cells();
     const auto opened = SweepFolder::open(folder.path(), sweep);
@@ -108,7 +108,7 @@ TEST(SweepFolder, WithResultsOfNobodyKnowsWhomIsRefused) {
 }
 
 TEST(SweepFolder, ARunIsOverWhenItsPartIsWhole) {
-    const storage::TemporaryFolder place;
+    const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
     ASSERT_TRUE(folder);
@@ -135,7 +135,7 @@ TEST(SweepFolder, ARunIsOverWhenItsPartIsWhole) {
 }
 
 TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
-    const storage::TemporaryFolder place;
+    const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
     ASSERT_TRUE(folder);
@@ -164,7 +164,7 @@ TEST(SweepFolder, GathersPartsInOrderBehindTheirProvenance) {
 }
 
 TEST(SweepFolder, APartThatWasChangedIsNamed) {
-    const storage::TemporaryFolder place;
+    const recording::TemporaryFolder place;
     const Sweep sweep = two_cells();
     const auto folder = SweepFolder::open(place.path(), sweep);
     ASSERT_TRUE(folder);
@@ -178,7 +178,7 @@ TEST(SweepFolder, APartThatWasChangedIsNamed) {
 }
 
 TEST(SweepFolder, LineEndsOfOtherSystemsDoNotEndTheComment) {
-    const storage::TemporaryFolder place;
+    const recording::TemporaryFolder place;
     const Sweep sweep = two_cells(",\r\n\"description\":\r\"x\"\r\n");
     ASSERT_TRUE(SweepFolder::open(place.path(), sweep));
     const std::string provenance = text_of(place.path() + "/sweep.txt");

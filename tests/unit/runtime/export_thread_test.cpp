@@ -1,8 +1,8 @@
 #include "server/runtime/export_thread.h"
 
 #include "tests/support/waiting.h"
-#include "tests/unit/storage/other_model.h"
-#include "tests/unit/storage/recorded_run.h"
+#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/other_model.h"
 
 #include <gmock/gmock.h>
 
@@ -13,8 +13,8 @@ namespace evod::runtime {
 namespace {
 
 using base::RefusalCode;
-using storage::RunFile;
-using tables::RunTable;
+using replay::RunTable;
+using run_file::RunFile;
 using testing::HasSubstr;
 
 class ExportThreadTest : public testing::Test {
@@ -23,36 +23,36 @@ class ExportThreadTest : public testing::Test {
     void record(int generations, std::uint64_t keep_every = 1) {
         RunFile::Options options;
         options.keep_every = keep_every;
-        storage::StorageThread thread{options};
-        storage::RecordedRun run{data, thread};
+        recording::StorageThread thread{options};
+        recording::RecordedRun run{data, thread};
         while (run.world().moment().generation <= static_cast<std::uint64_t>(generations)) {
             run.advance(1);
         }
         run.advance(1);
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-        past.emplace(*storage::Past::of_file(data.file_of("w")));
+        past.emplace(*replay::Past::of_file(data.file_of("w")));
     }
     static base::Result<ExportThread::Part> next(ExportThread& thread) {
         std::promise<base::Result<ExportThread::Part>> part;
         thread.next([&](base::Result<ExportThread::Part> came) { part.set_value(std::move(came)); });
         return part.get_future().get();
     }
-    std::string whole(const tables::WantedTable& wanted) {
+    std::string whole(const replay::WantedTable& wanted) {
         const auto file = past->open();
         std::ostringstream out;
-        EXPECT_TRUE(tables::write_table({**file, executor}, wanted, out));
+        EXPECT_TRUE(replay::write_table({**file, executor}, wanted, out));
         return out.str();
     }
 
-    storage::TemporaryFolder folder;
-    storage::DataFolder data{*storage::DataFolder::open(folder.path())};
+    recording::TemporaryFolder folder;
+    run_file::DataFolder data{*run_file::DataFolder::open(folder.path())};
     base::InlineExecutor executor;
-    std::optional<storage::Past> past;
+    std::optional<replay::Past> past;
 };
 
 TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
     record(300, 100);
-    const tables::WantedTable wanted{.table = RunTable::Organisms, .format = tables::Table::Format::JsonLines};
+    const replay::WantedTable wanted{.table = RunTable::Organisms, .format = replay::Table::Format::JsonLines};
     ExportThread thread{*past, wanted};
     std::string text;
     int parts = 0;
@@ -69,7 +69,7 @@ TEST_F(ExportThreadTest, PartsPutTogetherAreTheTable) {
 }
 
 TEST_F(ExportThreadTest, TellsHowManyGenerationsAreLeftOut) {
-    const auto run_id = storage::record_other_model(data.file_of("w"), storage::small_world())->identity().run_id;
+    const auto run_id = replay::record_other_model(data.file_of("w"), recording::small_world())->identity().run_id;
     past.emplace(std::vector{data.file_of("w")}, run_id);
     for (const auto& [table, left_out] :
          {std::pair{RunTable::Organisms, 4u}, std::pair{RunTable::Lineage, 4u}, std::pair{RunTable::Generations, 0u}}) {

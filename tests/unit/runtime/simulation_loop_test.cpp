@@ -5,7 +5,7 @@
 #include "server/runtime/simulation_thread.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/waiting.h"
-#include "tests/unit/storage/recorded_run.h"
+#include "tests/unit/recording/recorded_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -650,12 +650,12 @@ TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
 }
 
 TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
-    storage::TemporaryFolder folder;
-    auto data = storage::DataFolder::open(folder.path());
+    recording::TemporaryFolder folder;
+    auto data = run_file::DataFolder::open(folder.path());
     base::StateHash hashes[2];
     for (const auto per_look : {1us, 20'000us}) {
-        storage::StorageThread thread{{}};
-        storage::Recorder recorder{*data, thread};
+        recording::StorageThread thread{{}};
+        recording::Recorder recorder{*data, thread};
         clock.per_look = per_look;
         Mailbox letters;
         SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
@@ -672,7 +672,7 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
             kept.pass();
         }
         ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-        const auto file = storage::RunFile::open_read_only(data->file_of("w"));
+        const auto file = run_file::RunFile::open_read_only(data->file_of("w"));
         ASSERT_TRUE(file) << to_text(file.error());
         const auto checkpoints = (*file)->checkpoints(0, run.moment().tick);
         ASSERT_TRUE(checkpoints) << to_text(checkpoints.error());
@@ -686,10 +686,10 @@ TEST_F(Loop, CheckpointsComeWhereTicksAreSlowAndChangeNothing) {
 }
 
 TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
-    storage::TemporaryFolder folder;
-    auto data = storage::DataFolder::open(folder.path());
-    storage::StorageThread thread{{}};
-    storage::Recorder recorder{*data, thread};
+    recording::TemporaryFolder folder;
+    auto data = run_file::DataFolder::open(folder.path());
+    recording::StorageThread thread{{}};
+    recording::Recorder recorder{*data, thread};
     Mailbox letters;
     SimulationLoop kept{letters, demand,   executor, clock, {.events = [](auto&&...) {}, .picture = [](auto&&) {}},
                         {},      &recorder};
@@ -705,7 +705,7 @@ TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
     std::ofstream{taken} << "somebody else's";
     tell(create("taken"));
     EXPECT_THAT(said, testing::HasSubstr("the run would be kept in " + taken + ", which is there already"));
-    std::ofstream{storage::DataFolder::next_file_of(data->file_of("next"))} << "somebody else's";
+    std::ofstream{run_file::DataFolder::next_file_of(data->file_of("next"))} << "somebody else's";
     tell(create("next"));
     EXPECT_THAT(said, testing::HasSubstr("next.evod-next, which is there already"));
     EXPECT_TRUE(kept.laboratory().entries().empty());
@@ -724,7 +724,7 @@ TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
     }
     EXPECT_FALSE(recorder.trouble());
     ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
-    EXPECT_TRUE(storage::RunFile::open_read_only(data->file_of("w")));
+    EXPECT_TRUE(run_file::RunFile::open_read_only(data->file_of("w")));
     std::filesystem::remove(taken);
     tell(create("taken", 99));
     EXPECT_EQ(said, "");
@@ -736,7 +736,7 @@ TEST_F(Loop, NoWorldBeginsWhereItsFileIsTakenAndOthersGoOn) {
 class LoopWithADisk : public Loop {
   protected:
     LoopWithADisk()
-        : data{*storage::DataFolder::open(folder.path())}
+        : data{*run_file::DataFolder::open(folder.path())}
         , thread{{}, 1ms}
         , recorder{data, thread}
         , kept{mailbox,
@@ -828,14 +828,14 @@ class LoopWithADisk : public Loop {
         send(simulation::SetSpeed{"crowd", {}});
     }
 
-    storage::TemporaryFolder folder;
+    recording::TemporaryFolder folder;
     const std::string away = folder.path() + "_away";
-    storage::DataFolder data;
+    run_file::DataFolder data;
     std::vector<simulation::StorageState> told;
     std::atomic<int> news = 0;
     std::uint64_t requests = 0;
-    storage::StorageThread thread;
-    storage::Recorder recorder;
+    recording::StorageThread thread;
+    recording::Recorder recorder;
     SimulationLoop kept;
 };
 
@@ -942,7 +942,7 @@ TEST_F(LoopWithADisk, SeeksToTheEndOfARunShowWhatWas) {
         simulation::Moment moment;
         base::StateHash hash;
     };
-    const auto shown_at = [&](const storage::WantedMoment& to, bool and_change) {
+    const auto shown_at = [&](const replay::WantedMoment& to, bool and_change) {
         std::optional<base::Result<std::string>> answer;
         mailbox.push(PastMail{Seek{.world = look, .to = to, .owner = 1},
                               [&](const Laboratory&, const base::Result<std::string>& name) { answer = name; }});

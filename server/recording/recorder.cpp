@@ -1,0 +1,208 @@
+#include "server/recording/recorder.h"
+
+#include "server/base/assert.h"
+
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+namespace evod::recording {
+
+run_file::RunIdentity identity_of(std::string name, const simulation::RunId& run_id, const simulation::World& world) {
+    using namespace std::chrono;
+    const auto now = duration_cast<milliseconds>(system_clock::now().time_since_epoch());
+    return {.name = std::move(name),
+            .run_id = run_id,
+            .seed = world.seed(),
+            .parameters = world.parameters().requested,
+            .began_unix_ms = now.count(),
+            .first_generation = world.moment().generation,
+            .first_tick = world.moment().tick,
+            .forked_from = {},
+            .inherited_generations = 0,
+            .first_population = world.first_population(),
+            .schedule = world.schedule()};
+}
+
+std::vector<StorageThread::Record> RunRecorder::news(const simulation::World& world) {
+    // Together, so that a file tells of a tick all there is to tell or nothing.
+    std::vector<StorageThread::Record> records;
+    const std::uint64_t begun = news_.generations_begun();
+    news_.tell(world, [&records](auto record) { records.emplace_back(std::move(record)); });
+    if (news_.generations_begun() != begun) {
+        since_beginning_ = {};
+    }
+    return records;
+}
+
+void RunRecorder::hand_over(const simulation::World& world) {
+    if (auto records = news(world); !records.empty()) {
+        thread_.write(number_, {std::move(records), {}});
+    }
+}
+
+bool RunRecorder::checkpoint_due(const simulation::World& world, std::chrono::nanoseconds spent) {
+    since_beginning_ += spent;
+    since_checkpoint_ += spent;
+    // Where a generation is over, the next one's beginning comes with the next tick.
+    return since_beginning_ > worth_a_checkpoint && !world.generation_over() && !writing_->waits &&
+           since_checkpoint_ > checkpoint_cost_factor * (copying_took_ + writing_->took.load());
+}
+
+void RunRecorder::make_checkpoint(const simulation::World& world, base::Executor& executor) {
+    news_.seen(world.moment().tick);
+    thread_.write(number_, run_file::checkpoint_of(world, journal_entries_, executor), writing_);
+    since_beginning_ = since_checkpoint_ = {};
+}
+
+run_file::JournalEntry RunRecorder::entry(CommandRecord& command) {
+    news_.seen(command.tick);
+    return {.number = ++journal_entries_,
+            .tick = command.tick,
+            .origin = std::move(command.origin),
+            .answer = std::move(command.answer),
+            .control = command.control};
+}
+
+void RunRecorder::journal(CommandRecord command) {
+    std::vector<StorageThread::Record> records;
+    records.emplace_back(entry(command));
+    thread_.write(number_, {std::move(records), std::move(command.done)});
+}
+
+StorageThread::Batch RunRecorder::first(const simulation::World& world, std::optional<CommandRecord> command) {
+    StorageThread::Batch batch{news(world), {}};
+    if (command) {
+        batch.records.emplace_back(entry(*command));
+        batch.done = std::move(command->done);
+    }
+    return batch;
+}
+
+StorageThread::Ending RunRecorder::ending(std::uint64_t tick, bool ended, std::string renamed,
+                                          std::optional<CommandRecord> command) {
+    StorageThread::Ending ending{.last = {}, .renamed = std::move(renamed)};
+    if (command) {
+        ending.last.records.emplace_back(entry(*command));
+        ending.last.done = std::move(command->done);
+    }
+    news_.seen(tick);
+    ending.last.records.emplace_back(run_file::EndMark{.ended = ended, .tick = news_.tick()});
+    return ending;
+}
+
+std::optional<base::Refusal> Recorder::refusal() const {
+    const auto why = trouble();
+    if (!why) {
+        return std::nullopt;
+    }
+    return base::Refusal{.code = base::RefusalCode::Unavailable,
+                         .message = "nothing can be changed while it cannot be written down: " + *why +
+                                    "; send it again once that is mended",
+                         .violations = {}};
+}
+
+std::optional<base::Refusal> Recorder::refusal_of_place(const std::string& world) const {
+    const auto leaving = leaving_.find(world);
+    if (runs_.contains(world) || (leaving != leaving_.end() && *leaving->second > 0)) {
+        return std::nullopt;
+    }
+    const std::string path = folder_.file_of(world);
+    for (const std::string& taken : {path, run_file::DataFolder::next_file_of(path)}) {
+        std::error_code error; // where it cannot be looked at, making it fails, and is told
+        if (std::filesystem::exists(taken, error)) {
+            return base::refusal(base::RefusalCode::AlreadyExists,
+                                 "the run would be kept in " + taken +
+                                     ", which is there already and belongs to no world of this "
+                                     "server: move it away, or choose another name");
+        }
+    }
+    return std::nullopt;
+}
+
+RunRecorder* Recorder::of(const std::string& world) {
+    const auto found = runs_.find(world);
+    return found == runs_.end() ? nullptr : &found->second;
+}
+
+void Recorder::add(const std::string& world, RunRecorder run) {
+    const bool added = runs_.emplace(world, std::move(run)).second;
+    EVOD_ASSERT(added);
+}
+
+void Recorder::begin(const simulation::Entry& entry, std::optional<CommandRecord> command) {
+    RunRecorder run{thread_};
+    run.number_ = thread_.create(folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
+                                 run.first(entry.world, std::move(command)));
+    add(entry.name, std::move(run));
+}
+
+void Recorder::begin_fork(const simulation::Entry& entry, const simulation::RunId& origin, CommandRecord command,
+                          base::Executor& executor) {
+    RunRecorder run{thread_};
+    run_file::RunIdentity identity = identity_of(entry.name, entry.run_id, entry.world);
+    identity.forked_from = origin;
+    run_file::Inherited inherited = run_file::inherited_by(entry.world);
+    identity.inherited_generations = inherited.history.size();
+    run.news_.seen(entry.world.moment().tick); // the origin has that tick's link
+    StorageThread::Batch first = run.first(entry.world, std::move(command));
+    first.records.emplace_back(std::move(inherited));
+    // Within a generation its beginning is not enough: what came since is known to the origin alone.
+    if (entry.world.moment().generation_tick > 0) {
+        first.records.emplace_back(run_file::checkpoint_of(entry.world, 0, executor));
+    }
+    run.number_ = thread_.create(folder_.file_of(entry.name), std::move(identity), std::move(first));
+    add(entry.name, std::move(run));
+}
+
+void Recorder::begin_again(const simulation::Entry& entry, const simulation::RunId& ended_run, std::uint64_t tick,
+                           std::optional<CommandRecord> command) {
+    const auto old = runs_.find(entry.name);
+    EVOD_ASSERT(old != runs_.end());
+    RunRecorder run{thread_};
+    run.number_ = thread_.replace(old->second.number_,
+                                  old->second.ending(tick, true, folder_.ended_file_of(entry.name, ended_run)),
+                                  folder_.file_of(entry.name), identity_of(entry.name, entry.run_id, entry.world),
+                                  run.first(entry.world, std::move(command)));
+    runs_.erase(old);
+    add(entry.name, std::move(run));
+}
+
+RunRecorder& Recorder::go_on(const std::string& world, std::unique_ptr<run_file::RunFile> file,
+                             const run_file::EndMark& so_far, std::uint64_t generations_ended) {
+    const auto number = thread_.adopt(std::move(file));
+    add(world, RunRecorder{thread_, number, so_far, generations_ended});
+    return *of(world);
+}
+
+void Recorder::end(const std::string& world, const simulation::RunId& run_id, CommandRecord command) {
+    const auto run = runs_.find(world);
+    EVOD_ASSERT(run != runs_.end());
+    const std::uint64_t tick = command.tick;
+    std::erase_if(leaving_, [](const auto& item) { return *item.second == 0; });
+    auto& leaving = leaving_[world];
+    if (!leaving) {
+        leaving = std::make_shared<Leaving>(0);
+    }
+    ++*leaving;
+    command.done = [leaving = leaving, done = std::move(command.done)] {
+        --*leaving;
+        if (done) {
+            done();
+        }
+    };
+    thread_.close(run->second.number_,
+                  run->second.ending(tick, true, folder_.ended_file_of(world, run_id), std::move(command)));
+    runs_.erase(run);
+}
+
+void Recorder::close_all(const simulation::Laboratory& laboratory) {
+    for (const auto& entry : laboratory.entries()) {
+        if (RunRecorder* run = of(entry->name)) {
+            thread_.close(run->number_, run->ending(entry->world.moment().tick, false));
+        }
+    }
+    runs_.clear();
+}
+
+} // namespace evod::recording

@@ -1,0 +1,221 @@
+#include "server/replay/archive.h"
+
+#include "server/log/log.h"
+#include "server/run_file/write_ahead_log.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace evod::replay {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Archive::Archive(run_file::DataFolder folder, const run_file::RunFile::Options& options)
+    : folder_{std::move(folder)}
+    , durability_{options.durability}
+    , thread_{std::make_unique<recording::StorageThread>(options)}
+    , recorder_{std::make_unique<recording::Recorder>(folder_, *thread_)} {}
+
+namespace {
+
+/// Whether a run's file has the end mark of one that is over.
+Result<bool> is_over(run_file::RunFile& file) {
+    const auto mark = file.end_mark();
+    if (!mark) {
+        return mark.error();
+    }
+    return *mark && (*mark)->ended;
+}
+
+/// Why there is no server with such a file, and what can be done.
+Refusal with_ways_out(Refusal why, const std::string& folder) {
+    const std::string move = "move it, and its -wal if there is one, out of " + folder;
+    if (why.code == RefusalCode::DataLoss) {
+        why.message += "; put a copy back, or " + move + " to start without its world";
+    } else if (why.code == RefusalCode::FailedPrecondition) {
+        why.message += "; start the evod that made it, or " + move + " to start without its world";
+    } else if (why.code == RefusalCode::InvalidArgument) {
+        why.message += "; " + move;
+    }
+    return why;
+}
+
+/// A world was to begin, or to begin again. Once the run that it had has its end mark, the one that waits beside it is
+/// whole and takes its place; before that it is as if nobody had asked.
+Result<void> finish_replacing(const run_file::DataFolder& folder, const std::string& path) {
+    const std::string next = run_file::DataFolder::next_file_of(path);
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) {
+        auto old = run_file::RunFile::open_checked(path); // its end mark may be in the log
+        if (!old) {
+            return old.error();
+        }
+        const auto over = is_over(**old);
+        if (!over) {
+            return over.error();
+        }
+        if (!*over) {
+            return run_file::RunFile::remove(next);
+        }
+        const run_file::RunIdentity identity = (*old)->identity();
+        old->reset();
+        if (auto moved = run_file::RunFile::rename(path, folder.ended_file_of(identity.name, identity.run_id));
+            !moved) {
+            return moved;
+        }
+    } else {
+        const auto unmade = run_file::RunFile::holds_nothing(next);
+        if (!unmade) {
+            return unmade.error();
+        }
+        if (*unmade) {
+            return run_file::RunFile::remove(next);
+        }
+    }
+    return run_file::RunFile::rename(next, path);
+}
+
+} // namespace
+
+Result<std::unique_ptr<Archive>> Archive::open(const std::string& path, const run_file::RunFile::Options& options,
+                                               base::Executor& executor) {
+    auto folder = run_file::DataFolder::open(path);
+    if (!folder) {
+        return folder.error();
+    }
+    auto files = folder->files();
+    for (const std::string& file : files ? files->replaced : std::vector<std::string>{}) {
+        if (auto finished = finish_replacing(*folder, file); !finished) {
+            return with_ways_out(finished.error(), path);
+        }
+    }
+    if (files && !files->replaced.empty()) {
+        files = folder->files();
+    }
+    if (!files) {
+        return files.error();
+    }
+    for (const std::string& file : files->strange) {
+        log::warn("{} is left alone: a run file is called NAME.evod, and that is no name of a world", file);
+    }
+    std::unique_ptr<Archive> archive{new Archive{*std::move(folder), options}};
+
+    std::vector<std::string> ended = files->ended;
+    for (const std::string& file : files->of_worlds) {
+        const auto brought = archive->bring_back(file, options, executor);
+        if (!brought) {
+            return with_ways_out(brought.error(), path);
+        }
+        if (!brought->empty()) {
+            ended.push_back(*brought);
+        }
+    }
+    archive->remember(ended);
+    return archive;
+}
+
+void Archive::remember(const std::vector<std::string>& paths) {
+    struct Ended {
+        std::filesystem::file_time_type when;
+        std::string path;
+        std::vector<run_file::JournalEntry> last = {};
+    };
+    std::vector<Ended> runs;
+    for (const std::string& path : paths) {
+        std::error_code error;
+        runs.push_back({std::filesystem::last_write_time(path, error), path});
+    }
+    std::ranges::sort(runs, std::greater{}, [](const Ended& run) { return std::tie(run.when, run.path); });
+    std::size_t bytes = 0;
+    for (Ended& run : runs) {
+        const auto file = run_file::RunFile::open_read_only(run.path);
+        if (!file) {
+            continue; // no world depends on it; whoever opens it is told
+        }
+        const std::uint64_t last = (*file)->last_journal_entry();
+        const std::uint64_t count = std::min<std::uint64_t>(
+            last, bytes < answers_of_ended_bytes_max ? answers_kept_of_ended : 1); // that which ended it
+        if (auto entries = (*file)->journal(last + 1 - count)) {
+            run.last = *std::move(entries);
+        }
+        for (const run_file::JournalEntry& entry : run.last) {
+            bytes += entry.origin.request.size() + entry.answer.size();
+        }
+    }
+    std::vector<run_file::JournalEntry> answers;
+    for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+        std::ranges::move(run->last, std::back_inserter(answers));
+    }
+    std::ranges::move(answers_, std::back_inserter(answers));
+    answers_ = std::move(answers);
+}
+
+Result<std::string> Archive::bring_back(const std::string& path, const run_file::RunFile::Options& options,
+                                        base::Executor& executor) {
+    // With relaxed durability the index may be on the disk before the log, should the machine fail.
+    const auto index =
+        options.durability == run_file::Durability::Full ? run_file::LogIndex::Read : run_file::LogIndex::Unread;
+    if (auto sound = run_file::check_log(path, index); !sound) {
+        return sound.error();
+    }
+    auto file = run_file::RunFile::open(path, options);
+    if (!file) {
+        return file.error();
+    }
+    const run_file::RunIdentity identity = (*file)->identity();
+    const auto over = is_over(**file);
+    if (!over) {
+        return over.error();
+    }
+    if (*over) {
+        // It was to be renamed next.
+        file->reset();
+        const std::string ended = folder_.ended_file_of(identity.name, identity.run_id);
+        if (auto renamed = run_file::RunFile::rename(path, ended); !renamed) {
+            return renamed.error();
+        }
+        return ended;
+    }
+    const bool was_closed = (*file)->end_mark()->has_value();
+    auto recovered = recover(**file, executor);
+    if (!recovered) {
+        return recovered.error();
+    }
+    const run_file::EndMark contents = (*file)->contents();
+    const std::uint64_t generations_ended = (*file)->last_generation_ended();
+    const auto name = std::filesystem::path{path}.stem().string();
+    log::info({.world = name}, "world \"{}\" goes on from generation {}, tick {} of {}{}", name,
+              recovered->world.moment().generation, recovered->world.moment().tick, path,
+              was_closed ? "" : ", which was left without being closed");
+    auto entry = std::make_unique<simulation::Entry>(
+        simulation::Entry{name, identity.run_id, recovered->control, std::move(recovered->world)});
+    recording::RunRecorder& run = recorder_->go_on(name, *std::move(file), contents, generations_ended);
+    run.follow(entry->world);
+    laboratory_.adopt(std::move(entry));
+    identities_.push_back(identity);
+    identities_.back().name = name;
+    answers_.insert(answers_.end(), std::make_move_iterator(recovered->journal.begin()),
+                    std::make_move_iterator(recovered->journal.end()));
+    return std::string{};
+}
+
+std::vector<std::string> Archive::world_names() const {
+    std::vector<std::string> names;
+    for (const run_file::RunIdentity& identity : identities_) {
+        names.push_back(identity.name);
+    }
+    return names;
+}
+
+const run_file::RunIdentity* Archive::identity_of(const std::string& world) const {
+    const auto found = std::ranges::find(identities_, world, &run_file::RunIdentity::name);
+    return found == identities_.end() ? nullptr : &*found;
+}
+
+} // namespace evod::replay

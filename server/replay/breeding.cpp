@@ -1,0 +1,137 @@
+#include "server/replay/breeding.h"
+
+#include "server/evolution/fitness_shuffle.h"
+#include "server/evolution/migration.h"
+#include "server/replay/generation_reader.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace evod::replay {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Refusal no_such(const char* field, std::uint64_t first, std::uint64_t last, std::uint64_t got) {
+    const std::string there_are = std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
+    return {.code = RefusalCode::NotFound,
+            .message = std::string{"no such "} + field + " has bred in this run: there are " + there_are,
+            .violations = {{field, there_are, std::to_string(got)}},
+            .reason = base::Reason::MomentNotFound};
+}
+
+/// The generation of the parents.
+Result<std::uint64_t> generation_of(run_file::RunFile& file, const WantedBreeding& wanted) {
+    const std::uint64_t first = file.identity().first_generation, last = file.last_generation();
+    if (last <= first) {
+        return Refusal{.code = RefusalCode::FailedPrecondition,
+                       .message = "no generation of this run has bred yet: it is in its first",
+                       .violations = {},
+                       .reason = base::Reason::NotBredYet};
+    }
+    const std::uint64_t generation = wanted.generation.value_or(std::clamp(wanted.seen_from, first + 1, last) - 1);
+    if (generation < first || generation >= last) {
+        return no_such("generation", first, last - 1, generation);
+    }
+    return generation;
+}
+
+/// Lets those migrate who did, and tells who came to the island.
+std::vector<evolution::Migrant> migrate(WholeGeneration& parents, const parameters::Parameters& parameters,
+                                        base::Seed seed, std::uint32_t island) {
+    const std::uint64_t generation = parents.ended->generation;
+    if (!evolution::migration_due(generation, parameters)) {
+        return {};
+    }
+    std::vector<std::span<const double>> fitness;
+    std::vector<evolution::IslandPopulation> populations;
+    for (std::size_t i = 0; i < parents.begun.born.size(); ++i) {
+        fitness.emplace_back(parents.ended->outcomes[i].fitness);
+        populations.push_back({&parents.begun.born[i].genes, parents.ended->outcomes[i].fitness});
+    }
+    std::vector<evolution::Migrant> migrants = choose_migrants(fitness, parameters, seed, generation);
+    evolution::migrate(migrants, populations);
+    std::erase_if(migrants, [&](const evolution::Migrant& migrant) { return migrant.to != island; });
+    return migrants;
+}
+
+bool are_stored(const std::vector<evolution::BreedingRecord::Descendant>& descendants,
+                const evolution::NextGeneration& stored) {
+    return std::ranges::all_of(descendants, [&](const auto& told) {
+        return told.id < stored.parents.size() && told.parents == stored.parents[told.id] &&
+               (told.genes == stored.genes.col(told.id)).all();
+    });
+}
+
+} // namespace
+
+Result<Bred> breeding_of(run_file::RunFile& file, const WantedBreeding& wanted, base::Executor& executor,
+                         const std::stop_token& stop) {
+    if (auto refused = file.other_model()) {
+        return *refused;
+    }
+    const auto generation = generation_of(file, wanted);
+    if (!generation) {
+        return generation.error();
+    }
+    GenerationReader reader{file, executor, stop};
+    auto parents = reader.read(*generation);
+    if (!parents) {
+        return parents.error();
+    }
+    const auto children = reader.read(*generation + 1);
+    if (!children) {
+        return children.error();
+    }
+    const auto damaged = [&](const char* what) {
+        return Refusal{.code = RefusalCode::DataLoss,
+                       .message = file.path() + " is damaged: generation " + std::to_string(*generation) + what,
+                       .violations = {}};
+    };
+    const std::size_t islands = parents->begun.born.size();
+    if (wanted.island >= islands) {
+        return no_such("island", 0, islands - 1, wanted.island);
+    }
+    if (!parents->ended || children->begun.born.size() != islands) {
+        return damaged(" has bred another one, of which the file cannot tell");
+    }
+
+    Bred bred{*generation, wanted.island, children->begun.opening.parameters.active, {}};
+    const base::Seed seed = file.identity().seed;
+    const bool shuffled = bred.parameters.shuffle_fitness;
+    std::vector<std::vector<double>> own; // fitness, per island, where it is shuffled
+    for (std::uint32_t island = 0; shuffled && island < islands; ++island) {
+        own.push_back(parents->ended->outcomes[island].fitness);
+    }
+    evolution::apply_shuffle(
+        bred.parameters, islands,
+        [&](std::size_t island) -> std::span<double> { return parents->ended->outcomes[island].fitness; }, seed,
+        *generation, executor);
+    const auto migrants = migrate(*parents, bred.parameters, seed, bred.island);
+    bred.record = evolution::record_breeding(
+        parents->ended->outcomes[bred.island].fitness, parents->begun.born[bred.island].genes, bred.parameters,
+        bred.parameters.population_size, {.seed = seed, .island = bred.island, .generation = *generation}, wanted.rows,
+        executor);
+    const std::uint32_t first_contender = std::min(wanted.rows.first_contender, bred.record.contender_count);
+    for (std::size_t i = 0; shuffled && i < bred.record.contenders.size(); ++i) {
+        bred.record.contenders[i].own_fitness = own[bred.island][first_contender + i];
+    }
+    for (const evolution::Migrant& migrant : migrants) {
+        if (migrant.replaces - first_contender < bred.record.contenders.size()) {
+            auto& contender = bred.record.contenders[migrant.replaces - first_contender];
+            contender.migrant = migrant;
+            if (shuffled) {
+                contender.own_fitness = own[migrant.from][migrant.organism];
+            }
+        }
+    }
+    if (!are_stored(bred.record.descendants, children->begun.born[bred.island])) {
+        return damaged(" has bred other descendants than those that are stored");
+    }
+    return bred;
+}
+
+} // namespace evod::replay

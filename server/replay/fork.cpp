@@ -1,0 +1,79 @@
+#include "server/replay/fork.h"
+
+#include "server/replay/recovery.h"
+#include "server/replay/rerun.h"
+
+#include <chrono>
+
+namespace evod::replay {
+
+namespace {
+
+base::Result<simulation::World> world_at(run_file::RunFile& origin, std::optional<std::uint64_t> generation,
+                                         base::Executor& executor) {
+    if (!generation) {
+        auto last = recover(origin, executor);
+        if (!last) {
+            return last.error();
+        }
+        return std::move(last->world);
+    }
+    if (*generation < origin.identity().first_generation || *generation > origin.last_generation()) {
+        return base::Refusal{.code = base::RefusalCode::NotFound,
+                             .message = origin.path() + " does not hold the beginning of that generation",
+                             .violations = {{"generation",
+                                             std::to_string(origin.identity().first_generation) + " to " +
+                                                 std::to_string(origin.last_generation()),
+                                             std::to_string(*generation)}},
+                             .reason = base::Reason::MomentNotFound};
+    }
+    auto there = Rerun::at(origin, *generation, executor);
+    if (!there) {
+        return there.error();
+    }
+    return std::move(*there).take();
+}
+
+} // namespace
+
+base::Result<simulation::Moment> fork(run_file::RunFile& origin, std::optional<std::uint64_t> generation,
+                                      const std::string& path, const std::string& name, const simulation::RunId& run_id,
+                                      base::Executor& executor) {
+    auto world = world_at(origin, generation, executor);
+    if (!world) {
+        return world.error();
+    }
+    world->become_fork();
+    const run_file::Inherited inherited = run_file::inherited_by(*world);
+    const simulation::Moment moment = world->moment();
+    const run_file::GenerationBegun begun = run_file::beginning_of(*world);
+    // Within a generation its beginning is not enough: what came since is known to the origin alone.
+    const auto checkpoint =
+        moment.generation_tick > 0 ? std::optional{run_file::checkpoint_of(*world, 0, executor)} : std::nullopt;
+    using namespace std::chrono;
+    const auto file = run_file::RunFile::create(
+        path,
+        {.name = name,
+         .run_id = run_id,
+         .seed = origin.identity().seed,
+         .parameters = world->parameters().requested,
+         .began_unix_ms = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count(),
+         .first_generation = moment.generation,
+         .first_tick = moment.tick,
+         .forked_from = origin.identity().run_id,
+         .inherited_generations = inherited.history.size(),
+         .first_population = origin.identity().first_population,
+         .schedule = origin.identity().schedule},
+        {.keep_every = origin.keep_every()}, &begun, checkpoint ? &*checkpoint : nullptr, &inherited);
+    if (!file) {
+        return file.error();
+    }
+    (*file)->begin();
+    (*file)->write(run_file::EndMark{.tick = moment.tick});
+    if (auto closed = (*file)->commit(); !closed) {
+        return closed.error();
+    }
+    return moment;
+}
+
+} // namespace evod::replay

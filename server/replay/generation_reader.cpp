@@ -1,0 +1,118 @@
+#include "server/replay/generation_reader.h"
+
+#include "server/replay/mismatch.h"
+
+#include <utility>
+
+namespace evod::replay {
+
+using base::Refusal;
+using base::Result;
+
+Refusal GenerationReader::damaged(std::uint64_t generation, const std::string& what) const {
+    return {.code = base::RefusalCode::DataLoss,
+            .message = file_.path() + " is damaged: generation " + std::to_string(generation) + " " + what,
+            .violations = {}};
+}
+
+Result<WholeGeneration> GenerationReader::read(std::uint64_t generation) {
+    if (file_.held_at_or_before(generation) != generation) {
+        return simulate(generation);
+    }
+    auto begun = file_.beginning_of(generation);
+    if (!begun) {
+        return begun.error();
+    }
+    auto ended = file_.outcome_of(generation);
+    if (!ended) {
+        return ended.error();
+    }
+    if (!*begun) {
+        return damaged(generation, "is missing");
+    }
+    WholeGeneration whole{*std::move(*begun), *std::move(ended)};
+    if (whole.ended) {
+        bool goes_together = whole.ended->outcomes.size() == whole.begun.born.size();
+        for (std::size_t i = 0; goes_together && i < whole.begun.born.size(); ++i) {
+            goes_together =
+                whole.ended->outcomes[i].fitness.size() == static_cast<std::size_t>(whole.begun.born[i].genes.cols());
+        }
+        if (!goes_together) {
+            return damaged(generation, "has another outcome than its organisms can have");
+        }
+    }
+    return whole;
+}
+
+Result<WholeGeneration> GenerationReader::simulate(std::uint64_t generation) {
+    if (auto stands = stand_before(generation); !stands) {
+        return stands.error();
+    }
+    const simulation::World& world = rerun_->world();
+    WholeGeneration whole{run_file::beginning_of(world), {}};
+    const auto statistics = file_.statistics_of(generation);
+    if (!statistics) {
+        return statistics.error();
+    }
+    if (statistics->empty()) {
+        return whole;
+    }
+    while (!world.generation_over()) {
+        if (auto done = advance_tick(); !done) {
+            return done.error();
+        }
+    }
+    whole.ended = run_file::end_of(world);
+    if (const auto mismatch = compare(*statistics, whole.ended->statistics)) {
+        return damaged(generation,
+                       "simulated again has other statistics than those that are stored: " + mismatch->part +
+                           ": stored " + mismatch->stored + ", simulated again " + mismatch->simulated);
+    }
+    return whole;
+}
+
+Result<void> GenerationReader::advance_tick() {
+    if (stop_.stop_requested()) {
+        return Refusal{.code = base::RefusalCode::Unavailable, .message = "reading was given up", .violations = {}};
+    }
+    rerun_->advance_tick(executor_);
+    if (const auto& fault = rerun_->changes().fault()) {
+        return *fault;
+    }
+    return {};
+}
+
+Result<void> GenerationReader::stand_before(std::uint64_t generation) {
+    const std::uint64_t held = file_.held_at_or_before(generation);
+    if (!rerun_ || rerun_->world().moment().generation >= generation || rerun_->world().moment().generation < held) {
+        if (auto refused = file_.other_model()) {
+            return *refused;
+        }
+        if (!changes_) {
+            auto changes = parameter_changes(file_);
+            if (!changes) {
+                return changes.error();
+            }
+            changes_ = *std::move(changes);
+        }
+        auto rerun = Rerun::begun_at(file_, held, nullptr, *changes_, 0, executor_);
+        if (!rerun) {
+            return rerun.error();
+        }
+        rerun_.emplace(*std::move(rerun));
+    }
+    while (rerun_->world().moment().generation < generation) {
+        if (!rerun_->world().generation_over()) {
+            if (auto done = advance_tick(); !done) {
+                return done;
+            }
+        } else if (rerun_->world().outcome() == evolution::Outcome::Running) {
+            rerun_->turn_over(executor_);
+        } else {
+            return damaged(generation, "begins after the run was over");
+        }
+    }
+    return {};
+}
+
+} // namespace evod::replay

@@ -1,0 +1,262 @@
+#include "server/replay/lineage.h"
+
+#include "server/base/inline_executor.h"
+#include "server/evolution/fitness_shuffle.h"
+#include "server/evolution/migration.h"
+#include "server/replay/generation_reader.h"
+
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace evod::replay {
+namespace {
+
+using base::Refusal;
+using base::Result;
+
+/// What a family tree needs of a generation.
+struct Births {
+    std::uint64_t generation = 0;
+    parameters::Parameters parameters; // by which it was bred
+    struct Island {
+        std::uint32_t organism_count = 0, elite_count = 0, survivor_count = 0;
+        std::vector<evolution::Parents> parents;
+        std::vector<double> fitness;
+    };
+    std::vector<Island> islands;
+};
+
+Births births_of(WholeGeneration whole) {
+    const simulation::Opening& opening = whole.begun.opening;
+    Births births{opening.moment.generation, opening.parameters.active, {}};
+    for (std::size_t i = 0; i < whole.begun.born.size(); ++i) {
+        evolution::NextGeneration& born = whole.begun.born[i];
+        births.islands.push_back(
+            {.organism_count = static_cast<std::uint32_t>(born.genes.cols()),
+             .elite_count = born.elite_count,
+             .survivor_count = born.survivor_count,
+             .parents = std::move(born.parents),
+             .fitness = whole.ended ? std::move(whole.ended->outcomes[i].fitness) : std::vector<double>{}});
+    }
+    return births;
+}
+
+using ParentPlaces = std::vector<std::vector<std::array<Place, 2>>>; // by island, then organism
+
+/// Who bred in every place of `parents` when `children` were bred; nothing where nobody knows.
+std::optional<std::vector<std::vector<Place>>> breeders(const run_file::RunFile& file, const Births& parents,
+                                                        const Births& children) {
+    std::vector<std::vector<Place>> places(parents.islands.size());
+    std::vector<std::vector<double>> fitness;
+    for (std::uint32_t island = 0; island < parents.islands.size(); ++island) {
+        for (std::uint32_t organism = 0; organism < parents.islands[island].organism_count; ++organism) {
+            places[island].push_back({island, organism});
+        }
+        fitness.push_back(parents.islands[island].fitness);
+    }
+    if (parents.islands.size() > 1 && evolution::migration_due(parents.generation, children.parameters)) {
+        if (file.other_model()) {
+            return std::nullopt;
+        }
+        const base::Seed seed = file.identity().seed;
+        base::InlineExecutor executor;
+        evolution::apply_shuffle(
+            children.parameters, fitness.size(), [&](std::size_t i) -> std::span<double> { return fitness[i]; }, seed,
+            parents.generation, executor);
+        const std::vector<std::span<const double>> bred_by(fitness.begin(), fitness.end());
+        for (const evolution::Migrant& migrant :
+             choose_migrants(bred_by, children.parameters, seed, parents.generation)) {
+            places[migrant.to][migrant.replaces] = {migrant.from, migrant.organism};
+        }
+    }
+    return places;
+}
+
+/// None where nobody knows.
+Result<ParentPlaces> parents_of(const run_file::RunFile& file, const Births& children, const Births& parents) {
+    const auto places = breeders(file, parents, children);
+    if (!places) {
+        return ParentPlaces{};
+    }
+    ParentPlaces found(children.islands.size());
+    for (std::size_t island = 0; island < children.islands.size(); ++island) {
+        for (const evolution::Parents& pair : children.islands[island].parents) {
+            if (island >= places->size() || std::max(pair.first, pair.second) >= (*places)[island].size()) {
+                return Refusal{.code = base::RefusalCode::DataLoss,
+                               .message = file.path() + " is damaged: generation " +
+                                          std::to_string(children.generation) + " has parents that never lived",
+                               .violations = {}};
+            }
+            found[island].push_back({(*places)[island][pair.first], (*places)[island][pair.second]});
+        }
+    }
+    return found;
+}
+
+/// next  the generation after it, with its parents; nullptr if there is none, or it is out of reach.
+std::vector<Family> families_of(const Births& births, ParentPlaces parents, const Births* next,
+                                const ParentPlaces& next_parents) {
+    std::vector<Family> families;
+    for (std::size_t i = 0; i < births.islands.size(); ++i) {
+        const Births::Island& island = births.islands[i];
+        const std::size_t counted = next_parents.empty() ? 0 : island.organism_count;
+        families.push_back({.organism_count = island.organism_count,
+                            .parents = parents.empty() ? std::vector<std::array<Place, 2>>{} : std::move(parents[i]),
+                            .initial = island.parents.empty(),
+                            .elite_count = island.elite_count,
+                            .survivor_count = island.survivor_count,
+                            .fitness = island.fitness,
+                            .child_count = std::vector<std::uint32_t>(counted),
+                            .kept_count = std::vector<std::uint32_t>(counted)});
+    }
+    for (std::size_t i = 0; i < next_parents.size(); ++i) {
+        for (std::size_t organism = 0; organism < next_parents[i].size(); ++organism) {
+            const auto& [first, second] = next_parents[i][organism];
+            const bool kept = organism < next->islands[i].survivor_count;
+            ++(kept ? families[first.island].kept_count : families[first.island].child_count)[first.organism];
+            if (!(second == first)) {
+                ++families[second.island].child_count[second.organism];
+            }
+        }
+    }
+    return families;
+}
+
+/// Reads backwards, from one generation that is held to the next.
+class BackwardReader {
+  public:
+    BackwardReader(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop)
+        : file_{file}, reader_{file, executor, stop} {}
+
+    Result<Births> read(std::uint64_t generation) {
+        auto found = read_.extract(generation);
+        if (found.empty()) {
+            for (std::uint64_t next = file_.held_at_or_before(generation); next <= generation; ++next) {
+                auto whole = reader_.read(next);
+                if (!whole) {
+                    return whole.error();
+                }
+                read_.insert_or_assign(next, births_of(*std::move(whole)));
+            }
+            found = read_.extract(generation);
+        }
+        return std::move(found.mapped());
+    }
+
+  private:
+    run_file::RunFile& file_;
+    GenerationReader reader_;
+    std::map<std::uint64_t, Births> read_; // of those that are not held, and the one before them
+};
+
+} // namespace
+
+Result<void> each_generation(run_file::RunFile& file, base::Executor& executor, const std::stop_token& stop,
+                             OfFamilies told) {
+    GenerationReader reader{file, executor, stop};
+    const std::uint64_t last = file.last_generation();
+    std::optional<Births> births;
+    ParentPlaces parents;
+    const auto read = [&](std::uint64_t generation, std::optional<Births>& to) -> Result<void> {
+        if (!is_in_reach(file, generation)) {
+            const auto opening = file.opening_of(generation);
+            if (!opening) {
+                return opening.error();
+            }
+            if (!*opening) { // the last may be very far away
+                return Refusal{.code = base::RefusalCode::DataLoss,
+                               .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
+                                          ", and not of generation " + std::to_string(generation),
+                               .violations = {}};
+            }
+            return {};
+        }
+        auto whole = reader.read(generation);
+        if (!whole) {
+            return whole.error();
+        }
+        to = births_of(*std::move(whole));
+        return {};
+    };
+    std::uint64_t generation = file.identity().first_generation;
+    if (generation <= last) {
+        if (auto first = read(generation, births); !first) {
+            return first;
+        }
+    }
+    for (; generation <= last; ++generation) {
+        std::optional<Births> next;
+        ParentPlaces next_parents;
+        if (generation < last) {
+            if (auto done = read(generation + 1, next); !done) {
+                return done;
+            }
+        }
+        if (births && next) {
+            auto found = parents_of(file, *next, *births);
+            if (!found) {
+                return found.error();
+            }
+            next_parents = *std::move(found);
+        }
+        if (births &&
+            !told(generation, families_of(*births, std::move(parents), next ? &*next : nullptr, next_parents))) {
+            break;
+        }
+        births = std::move(next);
+        parents = std::move(next_parents);
+    }
+    return {};
+}
+
+Result<void> each_generation_back_from(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor,
+                                       const std::stop_token& stop, OfFamilies told) {
+    BackwardReader reader{file, executor, stop};
+    std::optional<Births> next;
+    ParentPlaces next_parents;
+    if (generation < file.last_generation() && is_in_reach(file, generation + 1)) {
+        auto read = reader.read(generation + 1);
+        if (!read) {
+            return read.error();
+        }
+        next = *std::move(read);
+    }
+    auto births = reader.read(generation);
+    if (!births) {
+        return births.error();
+    }
+    if (next) {
+        auto found = parents_of(file, *next, *births);
+        if (!found) {
+            return found.error();
+        }
+        next_parents = *std::move(found);
+    }
+    while (true) {
+        std::optional<Births> before;
+        ParentPlaces parents;
+        if (generation > file.identity().first_generation && is_in_reach(file, generation - 1)) {
+            auto read = reader.read(generation - 1);
+            if (!read) {
+                return read.error();
+            }
+            before = *std::move(read);
+            auto found = parents_of(file, *births, *before);
+            if (!found) {
+                return found.error();
+            }
+            parents = *std::move(found);
+        }
+        if (!told(generation, families_of(*births, parents, next ? &*next : nullptr, next_parents)) || !before) {
+            return {};
+        }
+        next = *std::move(births);
+        births = *std::move(before);
+        next_parents = std::move(parents);
+        --generation;
+    }
+}
+
+} // namespace evod::replay

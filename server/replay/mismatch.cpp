@@ -1,0 +1,338 @@
+#include "server/replay/mismatch.h"
+
+#include "server/protocol/refusals.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace evod::replay {
+namespace {
+
+using evolution::NextGeneration;
+using simulation::IslandState;
+using Found = std::optional<Mismatch>;
+
+std::string text_of(double value) {
+    return protocol::number_text(value + 0.0); // SQLite keeps −0 as 0
+}
+/// "3 4.5 6"
+template <class... Numbers>
+std::string text_of_numbers(Numbers... numbers) {
+    std::string text;
+    ((text += (text.empty() ? "" : " ") + protocol::number_text(static_cast<double>(numbers) + 0.0)), ...);
+    return text;
+}
+std::string text_of(std::uint64_t value) {
+    return std::to_string(value);
+}
+std::string text_of(std::uint32_t value) {
+    return std::to_string(value);
+}
+std::string text_of(bool value) {
+    return value ? "true" : "false";
+}
+std::string text_of(simulation::CauseOfDeath cause) {
+    return std::string{run_file::name_of(cause)};
+}
+std::string text_of(const IslandState::Organism& organism) {
+    return text_of_numbers(organism.x, organism.y, organism.velocity_x, organism.velocity_y, organism.health);
+}
+std::string text_of(const IslandState::Crate& crate) {
+    return text_of_numbers(crate.x, crate.y, crate.velocity_x, crate.velocity_y);
+}
+std::string text_of(const simulation::Items::Item& item) {
+    return text_of_numbers(item.x, item.y, item.due_tick);
+}
+std::string text_of(const simulation::IslandCounts& counts) {
+    return text_of_numbers(counts.food_eaten, counts.poison_eaten, counts.starved_count, counts.poisoned_count,
+                           counts.too_fast_count, counts.speed_limit_count);
+}
+std::string text_of(const evolution::Parents& parents) {
+    return std::to_string(parents.first) + " and " + std::to_string(parents.second);
+}
+std::string text_of(const base::StateHash& hash) {
+    return to_text(hash);
+}
+
+template <class T>
+Found compare_part(const std::string& part, const T& stored, const T& simulated) {
+    if (stored == simulated) {
+        return std::nullopt;
+    }
+    return Mismatch{part, text_of(stored), text_of(simulated)};
+}
+
+/// of_island  " on island 3"
+/// name       "the fitness of organism"
+template <class T>
+Found compare_each(const std::string& name, const std::string& of_island, std::span<const T> stored,
+                   std::span<const T> simulated) {
+    if (stored.size() != simulated.size()) {
+        return compare_part(name + ": their number" + of_island, stored.size(), simulated.size());
+    }
+    const auto [one, other] = std::ranges::mismatch(stored, simulated);
+    if (one == stored.end()) {
+        return std::nullopt;
+    }
+    return compare_part(name + " " + std::to_string(one - stored.begin()) + of_island, *one, *other);
+}
+/// name       "the fitness"
+template <class T>
+Found compare_organisms(const char* name, const std::string& of_island, std::span<const T> stored,
+                        std::span<const T> simulated) {
+    if (stored.size() != simulated.size()) {
+        return compare_part(std::string{name} + ": the number of organisms" + of_island, stored.size(),
+                            simulated.size());
+    }
+    return compare_each(std::string{name} + " of organism", of_island, stored, simulated);
+}
+
+Found compare_part(const std::string& which, const parameters::Parameters& stored,
+                   const parameters::Parameters& simulated) {
+    const auto differing = parameters::parameters_that_differ(stored, simulated);
+    if (differing.empty()) {
+        return std::nullopt;
+    }
+    const parameters::ParameterDescription& parameter = *differing.front();
+    return Mismatch{"the parameter " + std::string{parameter.name} + ", " + which,
+                    parameters::to_text(parameter.get(stored)), parameters::to_text(parameter.get(simulated))};
+}
+
+/// Where nobody knows the stored one, as in files of before there were any, there is nothing to compare.
+Found compare_account(const std::string& name, const std::string& of_island,
+                      const std::optional<evolution::SelectionAccount>& stored,
+                      const std::optional<evolution::SelectionAccount>& simulated) {
+    if (!stored) {
+        return std::nullopt;
+    }
+    const auto texts_of = [](const std::optional<evolution::SelectionAccount>& account) {
+        std::vector<std::string> texts;
+        evolution::for_each_number(account, [&](const std::string&, std::optional<double> value) {
+            texts.push_back(value ? text_of(*value) : "none");
+        });
+        return texts;
+    };
+    const std::vector<std::string> ours = texts_of(stored), again = texts_of(simulated);
+    Found found;
+    std::size_t place = 0;
+    evolution::for_each_number(stored, [&](const std::string& number, auto) {
+        if (!found && ours[place] != again[place]) {
+            found = Mismatch{name + number + of_island, ours[place], again[place]};
+        }
+        ++place;
+    });
+    return found;
+}
+
+Found compare_island(const std::string& of_island, const NextGeneration& stored, const NextGeneration& simulated) {
+    const auto genes_of = [](const NextGeneration& born) {
+        return std::span<const float>{born.genes.data(), static_cast<std::size_t>(born.genes.size())};
+    };
+    const auto stored_genes = genes_of(stored), simulated_genes = genes_of(simulated);
+    if (stored_genes.size() != simulated_genes.size()) {
+        return compare_part("the number of organisms" + of_island, static_cast<std::uint64_t>(stored.genes.cols()),
+                            static_cast<std::uint64_t>(simulated.genes.cols()));
+    }
+    if (const auto [one, other] = std::ranges::mismatch(stored_genes, simulated_genes); one != stored_genes.end()) {
+        const auto place = static_cast<std::size_t>(one - stored_genes.begin());
+        return compare_part("the chromosomes: gene " +
+                                std::string{evolution::gene_names[place % evolution::gene_count]} + " of organism " +
+                                std::to_string(place / evolution::gene_count) + of_island,
+                            double{*one}, double{*other});
+    }
+    if (auto found =
+            compare_organisms<evolution::Parents>("the parents", of_island, stored.parents, simulated.parents)) {
+        return found;
+    }
+    if (auto found = compare_part("the number of the elite" + of_island, stored.elite_count, simulated.elite_count)) {
+        return found;
+    }
+    if (auto found =
+            compare_part("the number of survivors" + of_island, stored.survivor_count, simulated.survivor_count)) {
+        return found;
+    }
+    if (auto found = compare_part("the number of genes put onto their bounds" + of_island, stored.clamped_count,
+                                  simulated.clamped_count)) {
+        return found;
+    }
+    return compare_account("the selection account: ", of_island, stored.account, simulated.account);
+}
+
+Found compare_island(const std::string& of_island, const std::vector<std::uint32_t>& stored,
+                     const std::vector<std::uint32_t>& simulated) {
+    return compare_organisms<std::uint32_t>("the founder", of_island, stored, simulated);
+}
+
+Found compare_island(const std::string& of_island, const run_file::IslandOutcome& stored,
+                     const run_file::IslandOutcome& simulated) {
+    if (auto found = compare_organisms<double>("the fitness", of_island, stored.fitness, simulated.fitness)) {
+        return found;
+    }
+    if (auto found =
+            compare_organisms<std::uint32_t>("the ticks lived", of_island, stored.lived_ticks, simulated.lived_ticks)) {
+        return found;
+    }
+    return compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, stored.cause, simulated.cause);
+}
+
+Found compare_island(const std::string& of_island, const simulation::GenerationStatistics& stored,
+                     const simulation::GenerationStatistics& simulated) {
+    std::vector<std::string> again;
+    simulation::for_each_number(simulated,
+                                [&](const std::string&, const auto& value) { again.push_back(text_of(value)); });
+    Found found;
+    auto simulated_text = again.begin();
+    simulation::for_each_number(stored, [&](const std::string& name, const auto& value) {
+        const std::string text = text_of(value); // exact
+        if (!found && text != *simulated_text) {
+            found = Mismatch{"the statistics: " + name + of_island, text, *simulated_text};
+        }
+        ++simulated_text;
+    });
+    return found ? found : compare_account("the statistics: ", of_island, stored.account, simulated.account);
+}
+
+Found compare_island(const std::string& of_island, const IslandState& stored, const IslandState& simulated) {
+    using simulation::Items;
+    const simulation::Fate &one = stored.fate, &other = simulated.fate;
+    if (auto found =
+            compare_organisms<simulation::CauseOfDeath>("the cause of death", of_island, one.cause, other.cause)) {
+        return found;
+    }
+    if (auto found =
+            compare_organisms<std::uint32_t>("the ticks lived", of_island, one.lived_ticks, other.lived_ticks)) {
+        return found;
+    }
+    if (auto found = compare_organisms<std::uint32_t>("the food", of_island, one.food_eaten, other.food_eaten)) {
+        return found;
+    }
+    if (auto found = compare_organisms<std::uint32_t>("the poison", of_island, one.poison_eaten, other.poison_eaten)) {
+        return found;
+    }
+    if (auto found = compare_organisms<IslandState::Organism>("the place, velocity and health", of_island,
+                                                              stored.organisms, simulated.organisms)) {
+        return found;
+    }
+    if (auto found = compare_each<IslandState::Crate>("the place and velocity of crate", of_island, stored.crates,
+                                                      simulated.crates)) {
+        return found;
+    }
+    if (auto found = compare_each<Items::Item>("the place of food", of_island, stored.food, simulated.food)) {
+        return found;
+    }
+    if (auto found = compare_each<Items::Item>("the place of poison", of_island, stored.poison, simulated.poison)) {
+        return found;
+    }
+    if (stored.counts == simulated.counts) {
+        return std::nullopt;
+    }
+    return Mismatch{"the counts" + of_island, text_of(stored.counts), text_of(simulated.counts)};
+}
+
+template <class T>
+Found compare_islands(const std::vector<T>& stored, const std::vector<T>& simulated) {
+    if (auto found = compare_part("the number of islands", stored.size(), simulated.size())) {
+        return found;
+    }
+    for (std::size_t island = 0; island < stored.size(); ++island) {
+        if (auto found = compare_island(" on island " + std::to_string(island), stored[island], simulated[island])) {
+            return found;
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+Found compare(const simulation::Opening& stored, const simulation::Opening& simulated) {
+    if (auto found = compare_part("the first tick", stored.moment.tick, simulated.moment.tick)) {
+        return found;
+    }
+    if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
+        return found;
+    }
+    if (auto found = compare_part("as it held", stored.parameters.active, simulated.parameters.active)) {
+        return found;
+    }
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
+        return found;
+    }
+    // A run that begins by a reset goes on counting revisions.
+    if (stored.moment.generation > 1) {
+        if (auto found = compare_part("the revision of the parameters", stored.parameters.revision,
+                                      simulated.parameters.revision)) {
+            return found;
+        }
+    }
+    const evolution::Progress &one = stored.progress, &other = simulated.progress;
+    if (auto found = compare_part("the progress: generations over", one.generations, other.generations)) {
+        return found;
+    }
+    if (auto found = compare_part("the progress: generations without improvement", one.stagnant, other.stagnant)) {
+        return found;
+    }
+    if (auto found = compare_part("the progress: the best fitness so far", one.best_fitness, other.best_fitness)) {
+        return found;
+    }
+    if (auto found = compare_part("the progress: the best fitness of the generation before", one.last_best_fitness,
+                                  other.last_best_fitness)) {
+        return found;
+    }
+    return compare_part("the progress: whether everyone had died", one.last_died_out, other.last_died_out);
+}
+
+Found compare(const std::vector<NextGeneration>& stored, const std::vector<NextGeneration>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const simulation::Founders& stored, const simulation::Founders& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const std::vector<run_file::IslandOutcome>& stored,
+              const std::vector<run_file::IslandOutcome>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const std::vector<simulation::GenerationStatistics>& stored,
+              const std::vector<simulation::GenerationStatistics>& simulated) {
+    return compare_islands(stored, simulated);
+}
+
+Found compare(const simulation::WorldState& stored, const simulation::WorldState& simulated) {
+    if (auto found = compare_part("the generation", stored.moment.generation, simulated.moment.generation)) {
+        return found;
+    }
+    if (auto found = compare_part("the tick of the generation", stored.moment.generation_tick,
+                                  simulated.moment.generation_tick)) {
+        return found;
+    }
+    if (auto found = compare_part("the simulated seconds", stored.moment.simulated_s, simulated.moment.simulated_s)) {
+        return found;
+    }
+    if (auto found = compare_part("as it held", stored.parameters.active, simulated.parameters.active)) {
+        return found;
+    }
+    if (auto found = compare_requested(stored.parameters.requested, simulated.parameters.requested)) {
+        return found;
+    }
+    if (auto found =
+            compare_part("the revision of the parameters", stored.parameters.revision, simulated.parameters.revision)) {
+        return found;
+    }
+    if (auto found = compare_islands(stored.islands, simulated.islands)) {
+        return found;
+    }
+    return compare_islands(stored.ended, simulated.ended);
+}
+
+Found compare(const base::StateHash& stored, const base::StateHash& simulated) {
+    return compare_part("the state hash", stored, simulated);
+}
+
+Found compare_requested(const parameters::Parameters& stored, const parameters::Parameters& simulated) {
+    return compare_part("as it was asked for", stored, simulated);
+}
+
+} // namespace evod::replay

@@ -1,0 +1,35 @@
+// Mismatch: what differs between something as it is stored and the same as it is simulated.
+#pragma once
+
+#include "server/run_file/records.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace evod::replay {
+
+/// One number, for people.
+struct Mismatch {
+    std::string part; // "the fitness of organism 3 on island 0"
+    std::string stored, simulated;
+};
+
+// The first that is found; nothing if the two are the same. Numbers are compared exactly; −0 is 0, as SQLite keeps it.
+
+std::optional<Mismatch> compare(const simulation::Opening& stored, const simulation::Opening& simulated);
+// One entry per island.
+std::optional<Mismatch> compare(const std::vector<evolution::NextGeneration>& stored,
+                                const std::vector<evolution::NextGeneration>& simulated);
+std::optional<Mismatch> compare(const simulation::Founders& stored, const simulation::Founders& simulated);
+std::optional<Mismatch> compare(const std::vector<run_file::IslandOutcome>& stored,
+                                const std::vector<run_file::IslandOutcome>& simulated);
+std::optional<Mismatch> compare(const std::vector<simulation::GenerationStatistics>& stored,
+                                const std::vector<simulation::GenerationStatistics>& simulated);
+std::optional<Mismatch> compare(const base::StateHash& stored, const base::StateHash& simulated);
+std::optional<Mismatch> compare(const simulation::WorldState& stored, const simulation::WorldState& simulated);
+/// Of parameters that were asked for.
+std::optional<Mismatch> compare_requested(const parameters::Parameters& stored,
+                                          const parameters::Parameters& simulated);
+
+} // namespace evod::replay

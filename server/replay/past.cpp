@@ -1,0 +1,158 @@
+#include "server/replay/past.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::replay {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+simulation::Replay replay_of_file(run_file::RunFile& file) {
+    return {.replay_of = {},
+            .first_generation = file.identity().first_generation,
+            .last_generation = std::max(file.identity().first_generation, file.last_generation()),
+            .first_tick = file.identity().first_tick,
+            .last_tick = file.last_tick()};
+}
+
+/// "3 to 17"
+std::string range_text(std::uint64_t first, std::uint64_t last) {
+    return std::to_string(first) + (first == last ? "" : " to " + std::to_string(last));
+}
+
+Refusal no_such(const char* field, const std::string& there_are, std::uint64_t got) {
+    return {.code = RefusalCode::NotFound,
+            .message = std::string{"the run has no such "} + field + ": there are " + there_are,
+            .violations = {{field, there_are, std::to_string(got)}},
+            .reason = base::Reason::MomentNotFound};
+}
+
+Result<PastMoment> find(run_file::RunFile& file, const WantedMoment& wanted, const simulation::Replay& there) {
+    const auto generations = range_text(there.first_generation, there.last_generation);
+    if (!wanted.generation) {
+        const std::uint64_t tick = wanted.tick.value_or(there.last_tick);
+        if (tick < there.first_tick || tick > there.last_tick) {
+            return no_such("tick", range_text(there.first_tick, there.last_tick), tick);
+        }
+        return PastMoment{file.generation_at(tick), tick};
+    }
+    const std::uint64_t generation = *wanted.generation;
+    if (generation < there.first_generation || generation > there.last_generation) {
+        return no_such("generation", generations, generation);
+    }
+    const auto opening = file.opening_of(generation);
+    if (!opening) {
+        return opening.error();
+    }
+    const std::uint64_t first = *opening ? (*opening)->moment.tick : there.first_tick;
+    std::uint64_t last = there.last_tick;
+    if (generation < there.last_generation) {
+        const auto next = file.opening_of(generation + 1);
+        if (!next) {
+            return next.error();
+        }
+        last = *next ? (*next)->moment.tick : last;
+    }
+    // A fork may begin within its first generation.
+    const std::uint64_t begins = std::max(first, there.first_tick) - first;
+    const std::uint64_t tick = wanted.tick.value_or(begins);
+    if (tick < begins || tick > last - first) {
+        return no_such("tick", range_text(begins, last - first) + " in generation " + std::to_string(generation), tick);
+    }
+    return PastMoment{generation, first + tick};
+}
+
+} // namespace
+
+Result<Past> Past::of_file(const std::string& path) {
+    const auto file = run_file::RunFile::open_checked(path);
+    if (!file) {
+        return file.error();
+    }
+    if (auto refused = (*file)->other_model()) {
+        return *refused;
+    }
+    if (auto held = (*file)->hold_still(); !held) {
+        return held.error();
+    }
+    if (auto whole = (*file)->check_end_mark(); !whole) {
+        return whole.error();
+    }
+    return Past{{path}, (*file)->identity().run_id};
+}
+
+Result<std::unique_ptr<run_file::RunFile>> Past::open() const {
+    std::optional<Refusal> refused;
+    for (const std::string& path : paths_) {
+        auto file = run_file::RunFile::open_read_only(path);
+        if (file && (*file)->identity().run_id == run_id_) {
+            return file;
+        }
+        if (!file && (!refused || refused->code == RefusalCode::NotFound)) {
+            refused = file.error();
+        }
+    }
+    return refused.value_or(
+        Refusal{.code = RefusalCode::NotFound,
+                .message = paths_.front() + " is the file of another run now: close this past, and open it again",
+                .violations = {}});
+}
+
+Result<std::string> Past::world_name() const {
+    const auto file = open();
+    if (!file) {
+        return file.error();
+    }
+    return (*file)->identity().name;
+}
+
+Result<Departure> Past::depart(const std::optional<WantedMoment>& wanted, KnownUntil known,
+                               base::Executor& executor) const {
+    const auto file = open();
+    if (!file) {
+        return file.error();
+    }
+    if (auto held = (*file)->hold_still(); !held) {
+        return held.error();
+    }
+    simulation::Replay there = replay_of_file(**file);
+    there.last_generation = std::max(there.last_generation, known.generation);
+    there.last_tick = std::max(there.last_tick, known.tick);
+    const auto to =
+        find(**file, wanted.value_or(WantedMoment{.generation = there.first_generation, .tick = {}}), there);
+    if (!to) {
+        return to.error();
+    }
+    auto from = Rerun::before(**file, to->generation, to->tick, history_generations_known, executor);
+    if (!from) {
+        return from.error();
+    }
+    return Departure{std::move(there), *to, *std::move(from)};
+}
+
+Result<PastNews> Past::news(std::uint64_t after_entry) const {
+    const auto file = open();
+    if (!file) {
+        return file.error();
+    }
+    if (auto held = (*file)->hold_still(); !held) {
+        return held.error();
+    }
+    PastNews news{.there = replay_of_file(**file),
+                  .path = (*file)->path(),
+                  .after_entry = after_entry,
+                  .last_entry = std::max(after_entry, (*file)->last_journal_entry()),
+                  .changes = {}};
+    auto changes = parameter_changes(**file, after_entry);
+    if (!changes) {
+        return changes.error();
+    }
+    news.changes = *std::move(changes);
+    return news;
+}
+
+} // namespace evod::replay

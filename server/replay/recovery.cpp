@@ -1,0 +1,69 @@
+#include "server/replay/recovery.h"
+
+#include "server/replay/rerun.h"
+
+#include <utility>
+
+namespace evod::replay {
+
+using base::RefusalCode;
+using base::Result;
+
+namespace {
+
+base::Refusal not_recovered(const run_file::RunFile& file, const std::string& why) {
+    return {.code = RefusalCode::DataLoss, .message = file.path() + " is damaged: " + why, .violations = {}};
+}
+
+} // namespace
+
+Result<Recovered> recover(run_file::RunFile& file, base::Executor& executor) {
+    if (auto whole = file.check_end_mark(); !whole) {
+        return whole.error();
+    }
+    if (auto refused = file.other_model()) {
+        return *refused;
+    }
+    auto journal = file.journal();
+    if (!journal) {
+        return journal.error();
+    }
+    const auto changes = parameter_changes(file.path(), *journal);
+    if (!changes) {
+        return changes.error();
+    }
+    const std::uint64_t last_tick = file.last_tick();
+    auto rerun = Rerun::before(file, file.generation_at(last_tick), last_tick, *changes,
+                               simulation::World::history_generations_kept, executor);
+    if (!rerun) {
+        return rerun.error();
+    }
+    const std::uint64_t from = rerun->world().moment().tick;
+    const auto links = file.links(from, last_tick);
+    if (!links) {
+        return links.error();
+    }
+    for (const run_file::HashLink& link : *links) {
+        rerun->advance_to(link.tick, executor);
+        if (rerun->world().moment().tick != link.tick || rerun->world().hash() != link.hash) {
+            return not_recovered(file, "simulated again, tick " + std::to_string(link.tick) +
+                                           " has another state hash than the one that is stored");
+        }
+    }
+    rerun->advance_to(last_tick, executor);
+    if (const auto& fault = rerun->changes().fault()) {
+        return *fault;
+    }
+    if (rerun->world().moment().tick != last_tick) {
+        return not_recovered(file, "it tells of tick " + std::to_string(last_tick) + ", and the run is over at tick " +
+                                       std::to_string(rerun->world().moment().tick));
+    }
+    Recovered recovered{std::move(*rerun).take(), {}, *std::move(journal)};
+    if (!recovered.journal.empty()) {
+        recovered.control = recovered.journal.back().control;
+    }
+    simulation::mind_goals(recovered.control, recovered.world);
+    return recovered;
+}
+
+} // namespace evod::replay

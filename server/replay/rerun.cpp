@@ -1,0 +1,317 @@
+#include "server/replay/rerun.h"
+
+#include "server/protocol/commands.h"
+#include "server/run_file/checkpoint.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::replay {
+namespace {
+
+using base::Refusal;
+using base::RefusalCode;
+using base::Result;
+
+Refusal damaged(const std::string& path, const std::string& what) {
+    return {.code = RefusalCode::DataLoss, .message = path + " is damaged: " + what, .violations = {}};
+}
+Refusal damaged(const run_file::RunFile& file, const std::string& what) {
+    return damaged(file.path(), what);
+}
+
+Refusal not_to_be_had(const std::string& path, const ParameterChange& change) {
+    return damaged(path, "entry " + std::to_string(change.entry) +
+                             " of its journal asks for parameters that no world can have");
+}
+
+/// The command that a request was; nothing if it is none that this program knows.
+std::optional<simulation::Command> command_of(const std::string& request) {
+    v1::Request message;
+    if (!message.ParseFromString(request)) {
+        return std::nullopt;
+    }
+    auto command = protocol::to_command(message, {});
+    return command ? std::optional{*std::move(command)} : std::nullopt;
+}
+
+} // namespace
+
+Result<std::vector<ParameterChange>> parameter_changes(run_file::RunFile& file, std::uint64_t after_entry) {
+    const auto journal = file.journal(after_entry + 1);
+    if (!journal) {
+        return journal.error();
+    }
+    return parameter_changes(file.path(), *journal);
+}
+
+Result<std::vector<ParameterChange>> parameter_changes(const std::string& path,
+                                                       std::span<const run_file::JournalEntry> journal) {
+    std::vector<ParameterChange> changes;
+    std::uint64_t tick = 0;
+    for (const run_file::JournalEntry& entry : journal) {
+        auto command = command_of(entry.origin.request);
+        if (!command) {
+            return damaged(path, "entry " + std::to_string(entry.number) + " of its journal is no command");
+        }
+        if (entry.tick < tick) {
+            return damaged(path, "entry " + std::to_string(entry.number) +
+                                     " of its journal is from an earlier tick than the one before");
+        }
+        tick = entry.tick;
+        if (auto* change = std::get_if<simulation::SetParameters>(&*command)) {
+            changes.push_back(
+                {entry.number, entry.tick, std::move(change->assignments), change->at, entry.origin.client});
+        }
+        if (const auto* cancel = std::get_if<simulation::CancelChange>(&*command)) {
+            changes.push_back({.entry = entry.number, .tick = entry.tick, .assignments = {}, .cancels = cancel->id});
+        }
+    }
+    return changes;
+}
+
+Result<std::vector<ParameterChange>> Rerun::changes_of(run_file::RunFile& file) {
+    if (auto refused = file.other_model()) {
+        return *refused;
+    }
+    return parameter_changes(file);
+}
+
+Result<Rerun> Rerun::at(run_file::RunFile& file, std::uint64_t generation, base::Executor& executor) {
+    const auto changes = changes_of(file);
+    if (!changes) {
+        return changes.error();
+    }
+    auto rerun = begun_at(file, file.held_at_or_before(generation), nullptr, *changes,
+                          simulation::World::history_generations_kept, executor);
+    if (!rerun && rerun.error().code == RefusalCode::NotFound) {
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = file.path() + " holds no generation " + std::to_string(generation),
+                       .violations = {},
+                       .reason = base::Reason::MomentNotFound};
+    }
+    while (rerun && rerun->world().moment().generation < generation) {
+        if (rerun->world().generation_over()) {
+            rerun->turn_over(executor);
+        } else {
+            rerun->advance_tick(executor);
+        }
+    }
+    if (rerun && rerun->changes().fault()) {
+        return *rerun->changes().fault();
+    }
+    return rerun;
+}
+
+Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
+                            std::size_t history_count, base::Executor& executor) {
+    const auto changes = changes_of(file);
+    if (!changes) {
+        return changes.error();
+    }
+    return before(file, generation, tick, *changes, history_count, executor);
+}
+
+Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t tick, base::Executor& executor) {
+    if (tick < file.identity().first_tick || tick > file.last_tick()) {
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message = file.path() + " does not tell of tick " + std::to_string(tick),
+                       .violations = {},
+                       .reason = base::Reason::MomentNotFound};
+    }
+    return before(file, file.generation_at(tick), tick, simulation::World::history_generations_kept, executor);
+}
+
+Result<Rerun> Rerun::before(run_file::RunFile& file, std::uint64_t generation, std::uint64_t tick,
+                            std::span<const ParameterChange> changes, std::size_t history_count,
+                            base::Executor& executor) {
+    const std::uint64_t held = file.held_at_or_before(generation);
+    const auto checkpoint = file.last_checkpoint(tick);
+    if (!checkpoint) {
+        return checkpoint.error();
+    }
+    const bool is_later =
+        *checkpoint && (*checkpoint)->moment.generation >= held && (*checkpoint)->moment.generation <= generation;
+    if (is_later) {
+        return begun_at(file, (*checkpoint)->moment.generation, &**checkpoint, changes, history_count, executor);
+    }
+    return begun_at(file, held, nullptr, changes, history_count, executor);
+}
+
+Result<Rerun> Rerun::begun_at(run_file::RunFile& file, std::uint64_t generation,
+                              const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
+                              std::size_t history_count, base::Executor& executor) {
+    const run_file::RunIdentity& identity = file.identity();
+    const auto begun = file.beginning_of(generation);
+    if (!begun) {
+        return begun.error();
+    }
+    if (!*begun && !(generation == 1 && identity.first_generation == 1)) {
+        return Refusal{.code = RefusalCode::NotFound,
+                       .message =
+                           file.path() + " does not hold the beginning of generation " + std::to_string(generation),
+                       .violations = {}};
+    }
+    if (!*begun) {
+        return with_changes(
+            file, simulation::World{identity.parameters, identity.seed, identity.first_population, identity.schedule},
+            changes, 0);
+    }
+    // Of a run that begins within a generation, nothing before is known.
+    std::optional<run_file::StoredCheckpoint> first;
+    if (checkpoint == nullptr && (*begun)->opening.moment.tick < identity.first_tick) {
+        auto found = file.last_checkpoint(identity.first_tick);
+        if (!found) {
+            return found.error();
+        }
+        if (!*found || (*found)->moment.tick != identity.first_tick) {
+            return damaged(file, "the checkpoint is missing with which the run begins");
+        }
+        first = *std::move(found);
+        checkpoint = &*first;
+    }
+    const std::size_t islands = (*begun)->born.size();
+    auto history = file.history(generation, std::min(history_count, simulation::World::history_generations_kept_of(
+                                                                        std::max<std::size_t>(islands, 1))));
+    if (!history) {
+        return history.error();
+    }
+    return from(file, **begun, checkpoint, changes, *std::move(history), executor);
+}
+
+Result<Rerun> Rerun::from(const run_file::RunFile& file, const run_file::GenerationBegun& begun,
+                          const run_file::StoredCheckpoint* checkpoint, std::span<const ParameterChange> changes,
+                          simulation::World::History history, base::Executor& executor) {
+    const simulation::Moment& opening = begun.opening.moment;
+    simulation::World world{file.identity().seed,
+                            begun.opening,
+                            begun.born,
+                            std::move(history),
+                            executor,
+                            file.identity().first_population,
+                            begun.founders,
+                            file.identity().schedule};
+    if (checkpoint == nullptr) {
+        // A change that came between the end of a generation and the beginning of the next is in that beginning
+        // already.
+        const auto first = opening.generation == file.identity().first_generation
+                               ? changes.begin()
+                               : std::ranges::upper_bound(changes, opening.tick, {}, &ParameterChange::tick);
+        return with_changes(file, std::move(world), changes, first == changes.begin() ? 0 : std::prev(first)->entry);
+    }
+    const auto unusable = [&](const std::string& why) {
+        return damaged(file, "its checkpoint after tick " + std::to_string(checkpoint->moment.tick) +
+                                 " is none of this run: " + why);
+    };
+    simulation::WorldState state{
+        .moment = checkpoint->moment, .parameters = checkpoint->parameters, .islands = {}, .ended = {}};
+    if (const auto unpacked = run_file::unpack(checkpoint->state, world.shapes(), state); !unpacked) {
+        return unusable(unpacked.error().message);
+    }
+    if (const auto restored = world.restore(state, executor); !restored) {
+        return unusable(restored.error().message);
+    }
+    if (world.hash() != checkpoint->hash) {
+        return unusable("it has another state hash than the one that is stored");
+    }
+    // Of changes after the same tick some may have come before it, and some after.
+    return with_changes(file, std::move(world), changes, checkpoint->journal_entries);
+}
+
+Result<Rerun> Rerun::with_changes(const run_file::RunFile& file, simulation::World world,
+                                  std::span<const ParameterChange> changes, std::uint64_t after_entry) {
+    if (auto planned = ComingChanges::plan_again(file.path(), changes, after_entry, world); !planned) {
+        return planned.error();
+    }
+    ComingChanges coming{after_entry};
+    if (auto extended = coming.extend(file.path(), changes); !extended) {
+        return extended.error();
+    }
+    Rerun rerun{std::move(world), std::move(coming)};
+    if (const auto& fault = rerun.changes().fault()) {
+        return *fault;
+    }
+    return rerun;
+}
+
+Result<void> ComingChanges::plan_again(const std::string& path, std::span<const ParameterChange> changes,
+                                       std::uint64_t after_entry, simulation::World& world) {
+    for (const ParameterChange& change : changes) {
+        if (change.entry > after_entry) {
+            break;
+        }
+        if (change.cancels && !world.cancel(*change.cancels)) {
+            return not_to_be_had(path, change);
+        }
+        if (!change.at) {
+            continue;
+        }
+        if (std::ranges::any_of(change.assignments,
+                                [](const auto& assignment) { return fault_of(assignment).has_value(); }) ||
+            (change.at->tick && *change.at->tick <= change.tick)) {
+            return not_to_be_had(path, change);
+        }
+        (void)world.plan_anew({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+    }
+    world.forget_what_was_due();
+    return {};
+}
+
+Result<void> ComingChanges::extend(const std::string& path, std::span<const ParameterChange> changes) {
+    for (const ParameterChange& change : changes) {
+        if (change.entry <= last_entry_) {
+            continue;
+        }
+        for (const parameters::Assignment& assignment : change.assignments) {
+            if (fault_of(assignment)) {
+                return not_to_be_had(path, change);
+            }
+        }
+        last_entry_ = change.entry;
+        changes_.push_back(change);
+    }
+    path_ = path;
+    return {};
+}
+
+bool ComingChanges::make(const ParameterChange& change, simulation::World& world) {
+    if (change.cancels) {
+        return world.cancel(*change.cancels).has_value();
+    }
+    if (change.at) {
+        const bool can_be = world.is_to_come(*change.at) && world.planned().size() < parameters::planned_changes_max;
+        if (can_be) {
+            (void)world.plan({.id = 0, .at = *change.at, .assignments = change.assignments, .by = change.by});
+        }
+        return can_be;
+    }
+    const auto requested = request_of(world.parameters(), change.assignments);
+    if (requested) {
+        world.request_parameters(*requested);
+    }
+    return requested.has_value();
+}
+
+void ComingChanges::make_due(simulation::World& world, std::uint64_t last) {
+    const auto is_due = [&](const ParameterChange& change) {
+        return change.tick <= world.moment().tick && change.entry <= last;
+    };
+    for (; !fault_ && next_ < changes_.size() && is_due(changes_[next_]); ++next_) {
+        if (!make(changes_[next_], world)) {
+            fault_ = not_to_be_had(path_, changes_[next_]);
+        }
+    }
+}
+
+void Rerun::advance_tick(base::Executor& executor, std::uint64_t last) {
+    world_.advance_tick(executor);
+    make_changes(last);
+}
+
+void Rerun::advance_to(std::uint64_t tick, base::Executor& executor) {
+    while (world_.moment().tick < tick && world_.outcome() == evolution::Outcome::Running) {
+        advance_tick(executor);
+    }
+}
+
+} // namespace evod::replay

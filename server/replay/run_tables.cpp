@@ -1,0 +1,373 @@
+#include "server/replay/run_tables.h"
+
+#include "evod/v1/commands.pb.h"
+#include "server/replay/columns.h"
+#include "server/replay/generation_reader.h"
+#include "server/replay/lineage.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace evod::replay {
+namespace {
+
+using base::Refusal;
+using base::Result;
+using run_file::RunFile;
+
+/// Calls `of_generation` with each that has begun, in order, while rows can be written.
+template <class OfGeneration>
+Result<void> for_each_generation(run_file::RunFile& file, const std::ostream& out, OfGeneration&& of_generation) {
+    const std::uint64_t last = file.last_generation();
+    for (std::uint64_t generation = file.identity().first_generation; generation <= last && out; ++generation) {
+        const auto opening = file.opening_of(generation);
+        if (!opening) {
+            return opening.error();
+        }
+        if (!*opening) { // each has one: that of the last must be wrong, and may be very far away
+            return Refusal{.code = base::RefusalCode::DataLoss,
+                           .message = file.path() + " is damaged: it tells of generation " + std::to_string(last) +
+                                      ", and not of generation " + std::to_string(generation),
+                           .violations = {}};
+        }
+        if (Result<void> done = of_generation(generation); !done) {
+            return done;
+        }
+    }
+    return {};
+}
+
+const char* origin_of(bool initial, std::size_t organism, std::uint32_t elite, std::uint32_t survivors) {
+    if (initial) {
+        return "initial";
+    }
+    if (organism < elite) {
+        return "elite";
+    }
+    return organism < survivors ? "survivor" : "child";
+}
+
+/// ended  of the same island; nullptr while the generation has not.
+struct EndedIsland {
+    const run_file::IslandOutcome& outcome;
+    const simulation::GenerationStatistics& statistics;
+};
+void write_organism(Table& table, const evolution::NextGeneration& born, std::size_t organism, double tick_s,
+                    const std::optional<EndedIsland>& ended) {
+    if (born.parents.empty()) {
+        table.nothing().nothing();
+    } else {
+        table.number(born.parents[organism].first).number(born.parents[organism].second);
+    }
+    table.text(origin_of(born.parents.empty(), organism, born.elite_count, born.survivor_count));
+    for (const float gene : evolution::column(born.genes, static_cast<std::uint32_t>(organism))) {
+        table.number(gene);
+    }
+    if (ended) {
+        const run_file::IslandOutcome& outcome = ended->outcome;
+        const bool alive = outcome.cause[organism] == simulation::CauseOfDeath::Alive;
+        table.number(outcome.fitness[organism])
+            .number(alive ? ended->statistics.simulated_s : outcome.lived_ticks[organism] * tick_s)
+            .text(run_file::name_of(outcome.cause[organism]));
+    } else {
+        table.nothing().nothing().nothing();
+    }
+    table.end_row();
+}
+
+Refusal no_such(base::Violation violation) {
+    return {.code = base::RefusalCode::NotFound,
+            .message = "the run file holds no such organism",
+            .violations = {std::move(violation)},
+            .reason = base::Reason::OrganismNotFound};
+}
+
+/// Why a generation that has begun cannot be told of; nothing if it can.
+std::optional<Refusal> out_of_reach(run_file::RunFile& file, const char* field, std::uint64_t generation) {
+    if (is_in_reach(file, generation)) {
+        return std::nullopt;
+    }
+    Refusal refused = *file.other_model();
+    refused.violations.push_back({field,
+                                  "what is held, nearest to it " + std::to_string(file.held_at_or_before(generation)) +
+                                      " and " + std::to_string(file.held_at_or_after(generation)),
+                                  std::to_string(generation)});
+    return refused;
+}
+
+std::optional<base::Violation> wrong_place(const OrganismName& name, const std::vector<Family>& families) {
+    if (name.island >= families.size()) {
+        return base::Violation{"of.island", "an island from 0 to " + std::to_string(families.size() - 1),
+                               std::to_string(name.island)};
+    }
+    const std::uint32_t count = families[name.island].organism_count;
+    if (name.organism >= count) {
+        return base::Violation{"of.organism", "an organism from 0 to " + std::to_string(count - 1),
+                               std::to_string(name.organism)};
+    }
+    return std::nullopt;
+}
+
+/// A family tree's rows are of those organisms only, if there is such a set: by island, then organism.
+using Wanted = std::vector<std::vector<bool>>;
+
+void write_families(Table& table, std::uint64_t generation, const std::vector<Family>& families, const Wanted* wanted) {
+    for (std::size_t island = 0; island < families.size(); ++island) {
+        const Family& family = families[island];
+        for (std::size_t organism = 0; organism < family.organism_count; ++organism) {
+            if (wanted != nullptr && !(*wanted)[island][organism]) {
+                continue;
+            }
+            table.number(generation).number(island).number(organism);
+            if (family.parents.empty()) {
+                table.nothing().nothing().nothing().nothing().nothing().nothing();
+            } else {
+                for (const Place& parent : family.parents[organism]) {
+                    table.number(generation - 1).number(parent.island).number(parent.organism);
+                }
+            }
+            table.text(origin_of(family.initial, organism, family.elite_count, family.survivor_count));
+            if (family.fitness.empty()) {
+                table.nothing();
+            } else {
+                table.number(family.fitness[organism]);
+            }
+            if (family.child_count.empty()) {
+                table.nothing().nothing();
+            } else {
+                table.number(family.child_count[organism]).number(family.kept_count[organism]);
+            }
+            table.end_row();
+        }
+    }
+}
+
+/// Those who bred the wanted.
+Wanted parents_of(const Wanted& wanted, const std::vector<Family>& families) {
+    Wanted parents;
+    for (std::size_t island = 0; island < families.size(); ++island) {
+        for (std::size_t organism = 0; organism < families[island].parents.size(); ++organism) {
+            if (!wanted[island][organism]) {
+                continue;
+            }
+            for (const Place& parent : families[island].parents[organism]) {
+                parents.resize(std::max<std::size_t>(parents.size(), parent.island + 1));
+                std::vector<bool>& there = parents[parent.island];
+                there.resize(std::max<std::size_t>(there.size(), parent.organism + 1));
+                there[parent.organism] = true;
+            }
+        }
+    }
+    return parents;
+}
+
+/// The command's name as the protocol spells it: "set_parameters".
+std::string kind_of(const v1::Request& request) {
+    const auto* kinds = v1::Request::descriptor()->FindOneofByName("kind");
+    const auto* kind = v1::Request::GetReflection()->GetOneofFieldDescriptor(request, kinds);
+    return kind == nullptr ? std::string{"unknown"} : kind->name();
+}
+
+Result<void> write_generations(const RunSource& run, std::ostream& out, Table::Format format) {
+    Table table{out, format, statistics_columns()};
+    return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
+        const auto statistics = run.file.statistics_of(generation);
+        if (!statistics) {
+            return statistics.error();
+        }
+        for (const simulation::GenerationStatistics& island : *statistics) {
+            write_row(table, island);
+        }
+        return {};
+    });
+}
+
+Result<void> write_organisms(const RunSource& run, std::ostream& out, Table::Format format) {
+    std::vector<std::string> columns{"generation", "island", "organism", "parent_first", "parent_second", "origin"};
+    columns.insert(columns.end(), evolution::gene_names.begin(), evolution::gene_names.end());
+    columns.insert(columns.end(), {"fitness", "lived_s", "cause"});
+    Table table{out, format, std::move(columns)};
+    GenerationReader reader{run.file, run.executor, run.stop};
+    return for_each_generation(run.file, out, [&](std::uint64_t generation) -> Result<void> {
+        if (!is_in_reach(run.file, generation)) {
+            return {};
+        }
+        const auto whole = reader.read(generation);
+        if (!whole) {
+            return whole.error();
+        }
+        const auto& [begun, ended] = *whole;
+        for (std::size_t i = 0; i < begun.born.size(); ++i) {
+            const evolution::NextGeneration& born = begun.born[i];
+            std::optional<EndedIsland> island;
+            if (ended) {
+                island.emplace(EndedIsland{ended->outcomes[i], ended->statistics[i]});
+            }
+            for (std::size_t organism = 0; organism < static_cast<std::size_t>(born.genes.cols()); ++organism) {
+                table.number(generation).number(i).number(organism);
+                write_organism(table, born, organism, begun.opening.parameters.active.tick_s, island);
+            }
+        }
+        return {};
+    });
+}
+
+Result<void> write_lineage(const RunSource& run, std::ostream& out, Table::Format format,
+                           const std::optional<OrganismName>& of) {
+    Table table{out,
+                format,
+                {"generation", "island", "organism", "parent_first_generation", "parent_first_island", "parent_first",
+                 "parent_second_generation", "parent_second_island", "parent_second", "origin", "fitness",
+                 "child_count", "kept_count"}};
+    if (!of) {
+        return each_generation(run.file, run.executor, run.stop, [&](std::uint64_t generation, const auto& families) {
+            write_families(table, generation, families, nullptr);
+            return out.good();
+        });
+    }
+    const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
+    if (of->generation < first || of->generation > last) {
+        return no_such({"of.generation", "a generation from " + std::to_string(first) + " to " + std::to_string(last),
+                        std::to_string(of->generation)});
+    }
+    if (auto refused = out_of_reach(run.file, "of.generation", of->generation)) {
+        return *refused;
+    }
+    std::optional<base::Violation> wrong;
+    Wanted wanted;
+    const auto done = each_generation_back_from(run.file, of->generation, run.executor, run.stop,
+                                                [&](std::uint64_t generation, const auto& families) {
+                                                    if (generation == of->generation) {
+                                                        wrong = wrong_place(*of, families);
+                                                        if (wrong) {
+                                                            return false;
+                                                        }
+                                                        wanted.resize(of->island + 1);
+                                                        wanted[of->island].resize(of->organism + 1);
+                                                        wanted[of->island][of->organism] = true;
+                                                    }
+                                                    wanted.resize(families.size());
+                                                    for (std::size_t island = 0; island < families.size(); ++island) {
+                                                        wanted[island].resize(families[island].organism_count);
+                                                    }
+                                                    write_families(table, generation, families, &wanted);
+                                                    wanted = parents_of(wanted, families);
+                                                    return !wanted.empty() && out.good();
+                                                });
+    if (wrong) {
+        return no_such(*wrong);
+    }
+    return done;
+}
+
+Result<void> write_population(const RunSource& run, std::ostream& out, Table::Format format, std::uint64_t generation) {
+    const std::uint64_t first = run.file.identity().first_generation, last = run.file.last_generation();
+    if (generation < first || generation > last) {
+        return Refusal{.code = base::RefusalCode::NotFound,
+                       .message = run.file.path() + " does not hold the beginning of that generation",
+                       .violations = {{"generation", std::to_string(first) + " to " + std::to_string(last),
+                                       std::to_string(generation)}},
+                       .reason = base::Reason::MomentNotFound};
+    }
+    if (auto refused = out_of_reach(run.file, "generation", generation)) {
+        return *refused;
+    }
+    const auto whole = GenerationReader{run.file, run.executor, run.stop}.read(generation);
+    if (!whole) {
+        return whole.error();
+    }
+    std::vector<evolution::GeneMatrix> population;
+    for (const evolution::NextGeneration& born : whole->begun.born) {
+        population.push_back(born.genes);
+    }
+    write_population(population, format, out);
+    return {};
+}
+
+Result<void> write_events(const RunSource& run, std::ostream& out, Table::Format format, bool only_users) {
+    constexpr std::uint32_t entries_at_once = 1000;
+    google::protobuf::util::JsonPrintOptions json_options;
+    json_options.preserve_proto_field_names = true;
+    Table table{out, format, {"number", "tick", "client", "kind", "request"}};
+    for (std::uint64_t first = 1; out; first += entries_at_once) {
+        const auto entries = run.file.journal(first, entries_at_once);
+        if (!entries) {
+            return entries.error();
+        }
+        for (const run_file::JournalEntry& entry : *entries) {
+            v1::Request request;
+            std::string json;
+            const bool parsed = request.ParseFromString(entry.origin.request);
+            // Who knows them could send the client's next command in its place.
+            request.clear_client_key();
+            request.clear_request_id();
+            if (!parsed || !MessageToJsonString(request, &json, json_options).ok()) {
+                return Refusal{.code = base::RefusalCode::DataLoss,
+                               .message = run.file.path() + " is damaged: entry " + std::to_string(entry.number) +
+                                          " of its journal is no request",
+                               .violations = {}};
+            }
+            table.number(entry.number)
+                .number(entry.tick)
+                .text(only_users ? run_file::user_of(entry.origin) : entry.origin.client)
+                .text(kind_of(request))
+                .json(json)
+                .end_row();
+        }
+        if (entries->size() < entries_at_once) {
+            break;
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+std::uint64_t generations_out_of_reach(run_file::RunFile& file) {
+    std::uint64_t count = 0;
+    const std::uint64_t last = file.last_generation();
+    if (file.other_model()) {
+        for (std::uint64_t generation = file.identity().first_generation; generation <= last; ++generation) {
+            const auto opening = file.opening_of(generation);
+            if (!opening || !*opening) {
+                break; // damaged: whoever reads on is told
+            }
+            count += !is_in_reach(file, generation);
+        }
+    }
+    return count;
+}
+
+void write_population(const std::vector<evolution::GeneMatrix>& population, Table::Format format, std::ostream& out) {
+    Table table{out, format, population_columns()};
+    for (std::size_t island = 0; island < population.size(); ++island) {
+        const evolution::GeneMatrix& genes = population[island];
+        for (std::uint32_t organism = 0; organism < genes.cols(); ++organism) {
+            table.number(island).number(organism);
+            for (const float gene : evolution::column(genes, organism)) {
+                table.number(gene);
+            }
+            table.end_row();
+        }
+    }
+}
+
+Result<void> write_table(const RunSource& run, const WantedTable& wanted, std::ostream& out) {
+    switch (wanted.table) {
+    case RunTable::Generations:
+        return write_generations(run, out, wanted.format);
+    case RunTable::Organisms:
+        return write_organisms(run, out, wanted.format);
+    case RunTable::Lineage:
+        return write_lineage(run, out, wanted.format, wanted.of);
+    case RunTable::Population:
+        return write_population(run, out, wanted.format, wanted.generation.value_or(run.file.last_generation()));
+    case RunTable::Events:
+        break;
+    }
+    return write_events(run, out, wanted.format, wanted.only_users);
+}
+
+} // namespace evod::replay

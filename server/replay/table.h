@@ -1,0 +1,54 @@
+// Table: rows for other programs, as CSV (RFC 4180, but with "\n" at the end of a line) with a heading, or as JSON
+// Lines, an object a row.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace evod::replay {
+
+class Table {
+  public:
+    enum class Format { Csv, JsonLines };
+
+    /// Writes the heading, if there is one.
+    Table(std::ostream& out, Format format, std::vector<std::string> columns);
+
+    // The columns of a row in order, then end_row().
+
+    /// The shortest text that reads back as the same number.
+    template <class T>
+    requires std::is_arithmetic_v<T> Table& number(T value) {
+        if constexpr (std::is_floating_point_v<T>) {
+            if (format_ == Format::JsonLines && !std::isfinite(value)) {
+                return nothing(); // JSON has no word for it
+            }
+        }
+        char digits[32];
+        begin_field();
+        line_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+        return *this;
+    }
+    Table& text(std::string_view value);
+    /// value  JSON of its own, in one line.
+    Table& json(std::string_view value);
+    /// Nothing is known: an empty field, or null.
+    Table& nothing();
+    void end_row();
+
+  private:
+    void begin_field();
+
+    std::ostream& out_;
+    const Format format_;
+    std::vector<std::string> columns_; // as they stand before a value, in JSON
+    std::string line_;
+    std::size_t column_ = 0;
+};
+
+} // namespace evod::replay

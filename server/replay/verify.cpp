@@ -1,0 +1,442 @@
+#include "server/replay/verify.h"
+
+#include "server/base/inline_executor.h"
+#include "server/replay/mismatch.h"
+#include "server/replay/rerun.h"
+#include "server/run_file/checkpoint.h"
+
+#include <algorithm>
+#include <atomic>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace evod::replay {
+namespace {
+
+using base::Result;
+using evolution::NextGeneration;
+using simulation::World;
+
+/// All that a file tells of a generation. Of one that is no longer held whole, `born` and `outcomes` are empty; of one
+/// that has not ended, `outcomes` and `statistics` are.
+struct StoredGeneration {
+    simulation::Opening opening;
+    std::vector<NextGeneration> born;
+    simulation::Founders founders; // none: nobody knows
+    std::vector<run_file::IslandOutcome> outcomes;
+    std::vector<simulation::GenerationStatistics> statistics;
+    std::vector<run_file::HashLink> links;
+    std::vector<run_file::StoredCheckpoint> checkpoints;
+    std::uint64_t last_tick = 0; // that the file tells of, of this generation
+};
+
+/// A generation that is held whole, and those after it that are not.
+using Stretch = std::vector<StoredGeneration>;
+
+/// Whether a generation can have begun so: the core relies on it. One that cannot is not what the generation before it
+/// gives, and is told as that.
+bool can_be_simulated(const StoredGeneration& generation) {
+    const parameters::Parameters& parameters = generation.opening.parameters.active;
+    const evolution::GeneBounds bounds = evolution::gene_bounds(parameters);
+    return std::ranges::all_of(generation.born, [&](const NextGeneration& born) {
+        return born.genes.cols() == parameters.population_size &&
+               ((born.genes.colwise() - bounds.min >= 0) && (born.genes.colwise() - bounds.max <= 0)).all();
+    });
+}
+
+class StretchCheck {
+  public:
+    /// following  the generation after the stretch; nullptr if there is none.
+    StretchCheck(const run_file::RunFile& file, const Stretch& stretch, const StoredGeneration* following,
+                 base::Executor& executor)
+        : file_{file}, stretch_{stretch}, following_{following}, executor_{executor} {}
+
+    /// changes  the run's, up to the stretch's last tick.
+    /// told     called with the number of ticks since it was last called.
+    Result<Verified> run(std::span<const ParameterChange> changes, base::FunctionRef<void(std::uint64_t)> told) {
+        const StoredGeneration& first = stretch_.front();
+        agrees_with_beginning_of(first);
+        if (first.opening.moment.generation == file_.identity().first_generation) {
+            check_beginning_of_run();
+        }
+        if (!done_.difference && !can_be_simulated(first)) {
+            differ(agrees_, {"the chromosomes", "out of their bounds", "within them"});
+        }
+        if (done_.difference) {
+            return done_;
+        }
+        auto rerun = Rerun::from(file_, {.opening = first.opening, .born = first.born, .founders = first.founders},
+                                 beginning(), changes, {}, executor_);
+        if (!rerun) {
+            return rerun.error();
+        }
+        const double began_s = rerun->world().moment().simulated_s;
+        const std::uint64_t began_tick = rerun->world().moment().tick;
+        for (std::size_t i = 0; i < stretch_.size() && !done_.difference; ++i) {
+            check_generation(*rerun, stretch_[i], i + 1 < stretch_.size() ? &stretch_[i + 1] : following_, told);
+        }
+        if (const auto& fault = rerun->changes().fault()) {
+            return *fault;
+        }
+        done_.ticks = rerun->world().moment().tick - began_tick;
+        done_.simulated_s = rerun->world().moment().simulated_s - began_s;
+        return done_;
+    }
+
+  private:
+    void differ(const StoredMoment& moment, Mismatch mismatch) {
+        done_.difference = Difference{.agrees = agrees_,
+                                      .agreeing_part = agreeing_part_,
+                                      .differs = moment,
+                                      .part = std::move(mismatch.part),
+                                      .stored = std::move(mismatch.stored),
+                                      .simulated = std::move(mismatch.simulated)};
+    }
+    /// Whether nothing was found.
+    bool same(const StoredMoment& moment, std::optional<Mismatch> mismatch) {
+        if (mismatch) {
+            differ(moment, *std::move(mismatch));
+        }
+        return !mismatch;
+    }
+    bool same_births(const StoredMoment& moment, const StoredGeneration& stored,
+                     const run_file::GenerationBegun& simulated) {
+        return same(moment, compare(stored.born, simulated.born)) &&
+               (stored.founders.empty() || same(moment, compare(stored.founders, simulated.founders)));
+    }
+    void agrees_with_beginning_of(const StoredGeneration& generation) {
+        agrees_ = {generation.opening.moment.generation, generation.opening.moment.tick};
+        agreeing_part_ = "the beginning of the generation";
+    }
+
+    /// Where the run begins within the stretch's first generation; nullptr if it does not.
+    const run_file::StoredCheckpoint* beginning() const {
+        const StoredGeneration& first = stretch_.front();
+        return first.opening.moment.tick < file_.identity().first_tick ? &first.checkpoints.front() : nullptr;
+    }
+
+    void check_beginning_of_run() {
+        const run_file::RunIdentity& identity = file_.identity();
+        const StoredGeneration& first = stretch_.front();
+        if (!identity.forked_from) {
+            const World world{identity.parameters, identity.seed, identity.first_population, identity.schedule};
+            const run_file::GenerationBegun begun = run_file::beginning_of(world);
+            (void)(same(agrees_, compare(first.opening, begun.opening)) && same_births(agrees_, first, begun));
+        } else {
+            // What a fork began with, nothing in its file gives again but what was asked for.
+            const run_file::StoredCheckpoint* within = beginning();
+            const parameters::ParameterSet& set = within ? within->parameters : first.opening.parameters;
+            (void)same(agrees_, compare_requested(set.requested, identity.parameters));
+        }
+        if (done_.difference) {
+            done_.difference->agrees.reset();
+        }
+    }
+
+    void check_generation(Rerun& rerun, const StoredGeneration& stored, const StoredGeneration* next,
+                          base::FunctionRef<void(std::uint64_t)> told) {
+        ++done_.generations;
+        agrees_with_beginning_of(stored);
+        check_hashes(rerun, stored, told);
+        if (!done_.difference) {
+            check_end(rerun.world(), stored, next != nullptr);
+        }
+        if (!done_.difference && next != nullptr) {
+            check_next(rerun, *next);
+        }
+    }
+
+    void check_hashes(Rerun& rerun, const StoredGeneration& stored, base::FunctionRef<void(std::uint64_t)> told) {
+        const World& world = rerun.world();
+        auto link = stored.links.begin();
+        auto checkpoint = std::ranges::upper_bound(stored.checkpoints, world.moment().tick, {},
+                                                   [](const run_file::StoredCheckpoint& at) { return at.moment.tick; });
+        std::uint64_t told_tick = world.moment().tick;
+        while (world.moment().tick < stored.last_tick && !world.generation_over()) {
+            if (checkpoint != stored.checkpoints.end() && checkpoint->moment.tick == world.moment().tick + 1) {
+                rerun.advance_tick(executor_, checkpoint->journal_entries);
+                if (!check_checkpoint(world, *checkpoint++)) {
+                    return;
+                }
+                rerun.make_changes();
+            } else {
+                rerun.advance_tick(executor_);
+            }
+            const StoredMoment now{world.moment().generation, world.moment().tick};
+            if (now.tick % run_file::ticks_per_link != 0) {
+                continue;
+            }
+            told(now.tick - std::exchange(told_tick, now.tick));
+            if (!file_.is_link_held(now.tick)) {
+                continue;
+            }
+            if (link == stored.links.end() || link->tick != now.tick) {
+                return differ(now, {"the state hash", "none", to_text(world.hash())});
+            }
+            if (!same(now, compare(link->hash, world.hash()))) {
+                return;
+            }
+            agrees_ = now;
+            agreeing_part_ = "the state hash";
+            ++done_.hashes;
+            ++link;
+        }
+        told(world.moment().tick - told_tick);
+    }
+
+    /// Whether nothing was found.
+    bool check_checkpoint(const World& world, const run_file::StoredCheckpoint& stored) {
+        const StoredMoment now{world.moment().generation, world.moment().tick};
+        simulation::WorldState state{
+            .moment = stored.moment, .parameters = stored.parameters, .islands = {}, .ended = {}};
+        if (const auto unpacked = run_file::unpack(stored.state, world.shapes(), state); !unpacked) {
+            return same(now, Mismatch{"the checkpoint", unpacked.error().message, "a state of this world"});
+        }
+        std::optional<Mismatch> found = compare(state, world.state(executor_));
+        if (found) {
+            found->part = "the checkpoint: " + found->part;
+        }
+        if (!same(now, found ? std::move(found) : compare(stored.hash, world.hash()))) {
+            return false;
+        }
+        agrees_ = now;
+        agreeing_part_ = "the checkpoint";
+        ++done_.checkpoints;
+        return true;
+    }
+
+    void check_end(const World& world, const StoredGeneration& stored, bool goes_on) {
+        const StoredMoment now{world.moment().generation, world.moment().tick};
+        const bool ended = !stored.statistics.empty();
+        if (now.tick < stored.last_tick) {
+            return differ(now, {"the generation's end", "later", "at this tick"});
+        }
+        if ((ended || goes_on) && !world.generation_over()) {
+            return differ(now, {"the generation's end", "at this tick", "later"});
+        }
+        if (!ended) {
+            return;
+        }
+        const run_file::GenerationEnded again = run_file::end_of(world);
+        if (!stored.outcomes.empty() && !same(now, compare(stored.outcomes, again.outcomes))) {
+            return;
+        }
+        if (!same(now, compare(stored.statistics, again.statistics))) {
+            return;
+        }
+        agrees_ = now;
+        agreeing_part_ = "the end of the generation";
+    }
+
+    void check_next(Rerun& rerun, const StoredGeneration& next) {
+        const World& world = rerun.world();
+        const StoredMoment moment{world.moment().generation + 1, world.moment().tick};
+        if (world.outcome() != evolution::Outcome::Running) {
+            return differ(moment, {"the run's end", "later", "before this generation"});
+        }
+        rerun.turn_over(executor_);
+        const run_file::GenerationBegun again = run_file::beginning_of(world);
+        if (same(moment, compare(next.opening, again.opening)) && !next.born.empty()) {
+            (void)same_births(moment, next, again);
+        }
+    }
+
+    const run_file::RunFile& file_;
+    const Stretch& stretch_;
+    const StoredGeneration* following_;
+    base::Executor& executor_;
+    StoredMoment agrees_; // the last moment that does
+    const char* agreeing_part_ = "";
+    Verified done_;
+};
+
+/// Reads a file's generations in order, each once.
+class Reader {
+  public:
+    explicit Reader(run_file::RunFile& file)
+        : file_{file}, contents_{file.contents()}, next_{file.identity().first_generation} {}
+
+    const run_file::EndMark& contents() const { return contents_; }
+
+    /// The next stretches: at most `count`, and no more once there are `organisms` in them; none after the last.
+    Result<std::vector<Stretch>> read(std::size_t count, std::size_t organisms) {
+        if (!following_ && next_ <= contents_.generations) {
+            if (auto read = read_following(); !read) {
+                return read.error();
+            }
+        }
+        std::vector<Stretch> stretches;
+        for (std::size_t held = 0; following_ && stretches.size() < count && held < organisms;) {
+            for (const NextGeneration& born : following_->born) {
+                held += static_cast<std::size_t>(born.genes.cols());
+            }
+            Stretch& stretch = stretches.emplace_back();
+            do {
+                stretch.push_back(*std::move(following_));
+                if (auto read = read_following(); !read) {
+                    return read.error();
+                }
+                if (auto read = read_links(stretch.back()); !read) {
+                    return read.error();
+                }
+            } while (following_ && following_->born.empty());
+        }
+        return stretches;
+    }
+    /// The generation after those that were read last; nullptr if there is none.
+    const StoredGeneration* following() const { return following_ ? &*following_ : nullptr; }
+
+  private:
+    Result<void> read_following() {
+        following_.reset();
+        if (next_ > contents_.generations) {
+            return {};
+        }
+        const std::uint64_t number = next_++;
+        // check() has seen that each is there which must be.
+        StoredGeneration& generation = following_.emplace();
+        auto begun = file_.beginning_of(number);
+        if (!begun) {
+            return begun.error();
+        }
+        if (*begun) {
+            generation.opening = (*begun)->opening;
+            generation.born = std::move((*begun)->born);
+            generation.founders = std::move((*begun)->founders);
+        } else {
+            const auto opening = file_.opening_of(number);
+            if (!opening) {
+                return opening.error();
+            }
+            generation.opening = opening->value();
+        }
+        auto ended = file_.outcome_of(number);
+        if (!ended) {
+            return ended.error();
+        }
+        if (*ended) {
+            generation.outcomes = std::move((*ended)->outcomes);
+        }
+        auto statistics = file_.statistics_of(number);
+        if (!statistics) {
+            return statistics.error();
+        }
+        generation.statistics = *std::move(statistics);
+        return {};
+    }
+
+    /// Of a generation, with its checkpoints, once the one after it has been read.
+    Result<void> read_links(StoredGeneration& generation) {
+        generation.last_tick = following_ ? following_->opening.moment.tick : contents_.tick;
+        // A fork may begin within a generation, and at a tick that has a link in its origin.
+        const std::uint64_t first_tick = std::max(generation.opening.moment.tick, file_.identity().first_tick);
+        auto links = file_.links(first_tick, generation.last_tick);
+        if (!links) {
+            return links.error();
+        }
+        generation.links = *std::move(links);
+        auto checkpoints = file_.checkpoints(generation.opening.moment.tick, generation.last_tick);
+        if (!checkpoints) {
+            return checkpoints.error();
+        }
+        generation.checkpoints = *std::move(checkpoints);
+        return {};
+    }
+
+    run_file::RunFile& file_;
+    const run_file::EndMark contents_;
+    std::uint64_t next_; // generation to be read
+    std::optional<StoredGeneration> following_;
+};
+
+void add(Verified& sum, const Verified& stretch) {
+    sum.generations += stretch.generations;
+    sum.ticks += stretch.ticks;
+    sum.hashes += stretch.hashes;
+    sum.checkpoints += stretch.checkpoints;
+    sum.simulated_s += stretch.simulated_s;
+    sum.difference = stretch.difference;
+}
+
+} // namespace
+
+Result<Verified> verify(run_file::RunFile& file, base::Executor& executor,
+                        base::FunctionRef<void(const VerifyProgress&)> told) {
+    if (auto held = file.hold_still(); !held) {
+        return held.error();
+    }
+    const std::uint64_t before = file.identity().first_generation - 1;
+    const std::uint64_t generations = std::max(file.last_generation(), before) - before;
+    const auto tell_read = [&](std::uint64_t generation) {
+        told({.generations = generation - before - 1, .generations_in_all = generations});
+    };
+    if (auto sound = file.check(tell_read); !sound) {
+        return sound.error();
+    }
+    if (auto refused = file.other_model()) {
+        return *refused;
+    }
+    const auto changes = parameter_changes(file);
+    if (!changes) {
+        return changes.error();
+    }
+
+    // Enough for every thread to be busy though some take longer, and no more than memory should hold.
+    const std::size_t threads = executor.thread_count(), stretches_at_once = 16 * threads;
+    constexpr std::size_t organisms_at_once = 1'000'000;
+    Reader reader{file};
+    const std::uint64_t ticks_in_all =
+        reader.contents().tick - std::min(reader.contents().tick, file.identity().first_tick);
+    std::atomic<std::uint64_t> ticks = 0;
+    const auto count = [&](std::uint64_t more) {
+        const std::uint64_t sum = ticks.fetch_add(more, std::memory_order_relaxed) + more;
+        told({.generations = generations,
+              .generations_in_all = generations,
+              .ticks = sum,
+              .ticks_in_all = ticks_in_all});
+    };
+
+    Verified verified;
+    while (!verified.difference) {
+        const auto stretches = reader.read(stretches_at_once, organisms_at_once);
+        if (!stretches) {
+            return stretches.error();
+        }
+        if (stretches->empty()) {
+            break;
+        }
+        std::vector<Result<Verified>> results(stretches->size(), Result<Verified>{Verified{}});
+        const auto check = [&](std::size_t i, base::Executor& within) {
+            const Stretch& stretch = (*stretches)[i];
+            const auto later = std::ranges::upper_bound(*changes, stretch.back().last_tick, {}, &ParameterChange::tick);
+            const StoredGeneration* following =
+                i + 1 < stretches->size() ? &(*stretches)[i + 1].front() : reader.following();
+            results[i] = StretchCheck{file, stretch, following, within}.run({changes->begin(), later}, count);
+        };
+        if (stretches->size() >= threads) {
+            executor.parallel_for(stretches->size(), 1, [&](base::Range range) {
+                base::InlineExecutor alone;
+                for (std::size_t i = range.begin; i < range.end; ++i) {
+                    check(i, alone);
+                }
+            });
+        } else {
+            for (std::size_t i = 0; i < stretches->size(); ++i) {
+                check(i, executor);
+            }
+        }
+        for (const Result<Verified>& result : results) {
+            if (!result) {
+                return result.error();
+            }
+            add(verified, *result);
+            if (verified.difference) {
+                break;
+            }
+        }
+    }
+    return verified;
+}
+
+} // namespace evod::replay

@@ -1,0 +1,272 @@
+#include "server/run_file/checkpoint.h"
+
+#include "server/base/assert.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+namespace evod::run_file {
+namespace {
+
+using base::Refusal;
+using base::Result;
+using simulation::GenerationStatistics;
+using simulation::IslandShape;
+using simulation::IslandState;
+using simulation::Items;
+
+static_assert(std::endian::native == std::endian::little, "columns are written as they lie in memory");
+
+constexpr int compression_level = 1; // higher ones take much longer and save little: most of it is places
+
+Refusal refusal(const char* message) {
+    return {.code = base::RefusalCode::DataLoss, .message = message, .violations = {}};
+}
+
+/// Calls visit(column) for every column in order, each as a range and what is taken of its elements.
+template <class Island, class Visit>
+void for_each_column(Island& island, Visit&& visit) {
+    visit(
+        island.fate.lived_ticks, [](auto& value) -> auto& { return value; });
+    visit(
+        island.fate.cause, [](auto& value) -> auto& { return value; });
+    visit(
+        island.fate.food_eaten, [](auto& value) -> auto& { return value; });
+    visit(
+        island.fate.poison_eaten, [](auto& value) -> auto& { return value; });
+    const auto visit_bodies = [&](auto& bodies) {
+        visit(
+            bodies, [](auto& body) -> auto& { return body.x; });
+        visit(
+            bodies, [](auto& body) -> auto& { return body.y; });
+        visit(
+            bodies, [](auto& body) -> auto& { return body.velocity_x; });
+        visit(
+            bodies, [](auto& body) -> auto& { return body.velocity_y; });
+    };
+    visit_bodies(island.organisms);
+    visit(
+        island.organisms, [](auto& organism) -> auto& { return organism.health; });
+    visit_bodies(island.crates);
+    for (auto* items : {&island.food, &island.poison}) {
+        visit(
+            *items, [](auto& item) -> auto& { return item.x; });
+        visit(
+            *items, [](auto& item) -> auto& { return item.y; });
+        visit(
+            *items, [](auto& item) -> auto& { return item.due_tick; });
+    }
+}
+
+template <class Counts, class Visit>
+void for_each_count(Counts& counts, Visit&& visit) {
+    visit(counts.food_eaten);
+    visit(counts.poison_eaten);
+    visit(counts.starved_count);
+    visit(counts.poisoned_count);
+    visit(counts.too_fast_count);
+    visit(counts.speed_limit_count);
+}
+
+std::size_t bytes_of_statistics() {
+    std::size_t bytes = 0;
+    simulation::for_each_number(GenerationStatistics{}, [&](const std::string&, auto) { bytes += 8; });
+    return bytes;
+}
+
+/// Of a state that is not compressed, its first byte included.
+std::size_t bytes_of(std::span<const IslandShape> shapes, bool over) {
+    std::size_t bytes = 1;
+    for (const IslandShape& shape : shapes) {
+        simulation::IslandCounts counts;
+        for_each_count(counts, [&](const auto& count) { bytes += sizeof(count); });
+        bytes += shape.organisms * std::size_t{13};
+        if (shape.has_bodies) {
+            bytes += shape.organisms * std::size_t{20} + shape.crates * std::size_t{16} +
+                     (std::size_t{shape.food} + shape.poison) * 12;
+        }
+        bytes += over ? bytes_of_statistics() : 0;
+    }
+    return bytes;
+}
+
+class Packer {
+  public:
+    Packer() : context_{ZSTD_createCCtx(), ZSTD_freeCCtx} {
+        EVOD_ASSERT(context_ != nullptr);
+        ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, compression_level);
+    }
+    /// The number of bytes that will come is part of what is written, so that a reader knows what to expect.
+    void expect(std::size_t bytes) { ZSTD_CCtx_setPledgedSrcSize(context_.get(), bytes); }
+
+    template <class T>
+    void value(const T& value) {
+        put(&value, sizeof value);
+    }
+    template <class Range, class Part>
+    void column(const Range& range, Part&& part) {
+        using T = std::remove_cvref_t<decltype(part(range.front()))>;
+        std::array<T, 4096> values;
+        for (std::size_t begin = 0; begin < range.size(); begin += values.size()) {
+            const std::size_t count = std::min(values.size(), range.size() - begin);
+            for (std::size_t i = 0; i < count; ++i) {
+                values[i] = part(range[begin + i]);
+            }
+            put(values.data(), count * sizeof(T));
+        }
+    }
+    std::string finish() && {
+        run({nullptr, 0, 0}, ZSTD_e_end);
+        return std::move(packed_);
+    }
+
+  private:
+    void put(const void* bytes, std::size_t count) { run({bytes, count, 0}, ZSTD_e_continue); }
+
+    void run(ZSTD_inBuffer in, ZSTD_EndDirective directive) {
+        for (;;) {
+            if (used_ == packed_.size()) {
+                packed_.resize(packed_.size() + packed_.size() / 2 + ZSTD_CStreamOutSize());
+            }
+            ZSTD_outBuffer out{packed_.data(), packed_.size(), used_};
+            const std::size_t left = ZSTD_compressStream2(context_.get(), &out, &in, directive);
+            EVOD_ASSERT(!ZSTD_isError(left));
+            used_ = out.pos;
+            if (directive == ZSTD_e_end ? left == 0 : in.pos == in.size) {
+                break;
+            }
+        }
+        if (directive == ZSTD_e_end) {
+            packed_.resize(used_);
+        }
+    }
+
+    std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context_;
+    std::string packed_;
+    std::size_t used_ = 0; // of packed_
+};
+
+/// Takes values off the front; there are enough.
+class Columns {
+  public:
+    explicit Columns(std::string_view bytes) : bytes_{bytes} {}
+
+    template <class T>
+    void value(T& value) {
+        EVOD_ASSERT(bytes_.size() >= sizeof value);
+        std::memcpy(&value, bytes_.data(), sizeof value);
+        bytes_.remove_prefix(sizeof value);
+    }
+    bool empty() const { return bytes_.empty(); }
+
+  private:
+    std::string_view bytes_;
+};
+
+void resize(IslandState& island, const IslandShape& shape) {
+    island.fate.begin_generation(shape.organisms);
+    if (!shape.has_bodies) {
+        return;
+    }
+    island.organisms.resize(shape.organisms);
+    island.crates.resize(shape.crates);
+    island.food.resize(shape.food);
+    island.poison.resize(shape.poison);
+}
+
+} // namespace
+
+std::string pack(const simulation::WorldState& state) {
+    std::vector<IslandShape> shapes;
+    for (const IslandState& island : state.islands) {
+        shapes.push_back({.organisms = static_cast<std::uint32_t>(island.fate.cause.size()),
+                          .has_bodies = !island.organisms.empty(),
+                          .crates = static_cast<std::uint32_t>(island.crates.size()),
+                          .food = static_cast<std::uint32_t>(island.food.size()),
+                          .poison = static_cast<std::uint32_t>(island.poison.size())});
+    }
+    const bool over = !state.ended.empty();
+    Packer packer;
+    packer.expect(bytes_of(shapes, over));
+    packer.value(static_cast<std::uint8_t>(over));
+    for (const IslandState& island : state.islands) {
+        for_each_count(island.counts, [&](const auto& count) { packer.value(count); });
+        for_each_column(island, [&](const auto& range, auto&& part) { packer.column(range, part); });
+    }
+    for (const GenerationStatistics& statistics : state.ended) {
+        simulation::for_each_number(statistics, [&]<class T>(const std::string&, const T& number) {
+            if constexpr (std::is_floating_point_v<T>) {
+                packer.value(double{number});
+            } else {
+                packer.value(static_cast<std::uint64_t>(number));
+            }
+        });
+    }
+    return std::move(packer).finish();
+}
+
+StoredCheckpoint pack(const Checkpoint& checkpoint) {
+    return {.moment = checkpoint.state.moment,
+            .parameters = checkpoint.state.parameters,
+            .hash = checkpoint.hash,
+            .journal_entries = checkpoint.journal_entries,
+            .state = pack(checkpoint.state)};
+}
+
+Result<void> unpack(std::string_view packed, std::span<const IslandShape> shapes, simulation::WorldState& state) {
+    // What it takes is known before any memory is taken for it.
+    const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
+    if (bytes != bytes_of(shapes, false) && bytes != bytes_of(shapes, true)) {
+        return refusal("it has another size than such a world's state");
+    }
+    std::string columns(bytes, '\0');
+    const std::size_t unpacked = ZSTD_decompress(columns.data(), columns.size(), packed.data(), packed.size());
+    if (ZSTD_isError(unpacked) || unpacked != columns.size()) {
+        return refusal("it cannot be unpacked");
+    }
+    return read_columns(columns, shapes, state);
+}
+
+Result<void> read_columns(std::string_view bytes, std::span<const IslandShape> shapes, simulation::WorldState& state) {
+    if (bytes.empty() || static_cast<std::uint8_t>(bytes.front()) > 1) {
+        return refusal("it does not say whether a generation is over");
+    }
+    const bool over = bytes.front() == 1;
+    if (bytes.size() != bytes_of(shapes, over)) {
+        return refusal("it has another size than such a world's state");
+    }
+    Columns columns{bytes.substr(1)};
+    state.islands.assign(shapes.size(), {});
+    state.ended.assign(over ? shapes.size() : 0, {});
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        IslandState& island = state.islands[i];
+        resize(island, shapes[i]);
+        for_each_count(island.counts, [&](auto& count) { columns.value(count); });
+        for_each_column(island, [&](auto& range, auto&& part) {
+            for (auto& element : range) {
+                columns.value(part(element));
+            }
+        });
+    }
+    for (GenerationStatistics& statistics : state.ended) {
+        simulation::for_each_number(statistics, [&]<class T>(const std::string&, T& number) {
+            if constexpr (std::is_floating_point_v<T>) {
+                columns.value(number);
+            } else {
+                std::uint64_t whole = 0;
+                columns.value(whole);
+                number = static_cast<T>(whole);
+            }
+        });
+    }
+    EVOD_ASSERT(columns.empty());
+    return {};
+}
+
+} // namespace evod::run_file

@@ -1,0 +1,172 @@
+// Recorded run: a world in a laboratory that is written to a file as a server does it, in a folder of its own.
+#pragma once
+
+#include "evod/v1/commands.pb.h"
+#include "server/base/inline_executor.h"
+#include "server/protocol/commands.h"
+#include "server/protocol/parameters.h"
+#include "server/recording/recorder.h"
+#include "server/run_file/database.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace evod::recording {
+using namespace run_file;
+
+class TemporaryFolder {
+  public:
+    explicit TemporaryFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
+        std::string name = (in / "evod_XXXXXX").string();
+        EXPECT_NE(mkdtemp(name.data()), nullptr);
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::string& path() const { return path_; }
+    void clear() const {
+        for (const auto& file : std::filesystem::directory_iterator{path_}) {
+            std::filesystem::remove(file);
+        }
+    }
+
+  private:
+    std::string path_;
+};
+
+/// Does this to a run file behind everybody's back.
+inline void change(const std::string& path, const std::string& sql) {
+    Database database{path, Database::Mode::Write};
+    database.run(sql.c_str());
+    ASSERT_FALSE(database.failed()) << database.error();
+}
+
+/// A world that breeds soon and dies now and then: twelve organisms, generations of two seconds, two islands.
+inline parameters::Parameters small_world() {
+    parameters::Parameters parameters;
+    parameters.population_size = 12;
+    parameters.generation_s = 2;
+    parameters.island_count = 2;
+    parameters.migration = evolution::Topology::Ring;
+    parameters.migration_epoch = 2;
+    parameters.food_count = 40;
+    return parameters;
+}
+
+inline v1::Request set_parameter(const std::string& name, parameters::ParameterValue value) {
+    v1::Request request;
+    v1::ParameterAssignment& assignment = *request.mutable_set_parameters()->add_parameters();
+    assignment.set_name(name);
+    *assignment.mutable_value() = protocol::to_proto(value);
+    return request;
+}
+
+class RecordedRun {
+  public:
+    /// folder, thread: outlive it.
+    RecordedRun(DataFolder& folder, StorageThread& thread, base::Seed seed = {7},
+                simulation::FirstPopulation first_population = {}, const parameters::Schedule& schedule = {})
+        : recorder_{folder, thread} {
+        auto parameters = parameters::assign(small_world(), schedule.at(1));
+        EXPECT_TRUE(parameters) << to_text(parameters.error());
+        EXPECT_TRUE(laboratory_.apply(
+            simulation::CreateWorld{"w", *parameters, seed, {1, 2}, std::move(first_population), schedule}));
+        recorder_.begin(entry());
+    }
+
+    simulation::Entry& entry() { return **laboratory_.find("w"); }
+    simulation::World& world() { return entry().world; }
+    Recorder& recorder() { return recorder_; }
+    const simulation::Laboratory& laboratory() const { return laboratory_; }
+
+    void advance(std::uint64_t ticks, const std::string& name = "w") {
+        simulation::Entry& advanced = **laboratory_.find(name);
+        for (std::uint64_t tick = 0; tick < ticks && advanced.world.outcome() == evolution::Outcome::Running; ++tick) {
+            laboratory_.advance(advanced, executor_);
+            recorder_.of(name)->follow(advanced.world);
+        }
+    }
+
+    /// Of the last tick; to be called before anything is asked for there, as a server does.
+    void checkpoint() { recorder_.of("w")->make_checkpoint(world(), executor_); }
+
+    /// A world "fork" that begins where this one is.
+    void fork(
+        const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        v1::Request request;
+        request.mutable_fork_world()->set_world("w");
+        request.mutable_fork_world()->set_name("fork");
+        const auto applied = laboratory_.apply(simulation::ForkWorld{"w", "fork", {}, run_id});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.begin_fork(**laboratory_.find("fork"), entry().run_id, record_of(request, *applied, std::move(done)),
+                             executor_);
+    }
+
+    /// Begins again in a file of its own.
+    void reset(
+        base::Seed seed, const simulation::RunId& run_id, StorageThread::Done done = [] {}) {
+        const simulation::RunId before = entry().run_id;
+        const std::uint64_t tick = world().moment().tick;
+        v1::Request request;
+        request.mutable_reset_world()->set_world("w");
+        const auto applied = laboratory_.apply(simulation::ResetWorld{"w", seed, run_id});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.begin_again(entry(), before, tick, record_of(request, *applied, std::move(done)));
+    }
+
+    void command(
+        v1::Request request, StorageThread::Done done = [] {}) {
+        auto command = protocol::to_command(with_key(request), {});
+        ASSERT_TRUE(command) << to_text(command.error());
+        if (auto* set = std::get_if<simulation::SetParameters>(&*command)) {
+            set->by = "somebody"; // as a server does
+        }
+        const auto applied = laboratory_.apply(*command);
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.of("w")->journal(record_of(request, *applied, std::move(done)));
+    }
+
+    void delete_world(StorageThread::Done done = [] {}) {
+        v1::Request request;
+        request.mutable_delete_world()->set_world("w");
+        const simulation::RunId run_id = entry().run_id;
+        const auto applied = laboratory_.apply(simulation::DeleteWorld{"w"});
+        ASSERT_TRUE(applied) << to_text(applied.error());
+        recorder_.end("w", run_id, record_of(request, *applied, std::move(done)));
+    }
+
+  private:
+    v1::Request& with_key(v1::Request& request) {
+        request.set_client_key("test");
+        request.set_request_id(++requests_);
+        return request;
+    }
+    CommandRecord record_of(v1::Request& request, const simulation::Applied& applied, StorageThread::Done done) {
+        if (request.client_key().empty()) {
+            with_key(request);
+        }
+        const auto there = laboratory_.find("w");
+        return {.tick = applied.tick,
+                .control = there ? (*there)->control : simulation::RunControl{},
+                .origin = {.client = "somebody",
+                           .client_key = "test",
+                           .request_id = requests_,
+                           .request = request.SerializeAsString()},
+                .answer = "answer " + std::to_string(requests_),
+                .done = std::move(done)};
+    }
+
+    base::InlineExecutor executor_;
+    simulation::Laboratory laboratory_;
+    Recorder recorder_;
+    std::uint64_t requests_ = 0;
+};
+
+} // namespace evod::recording

@@ -1,0 +1,500 @@
+#include "server/recording/storage_thread.h"
+
+#include "server/replay/archive.h"
+#include "tests/support/everyday.h"
+#include "tests/support/waiting.h"
+#include "tests/unit/recording/failing_disk.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <chrono>
+#include <fstream>
+#include <future>
+
+namespace evod::recording {
+namespace {
+
+using namespace run_file;
+using namespace replay;
+
+using namespace std::chrono_literals;
+
+class StorageThreadTest : public testing::Test {
+  protected:
+    StorageThreadTest() : data{*DataFolder::open(folder.path())} {}
+
+    // In memory where that can be: a disk is slow to say that it has everything.
+    TemporaryFolder folder{std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path()};
+    DataFolder data;
+    base::InlineExecutor executor;
+};
+
+TEST_F(StorageThreadTest, TellsOnceTheCommandCanBeReadByOthers) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    for (std::uint64_t number = 1; number <= 20; ++number) {
+        std::promise<void> told;
+        run.command(set_parameter("food_health", static_cast<double>(number)), [&] { told.set_value(); });
+        told.get_future().wait();
+        const auto file = RunFile::open_read_only(data.file_of("w"));
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_EQ((*file)->journal()->size(), number);
+    }
+}
+
+TEST_F(StorageThreadTest, AnEndedRunHasItsEndMarkAndItsNameIsFree) {
+    StorageThread thread{{}};
+    {
+        RecordedRun run{data, thread, {1}};
+        run.advance(70);
+        run.delete_world();
+    }
+    std::promise<void> told;
+    RecordedRun next{data, thread, {2}};
+    next.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
+    told.get_future().wait();
+    const auto ended = RunFile::open_read_only(data.ended_file_of("w", {1, 2}));
+    ASSERT_TRUE(ended) << to_text(ended.error());
+    EXPECT_TRUE((*ended)->end_mark()->value().ended);
+    EXPECT_EQ((*ended)->end_mark()->value().tick, 70u);
+    EXPECT_EQ((*ended)->journal()->size(), 1u);
+    const auto present = RunFile::open_read_only(data.file_of("w"));
+    ASSERT_TRUE(present);
+    EXPECT_EQ((*present)->identity().seed.value, 2u);
+}
+
+TEST_F(StorageThreadTest, WhatWaitsIsAsOldAsItsOldest) {
+    fail_operation(1, Failure::Full);
+    {
+        StorageThread thread{{.vfs = failing_disk()}, 1h};
+        RecordedRun run{data, thread};
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
+        const auto since = thread.waiting_since();
+        ASSERT_TRUE(since);
+        EXPECT_LE(*since, std::chrono::steady_clock::now());
+        const std::size_t bytes = thread.waiting_bytes();
+        run.command(set_parameter("food_health", 1.0));
+        EXPECT_EQ(thread.waiting_since(), since);
+        EXPECT_GT(thread.waiting_bytes(), bytes);
+    }
+    fail_operation(0, Failure::Full);
+}
+
+TEST_F(StorageThreadTest, AFileWithoutANameIsTroubleUntilItIsMovedBack) {
+    StorageThread thread{{}, 1ms};
+    RecordedRun run{data, thread};
+    std::atomic<int> told = 0;
+    double value = 0;
+    const auto command = [&] { run.command(set_parameter("food_health", ++value), [&] { ++told; }); };
+    const std::string path = data.file_of("w"), away = path + ".away";
+    command();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    for (const bool another : {false, true}) {
+        std::filesystem::rename(path, away);
+        if (another) {
+            std::ofstream{path} << "somebody else's";
+        }
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }, // it looks once a second
+                               [&] {
+                                   command();
+                                   std::this_thread::sleep_for(10ms);
+                               }));
+        EXPECT_THAT(*thread.trouble(),
+                    testing::HasSubstr(path + (another ? " is another file than the one that is written"
+                                                       : " has been moved or deleted")));
+        const int at_trouble = told;
+        command();
+        std::this_thread::sleep_for(20ms);
+        EXPECT_EQ(told, at_trouble) << "nobody is told of what has no name";
+        std::filesystem::rename(away, path);
+        ASSERT_TRUE(wait_until([&] { return told >= static_cast<int>(value) && !thread.trouble(); }));
+    }
+    EXPECT_EQ((*RunFile::open_read_only(path))->journal()->size(), static_cast<std::size_t>(value));
+}
+
+TEST_F(StorageThreadTest, SaysAtItsEndWhatItCouldNotWrite) {
+    std::promise<void> told;
+    testing::internal::CaptureStdout();
+    {
+        StorageThread thread{{.vfs = failing_disk()}, 1h};
+        RecordedRun run{data, thread};
+        run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
+        told.get_future().wait();
+        fail_operation(1, Failure::Gone); // and all after it
+        bool late = false;
+        run.command(set_parameter("food_health", 2.0), [&] { late = true; });
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
+        run.command(set_parameter("food_health", 3.0), [&] { late = true; });
+        EXPECT_FALSE(late);
+    }
+    fail_operation(0, Failure::Gone);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said,
+                testing::ContainsRegex("world \"w\": [0-9]+ bytes could not be written: the ends of 0 generations, 2 "
+                                       "commands, and where it stood last. " +
+                                       data.file_of("w") + " has all that was answered"));
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->journal()->size(), 1u);
+}
+
+TEST_F(StorageThreadTest, NothingWaitsOnceAllIsWritten) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    std::promise<void> told;
+    run.command(set_parameter("food_health", 1.0), [&] { told.set_value(); });
+    told.get_future().wait();
+    ASSERT_TRUE(wait_until([&] { return !thread.waiting_since(); }));
+    EXPECT_EQ(thread.waiting_bytes(), 0u);
+}
+
+TEST_F(StorageThreadTest, ResetsOneAfterAnotherEachEndTheRunBefore) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    std::promise<void> told;
+    for (std::uint64_t number = 1; number <= 5; ++number) {
+        run.advance(10 * number);
+        run.reset({number}, {0, number}, [&, number] {
+            if (number == 5) {
+                told.set_value();
+            }
+        });
+    }
+    told.get_future().wait();
+    const auto files = data.files();
+    EXPECT_TRUE(files->replaced.empty());
+    EXPECT_EQ(files->ended.size(), 5u);
+    for (std::uint64_t number = 0; number < 5; ++number) {
+        const simulation::RunId run_id = number == 0 ? simulation::RunId{1, 2} : simulation::RunId{0, number};
+        const auto ended = RunFile::open_read_only(data.ended_file_of("w", run_id));
+        ASSERT_TRUE(ended) << to_text(ended.error());
+        EXPECT_EQ((*ended)->end_mark()->value().tick, 10 * (number + 1));
+        EXPECT_TRUE((*ended)->check());
+    }
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->identity().seed.value, 5u);
+}
+
+TEST_F(StorageThreadTest, WhatSomebodyWaitsForIsThereBeforeACheckpointIsPacked) {
+    StorageThread thread{{}};
+    RecordedRun run{data, thread};
+    std::promise<void> at_work, go_on, told;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        at_work.set_value();
+        go_on.get_future().wait();
+    });
+    at_work.get_future().wait();
+    run.advance(70);
+    run.checkpoint();
+    std::size_t commands = 0, checkpoints = 1;
+    run.command(set_parameter("food_health", 2.0), [&] {
+        const auto file = RunFile::open_read_only(data.file_of("w"));
+        commands = (*file)->journal()->size();
+        checkpoints = (*file)->checkpoints(0, 70)->size();
+        told.set_value();
+    });
+    go_on.set_value();
+    told.get_future().wait();
+    EXPECT_EQ(commands, 2u);
+    EXPECT_EQ(checkpoints, 0u);
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    EXPECT_EQ((*RunFile::open_read_only(data.file_of("w")))->checkpoints(0, 70)->size(), 1u);
+}
+
+/// Of checkpoints that are there, and of such as are not, or not whole.
+struct PartCount {
+    std::int64_t of_whole = 0, of_none = 0;
+};
+PartCount parts_in(const std::string& path) {
+    Database file{path, Database::Mode::Read};
+    const std::string parts = "SELECT count(*) FROM checkpoint_part WHERE tick ";
+    const PartCount count{file.number((parts + "IN (SELECT tick FROM checkpoint)").c_str()),
+                          file.number((parts + "NOT IN (SELECT tick FROM checkpoint)").c_str())};
+    EXPECT_FALSE(file.failed()) << file.error();
+    return count;
+}
+
+TEST_F(StorageThreadTest, ACommandComesBetweenThePartsOfACheckpoint) {
+    StorageThread thread{{.vfs = failing_disk(), .part_bytes = 64}};
+    RecordedRun run{data, thread};
+    run.advance(70);
+    run.checkpoint();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    const std::int64_t parts = parts_in(data.file_of("w")).of_whole;
+    ASSERT_GT(parts, 20);
+
+    run.advance(70);
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    std::promise<void> written_to, go_on, told;
+    call_before_operation(40, [&] { // a part takes several: pages and a sync
+        written_to.set_value();
+        go_on.get_future().wait();
+    });
+    run.checkpoint();
+    written_to.get_future().wait();
+    PartCount when_told;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        when_told = parts_in(data.file_of("w"));
+        told.set_value();
+    });
+    go_on.set_value();
+    told.get_future().wait();
+    EXPECT_EQ(when_told.of_whole, parts);
+    EXPECT_GT(when_told.of_none, 0);
+    EXPECT_LT(when_told.of_none, parts / 2);
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->checkpoints(0, 140)->size(), 2u);
+    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
+}
+
+TEST_F(StorageThreadTest, OfCheckpointsThatAreKeptNoMoreNothingStays) {
+    StorageThread thread{{.part_bytes = 256}};
+    RecordedRun run{data, thread};
+    for (int count = 0; count < 6; ++count) {
+        run.advance(30);
+        run.checkpoint();
+        ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+        EXPECT_EQ(parts_in(data.file_of("w")).of_none, 0);
+    }
+    EXPECT_GT(parts_in(data.file_of("w")).of_whole, 3 * 2);
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->checkpoints(0, 180)->size(), 3u);
+    EXPECT_TRUE((*file)->check());
+}
+
+TEST_F(StorageThreadTest, ACheckpointThatIsNotWrittenWhenItsRunEndsIsLeftOut) {
+    StorageThread thread{{.part_bytes = 256}};
+    RecordedRun run{data, thread};
+    std::promise<void> at_work, go_on, told;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        at_work.set_value();
+        go_on.get_future().wait();
+    });
+    at_work.get_future().wait();
+    run.advance(70);
+    run.checkpoint();
+    run.reset({2}, {3, 4}, [&] { told.set_value(); });
+    go_on.set_value();
+    told.get_future().wait();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    const std::string path = data.ended_file_of("w", {1, 2});
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->end_mark()->value().tick, 70u);
+    EXPECT_TRUE((*file)->checkpoints(0, 70)->empty());
+    EXPECT_TRUE((*file)->check());
+    EXPECT_EQ(parts_in(path).of_none, 0);
+}
+
+TEST_F(StorageThreadTest, ALongLogIsCopiedIntoItsFile) {
+    StorageThread thread{{.log_pages_max = 16}};
+    RecordedRun run{data, thread};
+    const auto command = [&](double value) {
+        std::promise<void> told;
+        run.command(set_parameter("food_health", value), [&] { told.set_value(); });
+        told.get_future().wait();
+    };
+    command(0);
+    const auto bytes = std::filesystem::file_size(data.file_of("w"));
+    for (int number = 1; number <= 100; ++number) {
+        command(number);
+    }
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    EXPECT_GT(std::filesystem::file_size(data.file_of("w")), bytes);
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->journal()->size(), 101u);
+    EXPECT_TRUE((*file)->check());
+}
+
+std::vector<std::uint64_t> ticks_of_checkpoints(RunFile& file) {
+    std::vector<std::uint64_t> ticks;
+    for (const StoredCheckpoint& checkpoint : *file.checkpoints(0, file.contents().tick)) {
+        ticks.push_back(checkpoint.moment.tick);
+    }
+    return ticks;
+}
+
+TEST_F(StorageThreadTest, ACheckpointWhoseGenerationIsNotHeldAnyMoreIsNotWritten) {
+    StorageThread thread{{.keep_every = 5}};
+    RecordedRun run{data, thread};
+    const auto in_generation = [&](std::uint64_t generation) {
+        while (run.world().moment().generation < generation) {
+            run.advance(1);
+        }
+    };
+    in_generation(2);
+    std::promise<void> at_work, go_on;
+    run.command(set_parameter("food_health", 1.0), [&] {
+        at_work.set_value();
+        go_on.get_future().wait();
+    });
+    at_work.get_future().wait();
+    run.checkpoint();
+    in_generation(3);
+    go_on.set_value();
+    ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+    const auto file = RunFile::open_read_only(data.file_of("w"));
+    EXPECT_EQ((*file)->last_generation(), 3u);
+    EXPECT_TRUE(ticks_of_checkpoints(**file).empty());
+    EXPECT_TRUE((*file)->check());
+}
+
+/// Runs of some commits, with checkpoints. In each run one operation of the disk fails, until a run has too few operations
+/// for one to fail. Every day only each eighth operation fails: all of them take two minutes.
+class FailingDisk : public StorageThreadTest, public testing::WithParamInterface<Failure> {};
+
+TEST_P(FailingDisk, NothingIsToldBeforeItIsWrittenAndAllIsWrittenInTheEnd) {
+    const std::uint64_t stride = everyday_size("FAILING_STRIDE", 8);
+    std::uint64_t operation = 0;
+    do {
+        operation += stride;
+        ASSERT_LT(operation, 10'000u);
+        folder.clear();
+        fail_operation(operation, GetParam());
+        base::StateHash ended_hash, hash;
+        std::atomic<int> told = 0;
+        {
+            StorageThread thread{
+                {.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700, .log_pages_max = 32}, 1ms};
+            RecordedRun run{data, thread};
+            for (int round = 0; round < 4; ++round) {
+                std::promise<void> durable;
+                run.command(set_parameter("food_health", 1.0 * round), [&] {
+                    ++told;
+                    durable.set_value();
+                });
+                ASSERT_TRUE(wait_until_ready(durable.get_future())) << "operation " << operation;
+                run.advance(70);
+                run.checkpoint();
+                ended_hash = run.world().hash();
+            }
+            ASSERT_TRUE(wait_until([&] { return thread.idle(); })); // or the last checkpoint would be left out
+            std::promise<void> begun_again;
+            run.reset({9}, {3, 4}, [&] {
+                ++told;
+                begun_again.set_value();
+            });
+            ASSERT_TRUE(wait_until_ready(begun_again.get_future())) << "operation " << operation;
+            run.advance(70);
+            run.checkpoint();
+            run.recorder().close_all(run.laboratory());
+            hash = run.world().hash();
+            // The end is waited for too: a thread that stops gives up what cannot be written.
+            ASSERT_TRUE(wait_until([&] { return thread.idle(); }));
+        }
+        EXPECT_EQ(told, 5);
+        const auto expect_whole = [&](const std::string& path, std::size_t commands,
+                                      const std::vector<std::uint64_t>& checkpoints, const base::StateHash& last) {
+            const auto file = RunFile::open_read_only(path);
+            ASSERT_TRUE(file) << "operation " << operation << ": " << to_text(file.error());
+            const auto checked = (*file)->check();
+            ASSERT_TRUE(checked) << "operation " << operation << ": " << to_text(checked.error());
+            EXPECT_EQ(parts_in(path).of_none, 0) << "operation " << operation;
+            EXPECT_EQ((*file)->journal()->size(), commands);
+            EXPECT_EQ(ticks_of_checkpoints(**file), checkpoints) << "operation " << operation;
+            const auto recovered = recover(**file, executor);
+            ASSERT_TRUE(recovered) << to_text(recovered.error());
+            EXPECT_EQ(recovered->world.moment().tick, checkpoints.back());
+            EXPECT_EQ(recovered->world.hash(), last);
+        };
+        expect_whole(data.ended_file_of("w", {1, 2}), 4, {140, 210, 280}, ended_hash);
+        expect_whole(data.file_of("w"), 1, {70}, hash);
+    } while (has_failed());
+    EXPECT_GT(operation, 10u);
+    fail_operation(0, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FailingDisk, testing::Values(Failure::InputOutput, Failure::Full, Failure::Torn),
+                         testing::PrintToStringParamName());
+
+/// As if a server had been killed right before each of its operations of the disk in turn.
+TEST_F(StorageThreadTest, KilledBeforeAnyOfItsWritesAServerFindsAllThatWasToldAndNoMore) {
+    const std::uint64_t stride =
+        std::max<std::uint64_t>(1, everyday_size("FAILING_STRIDE", 8) / 8); // a kill takes 30 ms
+    std::uint64_t operation = 0;
+    int half_written = 0;
+    { DataFolder taken = std::move(data); }
+    do {
+        operation += stride;
+        ASSERT_LT(operation, 10'000u);
+        SCOPED_TRACE("killed before operation " + std::to_string(operation));
+        folder.clear();
+        fail_operation(operation, Failure::Gone);
+        std::vector<base::StateHash> hashes; // of the origin, by tick
+        std::atomic<std::uint64_t> told = 0;
+        std::uint64_t asked = 0;
+        {
+            auto own = DataFolder::open(folder.path());
+            StorageThread thread{{.durability = Durability::Full, .vfs = failing_disk(), .part_bytes = 700}, 1ms};
+            RecordedRun run{*own, thread};
+            const auto tells = [&] {
+                ++asked;
+                return [&] { ++told; };
+            };
+            const auto wait = [&] {
+                EXPECT_TRUE(wait_until([&] { return told == asked || thread.trouble(); }));
+                return !thread.trouble();
+            };
+            const auto advance = [&] {
+                for (int tick = 0; tick < 70; ++tick) {
+                    hashes.push_back(run.world().hash());
+                    run.advance(1);
+                }
+                run.checkpoint();
+            };
+            for (int round = 0; round < 4; ++round) {
+                run.command(set_parameter("food_health", 1.0 * round), tells());
+                if (!wait()) {
+                    break;
+                }
+                advance(); // the checkpoint is written with the next command
+                if (round == 3) {
+                    run.fork({5, 6}, tells());
+                }
+            }
+            hashes.push_back(run.world().hash());
+            (void)wait();
+        }
+        // What has a world's name says what it is without its log too.
+        for (const std::string world : {"w", "fork"}) {
+            if (const std::string path = folder.path() + "/" + world + ".evod"; std::filesystem::exists(path)) {
+                std::string head(72, '\0');
+                std::ifstream{path, std::ios::binary}.read(head.data(), std::ssize(head));
+                EXPECT_EQ(head.substr(68), "EVOD") << path;
+            }
+        }
+        const std::string path = folder.path() + "/w.evod";
+        if (std::filesystem::exists(path)) {
+            half_written += parts_in(path).of_none > 0;
+        }
+        const auto archive = Archive::open(folder.path(), {}, executor);
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
+            EXPECT_EQ(file.path().string().find("-next"), std::string::npos) << file.path();
+        }
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        for (const auto& entry : laboratory.entries()) {
+            const std::uint64_t tick = entry->world.moment().tick;
+            ASSERT_LT(tick, hashes.size());
+            EXPECT_EQ(entry->world.hash(), hashes[tick]) << entry->name << " at tick " << tick;
+        }
+        // What was told is there; the one command that nobody was told of may be, whole, or not.
+        const std::size_t there = (*archive)->take_answers().size();
+        EXPECT_GE(there, told);
+        EXPECT_LE(there, asked);
+        EXPECT_EQ(static_cast<bool>(laboratory.find("fork")), there == 5);
+        EXPECT_TRUE(told == 0 || laboratory.find("w"));
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+        if (std::filesystem::exists(path)) {
+            EXPECT_EQ(parts_in(path).of_none, 0);
+        }
+    } while (has_failed());
+    EXPECT_GT(operation, 10u);
+    EXPECT_GT(half_written, 0);
+    fail_operation(0, Failure::Gone);
+}
+
+} // namespace
+} // namespace evod::recording

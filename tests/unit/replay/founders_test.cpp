@@ -1,0 +1,125 @@
+// Founders in run files: families are told apart in worlds that are made again from their file, whatever the way.
+#include "server/replay/lineage.h"
+#include "server/replay/recovery.h"
+#include "server/replay/rerun.h"
+#include "tests/support/older_run_file.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace evod::replay {
+namespace {
+
+using namespace run_file;
+using namespace recording;
+
+using testing::HasSubstr;
+
+class FoundersTest : public testing::Test {
+  protected:
+    /// Six generations and a half on two islands with migrants between them; every other pair is crossed.
+    void record(std::uint64_t keep_every, bool shuffled = false) {
+        StorageThread thread{{.keep_every = keep_every}};
+        RecordedRun run{data, thread};
+        run.command(set_parameter("shuffle_fitness", shuffled));
+        run.command(set_parameter("crossover_chance", 0.5));
+        for (int tick = 0; tick < 780; ++tick) {
+            run.advance(1);
+            founders.resize(run.world().moment().generation);
+            founders.back() = run.world().founders();
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    std::string path() const { return data.file_of("w"); }
+
+    TemporaryFolder folder;
+    DataFolder data = *DataFolder::open(folder.path());
+    base::InlineExecutor executor;
+    std::vector<simulation::Founders> founders; // of each generation; before somebody left for another island
+};
+
+/// The lineage follows migrants with the fitness that they were chosen by.
+TEST_F(FoundersTest, AreWhereTheLineageOfFirstParentsLeads) {
+    for (const bool shuffled : {false, true}) {
+        folder.clear();
+        founders.clear();
+        record(1, shuffled);
+        const auto file = RunFile::open_read_only(path());
+        simulation::Founders led_to;
+        const auto followed =
+            each_generation(**file, executor, {}, [&](std::uint64_t generation, const auto& families) {
+                simulation::Founders next(families.size());
+                for (std::uint32_t i = 0; i < families.size(); ++i) {
+                    for (std::uint32_t organism = 0; organism < families[i].organism_count; ++organism) {
+                        const bool initial = families[i].initial;
+                        next[i].push_back(initial ? i * families[i].organism_count + organism
+                                                  : led_to[families[i].parents[organism][0].island]
+                                                          [families[i].parents[organism][0].organism]);
+                    }
+                }
+                led_to = std::move(next);
+                EXPECT_EQ(led_to, founders[generation - 1]) << "generation " << generation << ", shuffled " << shuffled;
+                return true;
+            });
+        EXPECT_TRUE(followed);
+    }
+}
+
+TEST_F(FoundersTest, AreKnownAfterARestartAndInThePast) {
+    for (const std::uint64_t keep_every : {1u, 3u}) {
+        record(keep_every);
+        ASSERT_EQ(founders.size(), 7u);
+        EXPECT_TRUE(std::ranges::any_of(founders, [](const simulation::Founders& islands) {
+            return std::ranges::any_of(islands[0], [](std::uint32_t founder) { return founder >= 12; });
+        })) << "nobody came from the other island";
+        const auto file = RunFile::open_read_only(path());
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+        EXPECT_EQ(recover(**file, executor)->world.founders(), founders.back());
+        for (std::uint64_t generation = 1; generation <= 7; ++generation) {
+            const auto there = Rerun::at(**file, generation, executor);
+            ASSERT_TRUE(there) << to_text(there.error());
+            EXPECT_EQ(there->world().founders(), founders[generation - 1]) << generation;
+        }
+        folder.clear();
+    }
+}
+
+TEST_F(FoundersTest, OfAFileOfAFormatBeforeThereWereAnyNobodyKnows) {
+    record(1);
+    change(path(), support::as_of_format(2));
+    {
+        const auto file = RunFile::open_read_only(path());
+        ASSERT_TRUE(file) << to_text(file.error());
+        EXPECT_TRUE((*file)->check());
+        EXPECT_TRUE(recover(**file, executor)->world.founders().empty());
+    }
+    const auto file = RunFile::open(path(), {});
+    auto recovered = recover(**file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    simulation::World& world = recovered->world;
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+    }
+    (*file)->begin();
+    (*file)->write(end_of(world));
+    world.turn_over(executor);
+    (*file)->write(beginning_of(world));
+    ASSERT_TRUE((*file)->commit());
+    const auto checked = (*file)->check();
+    EXPECT_TRUE(checked) << to_text(checked.error());
+    EXPECT_TRUE((*(*file)->beginning_of(8))->founders.empty());
+    EXPECT_EQ(Rerun::at(**file, 1, executor)->world().founders(), founders.front());
+}
+
+TEST_F(FoundersTest, ThatAreMissingAreNamed) {
+    record(1);
+    change(path(), "DELETE FROM founders WHERE generation = 5 AND island = 1");
+    const auto file = RunFile::open_read_only(path());
+    EXPECT_THAT(to_text((*file)->check().error()), HasSubstr("the founders of generation 5"));
+}
+
+} // namespace
+} // namespace evod::replay

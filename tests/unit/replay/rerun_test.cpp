@@ -1,0 +1,183 @@
+#include "server/replay/recovery.h"
+#include "server/replay/rerun.h"
+
+#include "tests/support/thread_executor.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+namespace evod::replay {
+namespace {
+
+using namespace run_file;
+using namespace recording;
+
+using testing::HasSubstr;
+
+class RerunTest : public testing::Test {
+  protected:
+    RerunTest() : data{*DataFolder::open(folder.path())} {}
+
+    /// What a machine that stops now leaves: everything handed over, no end mark.
+    std::unique_ptr<RunFile> file_left() {
+        thread.reset();
+        auto file = RunFile::open(data.file_of("w"), {});
+        EXPECT_TRUE(file) << to_text(file.error());
+        return *std::move(file);
+    }
+
+    TemporaryFolder folder;
+    DataFolder data;
+    std::unique_ptr<StorageThread> thread = std::make_unique<StorageThread>(RunFile::Options{});
+    base::InlineExecutor executor;
+    support::ThreadExecutor three_threads{3};
+};
+
+TEST_F(RerunTest, AWorldGoesOnAsIfItHadNeverStopped) {
+    std::mt19937 random{1};
+    for (int round = 0; round < 30; ++round) {
+        folder.clear();
+        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        RecordedRun run{data, *thread};
+        run.advance(random() % 200);
+        run.command(set_parameter("mutation_chance", 0.3));
+        if (round % 2 == 1) {
+            run.command(set_parameter("shuffle_fitness", true));
+        }
+        run.advance(random() % 200);
+        run.command(set_parameter("food_health", 3.0));
+        run.command(set_parameter("population_size", 17u)); // from the next generation on
+        run.advance(random() % 300);
+        run.command(set_parameter("food_health", 4.0)); // so that this is the last moment the file tells of
+
+        const auto file = file_left();
+        auto recovered = recover(*file, three_threads);
+        ASSERT_TRUE(recovered) << to_text(recovered.error());
+        simulation::World& again = recovered->world;
+        EXPECT_EQ(again.moment().tick, run.world().moment().tick);
+        EXPECT_EQ(again.moment().simulated_s, run.world().moment().simulated_s);
+        EXPECT_EQ(again.hash(), run.world().hash());
+        EXPECT_EQ(again.parameters().revision, run.world().parameters().revision);
+        EXPECT_TRUE(again.parameters().requested == run.world().parameters().requested);
+        EXPECT_EQ(again.history().size(), run.world().history().size());
+        for (int tick = 0; tick < 300; ++tick) {
+            again.advance_tick(three_threads);
+            run.world().advance_tick(executor);
+            ASSERT_EQ(again.hash(), run.world().hash());
+        }
+    }
+}
+
+TEST_F(RerunTest, ComesBackAtTheEndOfAGeneration) {
+    RecordedRun run{data, *thread};
+    run.advance(240); // two generations to a tick
+    ASSERT_TRUE(run.world().generation_over());
+    const auto file = file_left();
+    const auto recovered = recover(*file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    EXPECT_TRUE(recovered->world.generation_over());
+    EXPECT_EQ(recovered->world.hash(), run.world().hash());
+    EXPECT_EQ(recovered->world.history().size(), 2u);
+}
+
+TEST_F(RerunTest, AClosedRunComesBackAtItsLastTick) {
+    RecordedRun run{data, *thread};
+    run.advance(101); // between two stored hashes
+    run.recorder().close_all(run.laboratory());
+    const auto file = file_left();
+    const auto recovered = recover(*file, executor);
+    ASSERT_TRUE(recovered) << to_text(recovered.error());
+    EXPECT_EQ(recovered->world.moment().tick, 101u);
+    EXPECT_EQ(recovered->world.hash(), run.world().hash());
+}
+
+TEST_F(RerunTest, RunControlIsThatOfTheLastCommandLessTheGoalsReached) {
+    const auto control_after = [&](std::uint64_t ticks, auto... requests) {
+        folder.clear();
+        thread = std::make_unique<StorageThread>(RunFile::Options{});
+        RecordedRun run{data, *thread};
+        (run.command(requests), ...);
+        run.advance(ticks);
+        const auto file = file_left();
+        return recover(*file, executor)->control;
+    };
+    v1::Request endless, two_generations, until_tick, release, pause, speed;
+    release.mutable_release_lease();
+    endless.mutable_run();
+    two_generations.mutable_run()->set_generations(2);
+    until_tick.mutable_run_until_tick()->set_tick(120);
+    pause.mutable_pause();
+    speed.mutable_set_speed()->mutable_speed()->set_max(true);
+
+    simulation::RunControl control = control_after(60, endless, speed);
+    EXPECT_TRUE(control.endless && !control.paused && !control.speed);
+    control = control_after(60, endless, pause);
+    EXPECT_TRUE(control.endless && control.paused);
+    control = control_after(180, two_generations);
+    EXPECT_EQ(control.until_generation, 2u);
+    control = control_after(240, two_generations);
+    EXPECT_FALSE(control.until_generation);
+    control = control_after(60, until_tick);
+    EXPECT_EQ(control.until_tick, 120u);
+    control = control_after(120, until_tick);
+    EXPECT_TRUE(!control.until_tick && control.paused && !control.leased);
+    control = control_after(120, endless, until_tick);
+    EXPECT_TRUE(control.endless && control.paused && control.leased);
+    control = control_after(180, endless, until_tick, release);
+    EXPECT_TRUE(control.endless && !control.paused && !control.leased);
+}
+
+TEST_F(RerunTest, EveryGenerationCanBeBegunAgain) {
+    RecordedRun run{data, *thread};
+    std::vector<base::StateHash> hashes{run.world().hash()};
+    for (int tick = 0; tick < 600; ++tick) {
+        if (tick % 130 == 50) {
+            run.command(set_parameter("mutation_chance", 0.1 + tick * 1e-3));
+        }
+        run.advance(1);
+        hashes.push_back(run.world().hash());
+    }
+    const auto file = file_left();
+    for (std::uint64_t generation = 1; generation <= 5; ++generation) {
+        auto rerun = Rerun::at(*file, generation, executor);
+        ASSERT_TRUE(rerun) << to_text(rerun.error());
+        EXPECT_EQ(rerun->world().moment().generation, generation);
+        while (rerun->world().moment().tick < 600) {
+            rerun->advance_tick(executor);
+            ASSERT_EQ(rerun->world().hash(), hashes[rerun->world().moment().tick]);
+        }
+    }
+    EXPECT_EQ(Rerun::at(*file, 6, executor).error().code, base::RefusalCode::NotFound);
+}
+
+TEST_F(RerunTest, AnotherStateHashThanTheStoredOneIsNamed) {
+    {
+        RecordedRun run{data, *thread};
+        run.advance(200);
+    }
+    const auto file = file_left();
+    file->begin();
+    file->write(HashLink{180, {1, 2}});
+    ASSERT_TRUE(file->commit());
+    const auto refused = recover(*file, executor).error();
+    EXPECT_EQ(refused.code, base::RefusalCode::DataLoss);
+    EXPECT_THAT(refused.message, HasSubstr("tick 180"));
+}
+
+TEST_F(RerunTest, ARunOfAnotherModelIsReadButNotSimulated) {
+    const std::string path = folder.path() + "/old.evod";
+    RunIdentity identity{.name = "old", .run_id = {}, .seed = {}, .parameters = {}};
+    identity.model_version = simulation::model_version - 1;
+    identity.evod_version = "0.0.9";
+    ASSERT_TRUE(RunFile::create(path, identity, {}));
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file);
+    const auto refused = recover(**file, executor).error();
+    EXPECT_EQ(refused.code, base::RefusalCode::FailedPrecondition);
+    EXPECT_THAT(refused.message, HasSubstr("evod 0.0.9"));
+}
+
+} // namespace
+} // namespace evod::replay

@@ -1,0 +1,105 @@
+// Run tables of files that another model made, and that do not hold every generation.
+#include "server/base/inline_executor.h"
+#include "server/replay/run_tables.h"
+#include "tests/unit/recording/recorded_run.h"
+#include "tests/unit/replay/other_model.h"
+
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+namespace evod::replay {
+namespace {
+
+using namespace run_file;
+using namespace recording;
+
+using base::RefusalCode;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class OtherModel : public testing::Test {
+  protected:
+    void record(const parameters::Parameters& parameters) {
+        file = replay::record_other_model(folder.path() + "/w.evod", parameters);
+    }
+    base::Result<void> write(const WantedTable& wanted) {
+        std::ostringstream text;
+        const auto written = write_table({*file, executor}, wanted, text);
+        lines.clear();
+        std::istringstream rows{text.str()};
+        for (std::string line; std::getline(rows, line);) {
+            lines.push_back(line);
+        }
+        return written;
+    }
+    /// Of every row of a table, in order, each once.
+    std::vector<std::string> generations() const {
+        std::vector<std::string> found;
+        for (std::size_t i = 1; i < lines.size(); ++i) {
+            if (const std::string generation = lines[i].substr(0, lines[i].find(','));
+                found.empty() || found.back() != generation) {
+                found.push_back(generation);
+            }
+        }
+        return found;
+    }
+    std::string row_of(const std::string& organism) const {
+        for (const std::string& line : lines) {
+            if (line.starts_with(organism + ",")) {
+                return line;
+            }
+        }
+        return "none";
+    }
+
+    recording::TemporaryFolder folder;
+    base::InlineExecutor executor;
+    std::unique_ptr<run_file::RunFile> file;
+    std::vector<std::string> lines;
+};
+
+TEST_F(OtherModel, LineageLeavesOutWhatIsNotHeldAndWhatNobodyKnows) {
+    parameters::Parameters parameters = recording::small_world();
+    parameters.migration = evolution::Topology::None;
+    record(parameters);
+    auto written = write({.table = RunTable::Lineage});
+    ASSERT_TRUE(written) << to_text(written.error());
+    EXPECT_THAT(generations(), ElementsAre("1", "4", "7", "8"));
+    EXPECT_EQ(generations_out_of_reach(*file), 4u);
+    EXPECT_THAT(row_of("4,0,11"), HasSubstr("4,0,11,,,,,,,")) << "its parents are in a generation that is not held";
+    EXPECT_THAT(row_of("8,0,11"), HasSubstr("8,0,11,7,0,"));
+
+    written = write({.table = RunTable::Lineage, .of = OrganismName{8, 0, 11}});
+    ASSERT_TRUE(written) << to_text(written.error());
+    EXPECT_THAT(generations(), ElementsAre("8", "7"));
+}
+
+TEST_F(OtherModel, LineageDoesNotTellWhoBredWhereMigrantsMayHaveCome) {
+    parameters::Parameters parameters = recording::small_world();
+    parameters.migration_epoch = 1;
+    record(parameters);
+    const auto written = write({.table = RunTable::Lineage});
+    ASSERT_TRUE(written) << to_text(written.error());
+    EXPECT_THAT(generations(), ElementsAre("1", "4", "7", "8"));
+    EXPECT_THAT(row_of("8,0,11"), HasSubstr("8,0,11,,,,,,,"));
+    EXPECT_TRUE(row_of("7,0,11").ends_with(",,")) << row_of("7,0,11");
+}
+
+TEST_F(OtherModel, WhoAsksForWhatIsNotHeldIsToldTheNearestThatIs) {
+    record(recording::small_world());
+    for (const auto& [wanted, field] :
+         {std::pair{WantedTable{.table = RunTable::Population, .generation = 5}, "generation"},
+          std::pair{WantedTable{.table = RunTable::Lineage, .of = OrganismName{5, 0, 0}}, "of.generation"}}) {
+        const auto refused = write(wanted).error();
+        EXPECT_EQ(refused.code, RefusalCode::FailedPrecondition);
+        ASSERT_EQ(refused.violations.size(), 1u) << to_text(refused);
+        EXPECT_EQ(refused.violations[0].field, field);
+        EXPECT_THAT(refused.violations[0].allowed, HasSubstr("4 and 7"));
+    }
+    EXPECT_TRUE(write({.table = RunTable::Population, .generation = 4}));
+    EXPECT_TRUE(write({.table = RunTable::Population}));
+}
+
+} // namespace
+} // namespace evod::replay

@@ -1,0 +1,317 @@
+#include "server/run_file/data_folder.h"
+
+#include "server/replay/archive.h"
+#include "server/replay/past.h"
+#include "tests/support/waiting.h"
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+namespace evod::run_file {
+namespace {
+
+using namespace recording;
+using namespace replay;
+
+using testing::HasSubstr;
+
+TEST(DataFolder, KeepsASecondServerOut) {
+    TemporaryFolder folder;
+    {
+        const auto first = DataFolder::open(folder.path() + "/new/folder");
+        ASSERT_TRUE(first) << to_text(first.error());
+        const auto second = DataFolder::open(folder.path() + "/new/folder");
+        ASSERT_FALSE(second);
+        EXPECT_THAT(second.error().message, HasSubstr("another server is using it"));
+    }
+    EXPECT_TRUE(DataFolder::open(folder.path() + "/new/folder"));
+}
+
+TEST(DataFolder, IsRefusedWhereThereCanBeNone) {
+    TemporaryFolder folder;
+    std::ofstream{folder.path() + "/file"} << "text";
+    EXPECT_THAT(DataFolder::open(folder.path() + "/file").error().message, HasSubstr(folder.path() + "/file"));
+}
+
+TEST(DataFolder, TellsRunsOfWorldsFromEndedOnes) {
+    TemporaryFolder folder;
+    const auto data = DataFolder::open(folder.path());
+    const std::string ended = data->ended_file_of("b", {0xabc, 1});
+    for (const std::string& path : {data->file_of("b"), data->file_of("a"), ended, folder.path() + "/notes.txt",
+                                    folder.path() + "/no name.evod", data->file_of("a") + "-wal"}) {
+        std::ofstream{path} << "text";
+    }
+    const auto files = data->files();
+    ASSERT_TRUE(files);
+    EXPECT_THAT(files->of_worlds, testing::ElementsAre(data->file_of("a"), data->file_of("b")));
+    EXPECT_THAT(files->ended, testing::ElementsAre(ended));
+    EXPECT_THAT(files->strange, testing::ElementsAre(folder.path() + "/no name.evod"));
+}
+
+class ArchiveTest : public testing::Test {
+  protected:
+    void record(std::uint64_t ticks) {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.command(set_parameter("food_health", 2.0));
+        run.advance(ticks);
+        hash = run.world().hash();
+        run.recorder().close_all(run.laboratory());
+    }
+    auto open() { return Archive::open(folder.path(), {}, executor); }
+
+    TemporaryFolder folder;
+    base::InlineExecutor executor;
+    base::StateHash hash;
+};
+
+TEST_F(ArchiveTest, BringsAWorldBackAndGoesOnWritingIt) {
+    record(100);
+    for (const std::uint64_t tick : {100u, 190u, 280u}) { // the last moment of each time
+        const auto archive = open();
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        EXPECT_EQ((*archive)->take_answers().at(0).answer, "answer 1");
+        simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        simulation::Entry& entry = **laboratory.find("w");
+        EXPECT_EQ(entry.run_id, (simulation::RunId{1, 2}));
+        EXPECT_EQ(entry.world.moment().tick, tick);
+        EXPECT_EQ(entry.world.hash(), hash);
+        for (int i = 0; i < 90; ++i) {
+            laboratory.advance(entry, executor);
+            (*archive)->recorder().of("w")->follow(entry.world);
+        }
+        hash = entry.world.hash();
+        (*archive)->recorder().close_all(laboratory);
+        (*archive)->close();
+        const auto file = RunFile::open_read_only(folder.path() + "/w.evod");
+        const auto checked = (*file)->check();
+        EXPECT_TRUE(checked) << to_text(checked.error());
+    }
+}
+
+TEST_F(ArchiveTest, ADamagedFileIsNamedAndNothingIsStartedWithoutIt) {
+    record(200);
+    {
+        Database database{folder.path() + "/w.evod", Database::Mode::Write};
+        database.run("UPDATE journal SET tick = 1");
+    }
+    const auto archive = open();
+    ASSERT_FALSE(archive);
+    EXPECT_EQ(archive.error().code, base::RefusalCode::DataLoss);
+    EXPECT_THAT(archive.error().message, HasSubstr("w.evod is damaged"));
+    EXPECT_THAT(archive.error().message, HasSubstr("put a copy back, or move it"));
+    EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+}
+
+TEST_F(ArchiveTest, WhatIsNoFileOfThisServerIsRefusedWithTheWayOut) {
+    const std::string path = folder.path() + "/w.evod";
+    const auto expect_refused = [&](const std::string& why, const std::string& way_out) {
+        const auto archive = open();
+        ASSERT_FALSE(archive);
+        EXPECT_THAT(archive.error().message, testing::StartsWith(path + why));
+        EXPECT_THAT(archive.error().message, HasSubstr(way_out));
+        EXPECT_THAT(archive.error().message, HasSubstr("out of " + folder.path()));
+    };
+    std::ofstream{path} << std::string(5000, 'x');
+    expect_refused(" is damaged, or no run file: ", "move it");
+    std::filesystem::remove(path);
+    Database{path, Database::Mode::Create}.run("CREATE TABLE songs (title TEXT)");
+    expect_refused(" is not a run file of evod; ", "move it");
+    std::filesystem::remove(path);
+    record(10);
+    Database{path, Database::Mode::Write}.run("PRAGMA user_version = 9");
+    expect_refused(" was written by a newer evod", "start the evod that made it, or move it");
+    std::filesystem::remove(path);
+    ASSERT_TRUE(RunFile::create(
+        path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}, .evod_version = "0.0.1", .model_version = 1},
+        {}));
+    expect_refused(" was made with evod 0.0.1", "`evod export`");
+}
+
+TEST_F(ArchiveTest, AFolderInThePlaceOfARunFileIsRefusedWithTheWayOut) {
+    std::filesystem::create_directory(folder.path() + "/w.evod");
+    EXPECT_THAT(open().error().message, HasSubstr("w.evod: this is a folder, not a run file; move it out of "));
+}
+
+TEST_F(ArchiveTest, AFileWithTwoNamesIsRefusedUnderEach) {
+    namespace fs = std::filesystem;
+    record(60);
+    const std::string path = folder.path() + "/w.evod", elsewhere = folder.path() + "/elsewhere.of";
+    fs::create_hard_link(path, elsewhere);
+    EXPECT_THAT(open().error().message, HasSubstr(path + " has another name, a hard link"));
+    fs::remove(path);
+    fs::create_symlink(elsewhere, path);
+    EXPECT_THAT(open().error().message, HasSubstr(path + " is a link"));
+    EXPECT_TRUE(RunFile::open_read_only(path)) << "it may be read";
+    fs::remove(path);
+    fs::rename(elsewhere, path);
+    EXPECT_TRUE(open());
+}
+
+TEST_F(ArchiveTest, AFileThatLostItsFirstStatisticsIsNamed) {
+    record(400);
+    Database database{folder.path() + "/w.evod", Database::Mode::Write};
+    ASSERT_GT(database.number("SELECT count(*) FROM statistics"), 1);
+    database.run("DELETE FROM statistics WHERE generation = 1");
+    EXPECT_THAT(open().error().message, HasSubstr("is damaged: the row 1 of its table statistics"));
+}
+
+TEST_F(ArchiveTest, AFileThatLostItsEndIsNamedToWhoLooksBack) {
+    record(400);
+    const std::string path = folder.path() + "/w.evod";
+    ASSERT_TRUE(Past::of_file(path));
+    Database{path, Database::Mode::Write}.run(
+        "DELETE FROM generation WHERE generation = (SELECT max(generation) FROM generation)");
+    EXPECT_THAT(Past::of_file(path).error().message, HasSubstr("end mark"));
+}
+
+TEST_F(ArchiveTest, AFileThatWasNeverFinishedBeingMadeIsNoWorldAndGone) {
+    const std::string next = DataFolder::next_file_of(folder.path() + "/w.evod");
+    { // as far as it is made before the first commit
+        const auto begun = RunFile::begin_new(next, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {});
+        ASSERT_TRUE(begun);
+        std::filesystem::copy_file(next, folder.path() + "/begun.evod-next");
+    }
+    for (const char* name : {"empty", "byte"}) {
+        std::ofstream{folder.path() + "/" + name + ".evod-next"} << (name == std::string{"byte"} ? "x" : "");
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_EQ((*archive)->identity_of("w"), nullptr);
+    for (const auto& file : std::filesystem::directory_iterator{folder.path()}) {
+        EXPECT_EQ(file.path().filename(), "lock");
+    }
+}
+
+TEST_F(ArchiveTest, AWorldIsMadeWholeOrNotAtAllWhereItsNameIsTaken) {
+    const std::string path = folder.path() + "/w.evod";
+    std::ofstream{path};
+    EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
+              base::RefusalCode::AlreadyExists);
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}, std::chrono::hours{1}};
+        const RecordedRun run{*data, thread};
+        ASSERT_TRUE(wait_until([&] { return thread.trouble().has_value(); }));
+        EXPECT_THAT(*thread.trouble(), HasSubstr(path + " is there already"));
+    }
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+}
+
+TEST_F(ArchiveTest, ARunThatHadItsEndMarkIsPutAside) {
+    record(100);
+    {
+        const auto file = RunFile::open(folder.path() + "/w.evod", {});
+        (*file)->begin();
+        EndMark mark = (*file)->contents();
+        mark.ended = true;
+        (*file)->write(mark);
+        ASSERT_TRUE((*file)->commit());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    EXPECT_FALSE((*archive)->holds_worlds());
+    EXPECT_TRUE(std::filesystem::exists(folder.path() + "/w." + to_text(simulation::RunId{1, 2}) + ".evod"));
+    const auto answers = (*archive)->take_answers();
+    ASSERT_EQ(answers.size(), 1u) << "its commands are not carried out again";
+    EXPECT_EQ(answers[0].answer, "answer 1");
+}
+
+TEST_F(ArchiveTest, TheAnswersOfARunThatWasResetAreRemembered) {
+    {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        for (std::uint64_t reset = 1; reset <= 3; ++reset) {
+            run.command(set_parameter("food_health", 2.0));
+            run.command(set_parameter("food_health", 3.0));
+            run.reset({9}, {3, reset});
+        }
+        run.recorder().close_all(run.laboratory());
+    }
+    const auto archive = open();
+    ASSERT_TRUE(archive) << to_text(archive.error());
+    std::vector<std::uint64_t> remembered;
+    for (const JournalEntry& entry : (*archive)->take_answers()) {
+        remembered.push_back(entry.origin.request_id);
+    }
+    EXPECT_THAT(remembered, testing::UnorderedElementsAre(1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u));
+    EXPECT_EQ(remembered.back(), 9u); // of the run that goes on
+}
+
+/// A world that was reset, as a crash can leave it.
+class Replacing : public ArchiveTest {
+  protected:
+    Replacing() : path{folder.path() + "/w.evod"}, next{DataFolder::next_file_of(path)} {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.advance(60); // the last that is told before its end mark
+        old_hash = run.world().hash();
+        run.reset({9}, {3, 4});
+        run.advance(50);
+        hash = run.world().hash();
+        ended = data->ended_file_of("w", {1, 2});
+        run.recorder().close_all(run.laboratory());
+    }
+    void expect_world(const base::StateHash& as) {
+        const auto archive = open();
+        ASSERT_TRUE(archive) << to_text(archive.error());
+        const simulation::Laboratory laboratory = (*archive)->take_laboratory();
+        ASSERT_EQ(laboratory.entries().size(), 1u);
+        EXPECT_EQ(laboratory.entries()[0]->world.hash(), as);
+        EXPECT_FALSE(std::filesystem::exists(next));
+    }
+    std::string path, next, ended;
+    base::StateHash old_hash;
+};
+
+TEST_F(Replacing, IsOver) {
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheNewRunHasNotItsNameYet) {
+    std::filesystem::rename(path, next);
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheOldRunHasItsEndMarkAndStillItsName) {
+    std::filesystem::rename(path, next);
+    std::filesystem::rename(ended, path);
+    expect_world(hash);
+    EXPECT_TRUE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, TheOldRunGoesOnWhileItHasNoEndMark) {
+    std::filesystem::rename(path, next);
+    std::filesystem::rename(ended, path);
+    {
+        Database database{path, Database::Mode::Write};
+        database.run("DELETE FROM end_mark");
+    }
+    expect_world(old_hash);
+    EXPECT_FALSE(std::filesystem::exists(ended));
+}
+
+TEST_F(Replacing, ANewRunThatIsNotWholeIsForgotten) {
+    std::filesystem::remove(path);
+    std::filesystem::rename(ended, path);
+    {
+        Database database{path, Database::Mode::Write};
+        database.run("DELETE FROM end_mark");
+    }
+    std::ofstream{next} << "half a file";
+    expect_world(old_hash);
+}
+
+} // namespace
+} // namespace evod::run_file

@@ -1,0 +1,257 @@
+#include "server/run_file/run_file.h"
+
+#include "tests/unit/recording/recorded_run.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace evod::run_file {
+namespace {
+
+using namespace recording;
+using namespace replay;
+
+using base::RefusalCode;
+using testing::HasSubstr;
+
+std::string content_of(const std::string& path) {
+    std::ifstream file{path, std::ios::binary};
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    return bytes.str();
+}
+
+void put(const std::string& path, std::string_view bytes) {
+    std::ofstream{path, std::ios::binary}.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+class RunFileTest : public testing::Test {
+  protected:
+    /// The file of a run of four generations and a half with changes, closed.
+    std::string recorded() {
+        auto data = DataFolder::open(folder.path());
+        StorageThread thread{{}};
+        RecordedRun run{*data, thread};
+        run.advance(130);
+        run.command(set_parameter("mutation_chance", 0.5));
+        run.advance(200);
+        run.checkpoint();
+        run.advance(210);
+        run.command(set_parameter("food_health", 7.0));
+        run.recorder().close_all(run.laboratory());
+        return data->file_of("w");
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(RunFileTest, WhatOthersPutIntoTheSchemaIsRefused) {
+    const std::string path = recorded(), sound = content_of(path);
+    const std::string endless = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT ";
+    const std::pair<const char*, std::string> additions[] = {
+        {"trigger \"forget\"",
+         "CREATE TRIGGER forget AFTER INSERT ON journal BEGIN DELETE FROM journal WHERE number = new.number; END"},
+        {"trigger \"ignore\"", "CREATE TRIGGER ignore BEFORE INSERT ON journal BEGIN SELECT raise(IGNORE); END"},
+        {"view \"founders\"", "DROP TABLE founders; CREATE VIEW founders AS " + endless +
+                                  "i AS generation, i AS island, x'' AS founders, i AS checksum FROM n"},
+        {"view \"run\"",
+         "DROP TABLE run; CREATE VIEW run AS " + endless + "i AS key, i AS value, i AS checksum FROM n"},
+        {"view \"other\"", "CREATE VIEW other AS SELECT 1"},
+        {"index \"quick\"", "CREATE INDEX quick ON journal (tick)"},
+        {"table \"songs\"", "CREATE TABLE songs (title TEXT)"},
+        {"table \"thinned\"", "DROP TABLE thinned; CREATE TABLE thinned (number INTEGER PRIMARY KEY, keep_every, "
+                              "until_generation, until_tick, checksum AS (number))"}};
+    for (const auto& [name, sql] : additions) {
+        put(path, sound);
+        change(path, sql);
+        for (const auto& refused : {RunFile::open_read_only(path), RunFile::open(path, {})}) {
+            ASSERT_FALSE(refused) << sql;
+            EXPECT_EQ(refused.error().code, RefusalCode::DataLoss);
+            EXPECT_THAT(refused.error().message, HasSubstr(path));
+            EXPECT_THAT(refused.error().message, HasSubstr(name));
+        }
+    }
+}
+
+TEST_F(RunFileTest, ATableThatIsMissingIsNamed) {
+    const std::string path = recorded();
+    change(path, "DROP TABLE outcome");
+    const auto refused = RunFile::open_read_only(path);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, RefusalCode::DataLoss);
+    EXPECT_THAT(refused.error().message, HasSubstr("it lacks the table \"outcome\""));
+}
+
+TEST_F(RunFileTest, GivesBackEverythingThatWasWritten) {
+    const RunIdentity identity{.name = "w",
+                               .run_id = {0x0123456789abcdef, 0xfedcba9876543210},
+                               .seed = {~std::uint64_t{0}},
+                               .parameters = small_world(),
+                               .began_unix_ms = 1234};
+    base::InlineExecutor executor;
+    simulation::World world{identity.parameters, identity.seed};
+    const GenerationBegun begun{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
+    while (!world.generation_over()) {
+        world.advance_tick(executor);
+    }
+    const GenerationEnded ended{
+        1,
+        {{world.fitness()[0], world.islands()[0].fate().lived_ticks, world.islands()[0].fate().cause},
+         {world.fitness()[1], world.islands()[1].fate().lived_ticks, world.islands()[1].fate().cause}},
+        world.history().back()};
+    world.turn_over(executor);
+    const GenerationBegun second{world.opening(), {world.islands()[0].born(), world.islands()[1].born()}};
+    const JournalEntry entry{
+        .number = 1,
+        .tick = 17,
+        .origin = {"ä \n client", "key", ~std::uint64_t{0}, std::string("\0\1\2", 3)},
+        .answer = std::string("\0\xff", 2),
+        .control = {
+            .endless = true, .until_generation = 3, .until_tick = std::nullopt, .paused = true, .speed = std::nullopt}};
+    const std::string path = folder.path() + "/run.evod";
+    {
+        const auto file = RunFile::create(path, identity, {});
+        ASSERT_TRUE(file) << to_text(file.error());
+        (*file)->begin();
+        (*file)->write(begun);
+        (*file)->write(entry);
+        (*file)->write(HashLink{60, {1, ~std::uint64_t{0}}});
+        (*file)->write(ended);
+        (*file)->write(second);
+        ASSERT_TRUE((*file)->commit());
+    }
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->identity().name, "w");
+    EXPECT_EQ((*file)->identity().run_id, identity.run_id);
+    EXPECT_EQ((*file)->identity().seed.value, identity.seed.value);
+    EXPECT_TRUE((*file)->identity().parameters == identity.parameters);
+    EXPECT_EQ((*file)->identity().began_unix_ms, 1234);
+    EXPECT_EQ((*file)->identity().build, build_text());
+    EXPECT_THAT(build_text(), HasSubstr(" for ")); // this processor
+    EXPECT_FALSE(*(*file)->end_mark());
+
+    const auto journal = *(*file)->journal();
+    ASSERT_EQ(journal.size(), 1u);
+    EXPECT_EQ(journal[0].tick, entry.tick);
+    EXPECT_EQ(journal[0].origin.client, entry.origin.client);
+    EXPECT_EQ(journal[0].origin.request_id, entry.origin.request_id);
+    EXPECT_EQ(journal[0].origin.request, entry.origin.request);
+    EXPECT_EQ(journal[0].answer, entry.answer);
+    EXPECT_EQ(journal[0].control.until_generation, 3u);
+    EXPECT_FALSE(journal[0].control.until_tick);
+    EXPECT_FALSE(journal[0].control.speed);
+    EXPECT_TRUE(journal[0].control.endless && journal[0].control.paused);
+
+    for (const auto& [generation, expected] : {std::pair{1u, &begun}, {2u, &second}}) {
+        const auto read = *(*file)->beginning_of(generation);
+        ASSERT_TRUE(read);
+        EXPECT_EQ(read->opening.moment.tick, expected->opening.moment.tick);
+        EXPECT_EQ(read->opening.moment.simulated_s, expected->opening.moment.simulated_s);
+        EXPECT_EQ(read->opening.progress, expected->opening.progress);
+        EXPECT_TRUE(read->opening.parameters.active == expected->opening.parameters.active);
+        ASSERT_EQ(read->born.size(), 2u);
+        for (std::size_t island = 0; island < 2; ++island) {
+            EXPECT_TRUE((read->born[island].genes == expected->born[island].genes).all());
+            EXPECT_EQ(read->born[island].parents, expected->born[island].parents);
+            EXPECT_EQ(read->born[island].elite_count, expected->born[island].elite_count);
+            EXPECT_EQ(read->born[island].survivor_count, expected->born[island].survivor_count);
+            EXPECT_EQ(read->born[island].clamped_count, expected->born[island].clamped_count);
+        }
+    }
+    const auto outcome = *(*file)->outcome_of(1);
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(outcome->outcomes, ended.outcomes);
+    ASSERT_EQ(outcome->statistics.size(), 2u);
+    EXPECT_EQ(outcome->statistics[1].fitness_median, ended.statistics[1].fitness_median);
+    EXPECT_FALSE(*(*file)->outcome_of(2));
+    EXPECT_FALSE(*(*file)->beginning_of(3));
+    EXPECT_EQ((*(*file)->links(0, 60))[0].hash.high, ~std::uint64_t{0});
+    EXPECT_EQ((*(*file)->history(10, 10)).size(), 1u);
+    EXPECT_EQ((*file)->contents().tick, 121u); // a generation is written once its first tick is over
+}
+
+TEST_F(RunFileTest, IsSoundWhenARunHasBeenWritten) {
+    const auto file = RunFile::open_read_only(recorded());
+    ASSERT_TRUE(file) << to_text(file.error());
+    const auto checked = (*file)->check();
+    ASSERT_TRUE(checked) << to_text(checked.error());
+    const auto mark = *(*file)->end_mark();
+    ASSERT_TRUE(mark);
+    EXPECT_FALSE(mark->ended);
+    EXPECT_EQ(mark->tick, 540u);
+    EXPECT_EQ(mark->journal_entries, 2u);
+    EXPECT_EQ(mark->generations, 5u);
+    EXPECT_EQ(mark->links, 9u);
+}
+
+TEST_F(RunFileTest, NamesTheTableThatIsNotAsItWasWritten) {
+    const std::string path = recorded(), sound = content_of(path);
+    for (const auto& [sql, named] : {
+             std::pair{"UPDATE run SET value = '8' WHERE key = 'seed'", "seed"},
+             {"DELETE FROM run WHERE key = 'parameters'", "table run"},
+             {"UPDATE journal SET tick = tick + 1 WHERE number = 2", "journal"},
+             {"DELETE FROM journal WHERE number = 1", "journal"},
+             {"UPDATE parameters SET revision = revision + 1 WHERE number = 2", "parameters"},
+             {"UPDATE generation SET simulated_s = 0 WHERE generation = 3", "row 3 of its table generation"},
+             {"DELETE FROM generation WHERE generation = 3", "row 3 of its table generation"},
+             {"UPDATE population SET chromosomes = zeroblob(288) WHERE generation = 2", "population of generation 2"},
+             {"DELETE FROM population WHERE generation = 2 AND island = 1", "population of generation 2"},
+             {"UPDATE outcome SET fitness = zeroblob(96) WHERE generation = 4 AND island = 1",
+              "outcome of generation 4"},
+             {"DELETE FROM outcome WHERE generation = 2", "outcome of generation 2"},
+             {"UPDATE statistics SET alive_count = alive_count + 1 WHERE generation = 2", "statistics of generation 2"},
+             {"UPDATE state_hash SET low = low + 1 WHERE tick = 60", "state_hash"},
+             {"DELETE FROM state_hash WHERE tick = 120", "state_hash"},
+             {"UPDATE end_mark SET tick = 539", "end mark"},
+             {"DELETE FROM state_hash WHERE tick = 540", "end mark"},
+         }) {
+        put(path, sound);
+        ASSERT_NO_FATAL_FAILURE(change(path, sql));
+        const auto file = RunFile::open_read_only(path);
+        const base::Refusal refused = file ? (*file)->check().error() : file.error();
+        EXPECT_EQ(refused.code, RefusalCode::DataLoss) << sql;
+        EXPECT_THAT(refused.message, HasSubstr(named)) << sql;
+        EXPECT_THAT(refused.message, HasSubstr(path)) << sql;
+    }
+}
+
+TEST_F(RunFileTest, RefusesWhatIsNoRunFileOrANewerOne) {
+    const std::string path = folder.path() + "/other.evod";
+    const auto refused = [&] { return RunFile::open(path, {}).error(); };
+    EXPECT_EQ(refused().code, RefusalCode::Unavailable); // not there
+    put(path,
+        "no database, but longer than the head of one, which is a hundred bytes and begins with a text of its own");
+    EXPECT_EQ(refused().code, RefusalCode::DataLoss);
+    put(path, "");
+    EXPECT_EQ(refused().code, RefusalCode::DataLoss);
+    std::filesystem::remove(path);
+    {
+        Database foreign{path, Database::Mode::Create};
+        foreign.run("CREATE TABLE songs (title TEXT)");
+    }
+    EXPECT_THAT(refused().message, HasSubstr("is not a run file"));
+    std::filesystem::remove(path);
+    const std::string newer = recorded();
+    change(newer, "PRAGMA user_version = 5");
+    EXPECT_THAT(RunFile::open(newer, {}).error().message, HasSubstr("newer evod: its format is version 5"));
+}
+
+TEST_F(RunFileTest, AnOlderFileDoesNotTellItsBuild) {
+    const std::string path = recorded();
+    change(path, "DELETE FROM run WHERE key = 'build'");
+    const auto file = RunFile::open_read_only(path);
+    ASSERT_TRUE(file) << to_text(file.error());
+    EXPECT_EQ((*file)->identity().build, "");
+}
+
+TEST_F(RunFileTest, AFileIsNotMadeWhereThereIsOne) {
+    const std::string path = recorded();
+    EXPECT_EQ(RunFile::create(path, {.name = "w", .run_id = {}, .seed = {}, .parameters = {}}, {}).error().code,
+              RefusalCode::AlreadyExists);
+}
+
+} // namespace
+} // namespace evod::run_file
