@@ -39,8 +39,12 @@ _REPLAY_TIMEOUT_FACTOR = 20
 _SESSION_REQUESTS = frozenset(("unsubscribe", "request_keyframe", "set_view", "continue_export"))
 
 
+def _no_connection(error: Error) -> NoConnection:
+    return NoConnection(error.message, error.code, error.violations)
+
+
 class Pending:
-    """A request, and once it is done its response, or the error that it will never have one."""
+    """A request and its outcome: `response` once the server has answered, or `error` if no answer can arrive any more."""
 
     def __init__(self, request: commands_pb2.Request, frame: bytes) -> None:
         self.request, self.frame = request, frame
@@ -51,10 +55,11 @@ class Pending:
 
     @property
     def done(self) -> bool:
+        """Whether there is a response or an error."""
         return self.response is not None or self.error is not None
 
     def timeout_s(self, usual_s: float) -> float:
-        """How long the answer may take, given the timeout of requests that need no replay."""
+        """The timeout of this request, where usual_s is that of requests without a replay."""
         return usual_s * _REPLAY_TIMEOUT_FACTOR if self.kind in _REPLAY_REQUESTS else usual_s
 
 
@@ -74,12 +79,14 @@ class Subscription:
         self._lost = 0  # number of events dropped here since the last EventsDropped
 
     def take_event(self) -> stream_pb2.Event | None:
+        """Removes and returns the oldest event, after an EventsDropped for those that were not kept; None if there is none."""
         if self._lost:
             lost, self._lost = self._lost, 0
             return stream_pb2.Event(events_dropped=stream_pb2.EventsDropped(dropped_count=lost))
         return self.arrived.popleft() if self.arrived else None
 
     def add_event(self, event: stream_pb2.Event) -> None:
+        """Appends an event; drops the oldest beyond EVENTS_KEPT."""
         self.arrived.append(event)
         if len(self.arrived) > EVENTS_KEPT:
             self.arrived.popleft()
@@ -87,6 +94,7 @@ class Subscription:
 
     @property
     def has_event(self) -> bool:
+        """Whether take_event() returns an event."""
         return bool(self.arrived or self._lost)
 
 
@@ -100,7 +108,7 @@ class _StreamState:
 
 
 class Core:
-    """One client; the comment above describes it. `server` is shown in error messages."""
+    """The state of one client. `server` is shown in error messages."""
 
     def __init__(self, *, token: str, client_name: str, server: object) -> None:
         self._hello = session_pb2.ClientMessage(
@@ -112,16 +120,16 @@ class Core:
         self.client_key = secrets.token_hex(16)
         self.welcome: session_pb2.Welcome | None = None  # of the current or the last session
         self.connected = False  # the server has sent its Welcome on the current connection
-        self.failed: Error | None = None  # final: there is no point in connecting again
-        self.loss: Error | None = None  # why there is no session at present
+        self.failed: Error | None = None  # set once reconnecting is pointless, with the reason
+        self.loss: Error | None = None  # the reason why there is no session at present
         self.damaged_snapshot_count = 0  # dropped because they could not be decoded
         self._outgoing = bytearray()
         self._reader = framing.FrameReader()
         self._last_request_id = 0
         self._pending: dict[int, Pending] = {}  # by request_id, in the order of the calls
         self._first: set[int] = set()  # ids of those to send before the others
-        self._in_flight: set[int] = set()  # sent in this session and unanswered, also of callers that gave up
-        self._abandoned_replays: set[int] = set()  # OpenReplay requests of this session whose callers gave up
+        self._in_flight: set[int] = set()  # sent in this session and unanswered, whether or not a caller still waits
+        self._abandoned_replays: set[int] = set()  # unanswered OpenReplay requests whose callers no longer wait
         self._subscriptions: list[weakref.ref[Subscription]] = []
         self._of_server_id: dict[int, weakref.ref[Subscription]] = {}
         self._streams: dict[tuple[int, int], _StreamState] = {}  # by server_id and island
@@ -129,13 +137,13 @@ class Core:
     # ---- the connection -------------------------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """A new connection was opened."""
+        """Call after connecting: queues the Hello."""
         self._outgoing.clear()
         self._reader = framing.FrameReader()
         self._send(self._hello)
 
     def received(self, data: bytes | bytearray | memoryview) -> None:
-        """Takes bytes from the server. On NoConnection or DamagedData close the connection and call lost()."""
+        """Processes bytes from the server. After NoConnection or DamagedData close the connection and call lost()."""
         self._reader.feed(data)
         try:
             for channel, body in self._reader.frames():
@@ -153,7 +161,7 @@ class Core:
             raise self.failed from None
 
     def lost(self, error: Error) -> None:
-        """The connection was lost, or could not be opened. Connect again unless `failed` is set."""
+        """Call after a connection was lost or could not be opened. Connect again unless `failed` is set."""
         self.connected, self.loss = False, error
         self._outgoing.clear()
         self._in_flight.clear()
@@ -169,16 +177,16 @@ class Core:
             if self.failed is not None or subscribing or pending.sent and pending.kind in _SESSION_REQUESTS:
                 del self._pending[request_id]
                 self._first.discard(request_id)
-                pending.error = NoConnection(error.message, error.code, error.violations)
+                pending.error = _no_connection(error)
             pending.sent = False
 
     def close(self) -> None:
-        """The caller closes the client."""
+        """Fails all requests; the client cannot be used again."""
         self.failed = NoConnection("the connection was closed here")
         self.lost(self.failed)
 
     def outgoing(self) -> bytes:
-        """Takes the bytes to send now."""
+        """Removes and returns the bytes to send now."""
         data = bytes(self._outgoing)
         self._outgoing.clear()
         return data
@@ -191,7 +199,7 @@ class Core:
         Raises Error if the client is closed or has failed, or if the request is longer than the server allows.
         """
         if self.failed is not None:
-            raise NoConnection(self.failed.message, self.failed.code, self.failed.violations)
+            raise _no_connection(self.failed)
         request_id = self._last_request_id + 1
         request.request_id, request.client_key = request_id, self.client_key
         body = session_pb2.ClientMessage(request=request).SerializeToString()
@@ -207,7 +215,7 @@ class Core:
         return pending
 
     def forget(self, pending: Pending) -> None:
-        """The caller no longer waits. A replay that the server opens all the same is closed once its name is known."""
+        """Call when the caller no longer waits. If the request opens a replay, the core closes it once its name is known."""
         self._pending.pop(pending.request.request_id, None)
         self._first.discard(pending.request.request_id)
         if pending.kind == "open_replay" and pending.sent and not pending.done:
@@ -218,7 +226,7 @@ class Core:
     def subscribe(self, request: commands_pb2.Request) -> Subscription:
         """Subscribes now or once there is a session, and again in each new session, until the subscription ends."""
         if self.failed is not None:
-            raise NoConnection(self.failed.message, self.failed.code, self.failed.violations)
+            raise _no_connection(self.failed)
         subscription = Subscription(request)
         self._subscriptions.append(weakref.ref(subscription))
         if self.connected:
@@ -226,13 +234,14 @@ class Core:
         return subscription
 
     def unsubscribe(self, subscription: Subscription) -> None:
+        """Ends the subscription."""
         subscription.ended = True
         self._subscriptions = [known for known in self._subscriptions if known() not in (None, subscription)]
         if subscription.server_id is not None:
             self._unsubscribe_from(subscription.server_id)
 
     def acknowledge(self, subscription: Subscription, snapshot: Snapshot) -> None:
-        """The caller is done with the snapshot; the server may send another."""
+        """Acknowledges a snapshot, which lets the server send another."""
         if subscription.server_id is not None and snapshot.sequence:
             self._send(
                 session_pb2.ClientMessage(
@@ -251,7 +260,7 @@ class Core:
         """Sends queued requests, up to half the server's limit on unanswered ones."""
         if not self.connected or self.welcome is None:
             return
-        # The server counts a request until its answer has left. We may have the answer, and send the next request, before that.
+        # The server counts a request until it has sent the answer completely. The answer may arrive here before that.
         most = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
         for urgent in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
@@ -273,8 +282,8 @@ class Core:
         elif kind == "goodbye":
             error = refusal(message.goodbye.status)
             if error.code == commands_pb2.CODE_UNAUTHENTICATED:
-                self.failed = NoConnection(error.message, error.code, error.violations)
-            raise NoConnection(error.message, error.code, error.violations)
+                self.failed = _no_connection(error)
+            raise _no_connection(error)
 
     def _take_welcome(self, message: session_pb2.ServerMessage, kind: str | None) -> None:
         if kind == "goodbye":
@@ -340,7 +349,7 @@ class Core:
             subscription.sessions += 1
             self._of_server_id[server_id] = weakref.ref(subscription)
             if subscription.sessions > 1 and pending.kind == "subscribe_events":
-                # How many events were missed in between is not known: a count of 0 says so.
+                # The number of events missed in between is not known: the count stays 0.
                 subscription.add_event(stream_pb2.Event(events_dropped=stream_pb2.EventsDropped()))
 
     def _unsubscribe_from(self, server_id: int) -> None:
@@ -379,7 +388,7 @@ class Core:
             except DamagedData:
                 self.damaged_snapshot_count += 1
                 stream.keyframe_needed = True
-                # The limit ends an endless exchange with a server whose keyframes are damaged, too.
+                # Without a limit, damaged keyframes would be requested for ever.
                 if message.codec == stream_pb2.CODEC_DELTA and stream.keyframe_requests < _KEYFRAME_REQUESTS_MAX:
                     stream.keyframe_requests += 1
                     self.request(

@@ -87,6 +87,7 @@ class LabPlans:
     # ---- the server -------------------------------------------------------------------------------------------------
 
     def registry(self) -> Plan[Registry]:
+        """The parameter registry, requested once for each server process."""
         instance = self.core.welcome.instance_id if self.core.welcome else ""
         if self._registry is None or self._registry_instance != instance:
             description = (yield from request("describe")).description
@@ -94,7 +95,7 @@ class LabPlans:
         return self._registry
 
     def world_name(self, name: str | None) -> Plan[str]:
-        """Checks a name; without one returns the world that a request without a name is for."""
+        """Checks that the world exists. Without a name: the only world, or "default"."""
         known = [info.name for info in (yield from worlds())]
         if name is None:
             name = known[0] if len(known) == 1 else "default"
@@ -105,6 +106,7 @@ class LabPlans:
     # ---- parameters -------------------------------------------------------------------------------------------------
 
     def parameters(self, world: str) -> Plan[Parameters]:
+        """All parameters of a world."""
         registry = yield from self.registry()
         return Parameters(registry, (yield from request("get_parameters", world=world)).parameters)
 
@@ -117,9 +119,10 @@ class LabPlans:
         at_generation: int | None = None,
         at_tick: int | None = None,
     ) -> Plan[Parameters]:
+        """Sets or plans values. Raises Error for values out of range before anything is sent."""
         registry = yield from self.registry()
         if at_generation is not None or at_tick is not None:
-            self._need_planned_changes()
+            self._require_planned_changes()
         response = yield from request(
             "set_parameters",
             world=world,
@@ -135,13 +138,14 @@ class LabPlans:
         return Parameters(registry, (yield from request("get_parameters", world=world)).parameters, change)
 
     def cancel_change(self, world: str, change: int | PlannedChange) -> Plan[PlannedChange]:
+        """Cancels a planned change, given as such or by its id."""
         yield from self.registry()
-        self._need_planned_changes()
+        self._require_planned_changes()
         identity = change.id if isinstance(change, PlannedChange) else change
         response = yield from request("cancel_change", world=world, id=identity)
         return PlannedChange.of(response.planned_change)
 
-    def _need_planned_changes(self) -> None:
+    def _require_planned_changes(self) -> None:
         """A server without the feature would ignore at_generation and change the parameters at once."""
         welcome = self.core.welcome
         if welcome is not None and "planned_changes" not in welcome.features:
@@ -155,12 +159,13 @@ class LabPlans:
         population: Sequence[numpy.typing.ArrayLike] | None,
         speed: float | str | None,
     ) -> Plan[str]:
+        """Creates a world and sets its speed; returns its name."""
         speed = self.speed_of_new_worlds if speed is None else speed
         requested = None if speed is None else speed_message(speed)
         registry = yield from self.registry()
         first, later = registry.planned(parameters, "create_world.")
         if later:
-            self._need_planned_changes()
+            self._require_planned_changes()
         info = yield from request_world(
             "create_world",
             name=name,
@@ -177,12 +182,14 @@ class LabPlans:
     # ---- subscriptions ----------------------------------------------------------------------------------------------
 
     def subscribe_events(self, world: str | None) -> Plan[Subscription]:
+        """Subscribes to the events of a world, or of all."""
         request = c.Request(subscribe_events=c.SubscribeEvents(world=world))
         return (yield from self._subscribe(request))
 
     def subscribe_snapshots(
         self, world: str, island: int | None, rate_hz: float, view: c.View | None
     ) -> Plan[Subscription]:
+        """Subscribes to snapshots, with the best codec and compression that this machine can decode."""
         snapshots = build(
             c.SubscribeSnapshots,
             "subscribe_snapshots.",
@@ -205,6 +212,7 @@ class LabPlans:
         return subscription
 
     def run(self, world: str, generations: int | None) -> Plan[GenerationStream]:
+        """Runs a world; subscribes first, so that no generation is missed."""
         stream = GenerationStream(self.core, world, (yield from self.subscribe_events(world)))
         try:
             # A waiting world is at the end of a generation whose event was sent earlier: begin with the next one.
@@ -232,12 +240,14 @@ class LabPlans:
             self.core.unsubscribe(subscription)
 
     def step(self, world: str, ticks: int) -> Plan[world_pb2.WorldInfo]:
+        """Runs some ticks and waits for the last."""
         ticks = build(c.RunUntilTick, "run_until_tick.", tick=ticks).tick
         tick = (yield from world_info(world)).tick + ticks
         yield from request("run_until_tick", world=world, tick=tick)
         return (yield from self.wait(world))
 
     def snapshot(self, world: str, island: int) -> Plan[Snapshot]:
+        """The current state of an island: the first snapshot of a short subscription."""
         stream = SnapshotStream(self.core, (yield from self.subscribe_snapshots(world, island, 1, None)))
         try:
             return (yield from stream.next())
@@ -255,9 +265,11 @@ class EventStream:
         self._core, self._subscription = core, subscription
 
     def next(self) -> Plan[stream_pb2.Event]:
+        """Waits for the next event."""
         return (yield from next_event(self._subscription))
 
     def close(self) -> None:
+        """Ends the subscription."""
         self._core.unsubscribe(self._subscription)
 
 
@@ -269,6 +281,7 @@ class SnapshotStream:
         self._taken: tuple[int, Snapshot] | None = None  # session number and snapshot
 
     def next(self) -> Plan[Snapshot]:
+        """Acknowledges the snapshot taken before, and waits for the next one."""
         subscription = self._subscription
         if self._taken is not None:
             session, taken = self._taken
@@ -283,9 +296,10 @@ class SnapshotStream:
         return snapshot
 
     def set_view(self, view: c.View) -> Plan[None]:
+        """Changes the view, in this session and later ones."""
         subscription_id = yield from self._server_id()
         yield from request("set_view", subscription_id=subscription_id, view=view)
-        # Kept for the next sessions, but only once the server has accepted it.
+        # Later sessions request the new view, but only once the server has accepted it.
         self._subscription.request.subscribe_snapshots.view.CopyFrom(view)
 
     def _server_id(self) -> Plan[int]:
@@ -298,32 +312,36 @@ class SnapshotStream:
 
     @property
     def rate_hz(self) -> float:
+        """The rate that the server granted."""
         return self._subscription.rate_hz
 
     def request_keyframe(self) -> Plan[None]:
+        """Requests keyframes of all islands."""
         subscription_id = yield from self._server_id()
         yield from request("request_keyframe", subscription_id=subscription_id)
 
     def close(self) -> None:
+        """Ends the subscription."""
         self._core.unsubscribe(self._subscription)
 
 
 class GenerationStream:
     """The generations of a run as they end, each once.
 
-    Events report them. Where events were dropped, or missed while reconnecting, the history fills the gap.
+    Events deliver them. Generations whose events were dropped, or missed while reconnecting, come from the history.
     """
 
     def __init__(self, core: Core, world: str, subscription: Subscription) -> None:
         self._core, self._world, self._subscription = core, world, subscription
-        self.info = world_pb2.WorldInfo()  # when the run began
+        self.info = world_pb2.WorldInfo()  # the state of the world when the run began
         self._next = 0  # number of the next generation to return
         self._goal: int | None = None  # the first generation beyond the run
-        self._ready: list[Generation] = []  # to return before those of later events
-        self._began = False  # the event of our own command has arrived; later events are consequences of it
-        self._over = False
+        self._ready: list[Generation] = []  # generations that next() returns before it takes another event
+        self._began = False  # the event caused by this Run has arrived; events before it belong to earlier commands
+        self._over = False  # the run has ended; only _ready is left
 
     def begin(self, info: world_pb2.WorldInfo, first: int) -> None:
+        """Call with the answer to Run, and the number of the first generation to return."""
         self.info, self._next = info, first
         self._goal = _goal_of(info)
 
@@ -345,7 +363,7 @@ class GenerationStream:
             yield from self._catch_up()
         elif event.run_id != self.info.run_id:
             if kind in ("world_reset", "world_deleted") and self._began:
-                raise self._gone(kind.removeprefix("world_"))
+                raise self._close_with_error(kind.removeprefix("world_"))
         elif kind == "generation_finished":
             number = event.generation_finished.statistics[0].generation
             if number > self._next:
@@ -356,28 +374,28 @@ class GenerationStream:
             info = event.run_control_changed.world
             self._began = self._began or _goal_of(info) == self._goal and info.state == world_pb2.RUN_STATE_RUNNING
             if self._began:
-                self._follow(info)
+                self._update_goal(info)
                 if self._over:
                     yield from self._fill()
         elif kind == "run_terminated":
             yield from self._catch_up()
             self._over = True
         elif kind in ("world_reset", "world_deleted"):
-            raise self._gone(kind.removeprefix("world_"))
+            raise self._close_with_error(kind.removeprefix("world_"))
 
     def _catch_up(self) -> Plan[None]:
-        """Events are missing: queries the world's state and the generations that ended."""
+        """After missed events: queries the state of the world and the generations that have ended."""
         try:
             info = yield from world_info(self._world)
         except Error as error:
-            raise self._gone("deleted") if error.code == c.CODE_NOT_FOUND else error
+            raise self._close_with_error("deleted") if error.code == c.CODE_NOT_FOUND else error
         if info.run_id != self.info.run_id:
-            raise self._gone("reset")
+            raise self._close_with_error("reset")
         self._began = True
-        self._follow(info)
+        self._update_goal(info)
         yield from self._fill()
 
-    def _follow(self, info: world_pb2.WorldInfo) -> None:
+    def _update_goal(self, info: world_pb2.WorldInfo) -> None:
         goal = _goal_of(info)
         if info.state in (world_pb2.RUN_STATE_WAITING, world_pb2.RUN_STATE_TERMINATED):
             self._over = True
@@ -391,16 +409,18 @@ class GenerationStream:
             ended = yield from history(self._world, first, last, None)
             self._ready += [g for g in ended if self._goal is None or g.number < self._goal]
 
-    def _gone(self, how: str) -> Error:
+    def _close_with_error(self, how: str) -> Error:
         self.close()
         return Error(f"the world '{self._world}' was {how} while it ran", c.CODE_NOT_FOUND)
 
     def close(self) -> None:
+        """Ends the subscription; next() returns None from then on."""
         self._over = True
         self._core.unsubscribe(self._subscription)
 
 
 def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
+    """Waits for an event. Raises Error if the server refused the subscription in a later session."""
     yield Until(lambda: subscription.has_event or subscription.refused)
     event = subscription.take_event()
     if event is None:
@@ -409,14 +429,16 @@ def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
 
 
 def _goal_of(info: world_pb2.WorldInfo) -> int | None:
+    """The first generation beyond the run; None if the world runs until it is paused."""
     return info.run_until_generation if info.HasField("run_until_generation") else None
 
 
 def close_replay(world: str) -> Plan[None]:
+    """Closes a replay; it is no error if it has already ended with its session."""
     try:
         yield from request("close_replay", world=world)
     except Error as error:
-        if error.code != c.CODE_NOT_FOUND:  # the replay ended with its session
+        if error.code != c.CODE_NOT_FOUND:
             raise
 
 
@@ -424,16 +446,18 @@ def close_replay(world: str) -> Plan[None]:
 
 
 def worlds() -> Plan[Sequence[world_pb2.WorldInfo]]:
+    """The state of all worlds."""
     known: Sequence[world_pb2.WorldInfo] = (yield from request("list_worlds")).worlds.worlds
     return known
 
 
 def world_info(world: str) -> Plan[world_pb2.WorldInfo]:
-    # ListWorlds does not contain replays.
+    """The state of a world or replay: ListWorlds does not contain replays."""
     return (yield from request("get_statistics", world=world)).statistics.world
 
 
 def history(world: str, first: int | None, last: int | None, island: int | None) -> Plan[list[Generation]]:
+    """Generations that have ended, requested part by part."""
     rows: list[world_pb2.GenerationStatistics] = []
     while True:
         response = yield from request("get_history", world=world, first_generation=first, last_generation=last, island=island)
@@ -445,6 +469,7 @@ def history(world: str, first: int | None, last: int | None, island: int | None)
 
 
 def population(world: str, island: int) -> Plan[Population]:
+    """The population of an island, requested part by part; all parts are of the same generation."""
     parts: list[c.Population] = []
     first = 0
     while True:
@@ -461,6 +486,7 @@ def population(world: str, island: int) -> Plan[Population]:
 def export(
     world: str, table: str, text_format: str, generation: int | None, of: tuple[int, int, int] | None
 ) -> Plan[str]:
+    """A table as text, requested part by part."""
     organism = None
     if of is not None:
         organism = build(c.OrganismName, "export_run.of.", **dict(zip(("generation", "island", "organism"), of)))
@@ -494,12 +520,13 @@ def build(message: type[M], field_prefix: str, /, **fields: Any) -> M:
         try:
             message(**{name: value})
         except (TypeError, ValueError):
-            allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "something else")
+            allowed = _ALLOWED.get(message.DESCRIPTOR.fields_by_name[name].type, "a value of another type")
             violations.append(Violation(field_prefix + name, allowed, str(value)))
     raise Error("the request is wrong", c.CODE_INVALID_ARGUMENT, violations)
 
 
 def speed_message(speed: float | str) -> world_pb2.Speed:
+    """A speed as sent: a factor of real time, or "max"."""
     if speed == "max":
         return world_pb2.Speed(max=True)
     if isinstance(speed, str):
@@ -508,13 +535,14 @@ def speed_message(speed: float | str) -> world_pb2.Speed:
 
 
 def moment_message(field_prefix: str, generation: int | None, tick: int | None) -> c.RunMoment:
+    """A moment of a run as sent."""
     return build(c.RunMoment, field_prefix, generation=generation, tick=tick)
 
 
 def view_message(
     region: tuple[float, float, float, float] | None, detail: str | None, bytes_per_s_max: int | None
 ) -> c.View | None:
-    """None if no argument is given: then snapshots are not tiled."""
+    """A view as sent; None if no argument is given: then snapshots are not tiled."""
     if region is None and detail is None and bytes_per_s_max is None:
         return None
     part = None
