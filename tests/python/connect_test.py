@@ -1,9 +1,10 @@
 """Connecting: addresses, missing servers, servers that are no evod, and the life of private servers."""
-import os
+import asyncio
 import socket
 import subprocess
 import threading
 import unittest
+import weakref
 
 import numpy
 
@@ -52,6 +53,28 @@ class Connect(unittest.TestCase):
         self.assertFalse(self.has_ended(address))
         del run
         until(lambda: self.has_ended(address), "the server has ended")
+
+    def test_it_works_inside_a_running_event_loop(self):
+        async def cell():  # as a notebook runs it
+            with evod.local(seed=1) as lab:
+                return len(lab.world().population())
+
+        self.assertEqual(asyncio.run(cell()), 50)
+
+    def test_a_program_ends_with_open_connections(self):
+        program = ("import evod; lab = evod.local(); other = evod.connect(lab.address); events = other.events(); "
+                   "snapshots = lab.world().snapshots(); print(len(next(snapshots).organisms))")
+        done = subprocess.run(["/usr/bin/python3", "-X", "dev", "-c", program], capture_output=True, text=True, timeout=120)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "50\n", ""))
+
+    def test_the_garbage_collector_closes_a_connection(self):
+        with evod.local() as server:
+            lab = evod.connect(server.address)
+            link = weakref.ref(lab._link)
+            threads = {thread for thread in threading.enumerate() if thread.name == "evod connection"}
+            del lab
+            self.assertIsNone(link())
+            self.assertEqual(sum(thread.is_alive() for thread in threads), 1)  # the server's own lab
 
     def has_ended(self, address):
         try:
