@@ -106,17 +106,20 @@ class Link:
             await self._next_change(None if end is None else end - now)
 
     async def _next_change(self, timeout_s: float | None) -> None:
-        changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        loop = asyncio.get_running_loop()
+        changed: asyncio.Future[None] = loop.create_future()
+        timer = None if timeout_s is None else loop.call_later(timeout_s, _wake, changed)
         self._waiters.add(changed)
         try:
-            await asyncio.wait([changed], timeout=timeout_s)
+            await changed
         finally:
             self._waiters.discard(changed)
+            if timer is not None:
+                timer.cancel()
 
     def _wake_waiters(self) -> None:
         for waiter in self._waiters:
-            if not waiter.done():
-                waiter.set_result(None)
+            _wake(waiter)
 
     # ---- the connection -------------------------------------------------------------------------------------------
 
@@ -198,3 +201,8 @@ class Link:
             to_send = self._transport.outgoing(self.core.outgoing())
             if to_send:
                 self._writer.write(to_send)
+
+
+def _wake(waiter: asyncio.Future[None]) -> None:
+    if not waiter.done():
+        waiter.set_result(None)
