@@ -411,29 +411,29 @@ Section read_section(const Kind& kind, BodyReader& reader, Section base, std::ui
 
 } // namespace
 
-Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> scene) {
+Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot) {
     Baseline baseline;
     for (const Kind& kind : kinds) {
         if (kind.displacements) {
             Baseline::Displacements& displacements = baseline.*kind.displacements;
-            displacements.x.assign(((*scene).*kind.entities).x.size(), 0);
+            displacements.x.assign(((*snapshot).*kind.entities).x.size(), 0);
             displacements.y = displacements.x;
         }
     }
-    baseline.scene = std::move(scene);
+    baseline.snapshot = std::move(snapshot);
     return baseline;
 }
 
-QuantisedView::QuantisedView(const QuantisedSnapshot& scene)
-    : position_bytes{scene.position_bytes}, of_tile{scene.of_tile} {
+QuantisedView::QuantisedView(const QuantisedSnapshot& snapshot)
+    : position_bytes{snapshot.position_bytes}, of_tile{snapshot.of_tile} {
     for (const Kind& kind : kinds) {
-        const Entities& entities = scene.*kind.entities;
+        const Entities& entities = snapshot.*kind.entities;
         this->*kind.seen = {entities.id, entities.x, entities.y, entities.width, entities.height};
     }
 }
 
 BaselineView::BaselineView(const Baseline& baseline)
-    : scene{*baseline.scene}
+    : snapshot{*baseline.snapshot}
     , organisms{baseline.organisms.x, baseline.organisms.y}
     , crates{baseline.crates.x, baseline.crates.y}
     , ticks{baseline.ticks} {}
@@ -463,7 +463,7 @@ void advance_baseline(const BaselineView& base, const QuantisedView& next, std::
         if (!kind.seen_displacements) {
             continue;
         }
-        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const EntitiesView &from = base.snapshot.*kind.seen, &to = next.*kind.seen;
         const BaselineView::Displacements& before = base.*kind.seen_displacements;
         const AdvancedColumns::Displacements& now = of_kind(moved, kind);
         each_that_stayed(
@@ -483,7 +483,7 @@ Baseline advanced_baseline(const Baseline& base, std::shared_ptr<const Quantised
     Baseline baseline = initial_baseline(std::move(next));
     baseline.ticks = ticks > 0 ? ticks : base.ticks;
     advance_baseline(
-        base, *baseline.scene, ticks,
+        base, *baseline.snapshot, ticks,
         {.organisms = {baseline.organisms.x, baseline.organisms.y}, .crates = {baseline.crates.x, baseline.crates.y}});
     return baseline;
 }
@@ -492,9 +492,9 @@ std::string encode_keyframe(const BaselineView& baseline, Seams* seams) {
     BodyWriter writer;
     writer.number(baseline.ticks);
     for (const Kind& kind : kinds) {
-        const EntitiesView& entities = baseline.scene.*kind.seen;
+        const EntitiesView& entities = baseline.snapshot.*kind.seen;
         const Pairing everyone{.gone = {}, .come = indices(entities.x.size())};
-        write_parts(writer, kind, entities, baseline.scene.position_bytes, everyone,
+        write_parts(writer, kind, entities, baseline.snapshot.position_bytes, everyone,
                     kind.seen_displacements ? &(baseline.*kind.seen_displacements) : nullptr);
     }
     if (seams) {
@@ -509,7 +509,7 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
     writer.number(ticks);
     const Foretold foretold{ticks, base.ticks};
     for (const Kind& kind : kinds) {
-        const EntitiesView &from = base.scene.*kind.seen, &to = next.*kind.seen;
+        const EntitiesView &from = base.snapshot.*kind.seen, &to = next.*kind.seen;
         const Pairing pairing = mostly_others(kind, from, to, next.of_tile)
                                     ? Pairing{.gone = indices(from.x.size()), .come = indices(to.x.size())}
                                     : pair(kind, from, to, next.of_tile);
@@ -554,7 +554,7 @@ std::string encode_delta(const BaselineView& base, const QuantisedView& next, st
 }
 
 Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, const Baseline* base) {
-    if (base && base->scene->position_bytes != shape.position_bytes) {
+    if (base && base->snapshot->position_bytes != shape.position_bytes) {
         return Damage{"a snapshot's position_bytes differ from those of its base"};
     }
     BodyReader reader{body};
@@ -563,22 +563,22 @@ Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, cons
                     .base_ticks = base ? base->ticks : std::uint16_t{0},
                     .position_bytes = shape.position_bytes,
                     .of_tile = shape.of_tile};
-    auto scene = std::make_shared<QuantisedSnapshot>();
-    scene->position_bytes = shape.position_bytes;
-    scene->of_tile = shape.of_tile;
+    auto snapshot = std::make_shared<QuantisedSnapshot>();
+    snapshot->position_bytes = shape.position_bytes;
+    snapshot->of_tile = shape.of_tile;
     Baseline baseline;
     baseline.ticks = !base || ticks > 0 ? ticks : base->ticks;
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const Kind& kind = kinds[k];
         Section from;
         if (base) {
-            from.entities = (*base->scene).*kind.entities;
+            from.entities = (*base->snapshot).*kind.entities;
             if (kind.displacements) {
                 from.displacements = base->*kind.displacements;
             }
         }
         Section section = read_section(kind, reader, std::move(from), shape.counts[k], step);
-        (*scene).*kind.entities = std::move(section.entities);
+        (*snapshot).*kind.entities = std::move(section.entities);
         if (kind.displacements) {
             baseline.*kind.displacements = std::move(section.displacements);
         }
@@ -589,7 +589,7 @@ Result<Baseline> decode_body(std::string_view body, const BodyShape& shape, cons
     if (reader.damage()) {
         return *reader.damage();
     }
-    baseline.scene = std::move(scene);
+    baseline.snapshot = std::move(snapshot);
     return baseline;
 }
 
@@ -622,7 +622,7 @@ std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view
                        body);
 }
 
-void leave_out_unchanging(evod::v1::SnapshotFrame& frame) {
+void clear_unchanging(evod::v1::SnapshotFrame& frame) {
     frame.clear_world();
     frame.clear_run_id();
     frame.clear_island_count();

@@ -32,7 +32,7 @@ struct Baseline {
         Column x, y; // two's complement; one for each entity
         friend bool operator==(const Displacements&, const Displacements&) = default;
     };
-    std::shared_ptr<const QuantisedSnapshot> scene;
+    std::shared_ptr<const QuantisedSnapshot> snapshot;
     Displacements organisms, crates; // the way to here; of those that have just come, 0
     std::uint16_t ticks = 0;         // that it took
 };
@@ -43,7 +43,7 @@ struct EntitiesView {
 };
 struct QuantisedView {
     QuantisedView() = default;
-    QuantisedView(const QuantisedSnapshot& scene);
+    QuantisedView(const QuantisedSnapshot& snapshot);
     std::uint32_t position_bytes = 2;
     bool of_tile = false;
     EntitiesView organisms, food, poison, crates, obstacles;
@@ -51,7 +51,7 @@ struct QuantisedView {
 struct BaselineView {
     BaselineView() = default;
     BaselineView(const Baseline& baseline);
-    QuantisedView scene;
+    QuantisedView snapshot;
     struct Displacements {
         std::span<const std::uint32_t> x, y;
     };
@@ -60,7 +60,7 @@ struct BaselineView {
 };
 
 /// Nothing has moved yet.
-Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> scene);
+Baseline initial_baseline(std::shared_ptr<const QuantisedSnapshot> snapshot);
 
 /// Whether `next` can be told as a delta from `base`: their boxes are the same but for the places of crates.
 bool follows(const QuantisedView& next, const QuantisedView& base);
@@ -116,7 +116,7 @@ std::uint32_t checksum_of(const ChecksummedFields& told, std::string_view body, 
 std::uint32_t checksum_of(const evod::v1::SnapshotFrame& frame, std::string_view body);
 
 /// Leaves out what a delta does not tell.
-void leave_out_unchanging(evod::v1::SnapshotFrame& frame);
+void clear_unchanging(evod::v1::SnapshotFrame& frame);
 
 /// Whether what deltas leave out is the same in both.
 bool same_unchanging(const evod::v1::SnapshotFrame& a, const evod::v1::SnapshotFrame& b);

@@ -33,10 +33,10 @@ using Counts = std::array<std::uint32_t, 5>;
 constexpr std::array<Entities QuantisedSnapshot::*, 5> snapshot_parts{
     &QuantisedSnapshot::organisms, &QuantisedSnapshot::food, &QuantisedSnapshot::poison, &QuantisedSnapshot::crates,
     &QuantisedSnapshot::obstacles};
-inline Counts counts_of(const QuantisedSnapshot& scene) {
+inline Counts counts_of(const QuantisedSnapshot& snapshot) {
     Counts counts;
     std::ranges::transform(snapshot_parts, counts.begin(),
-                           [&](auto part) { return static_cast<std::uint32_t>((scene.*part).x.size()); });
+                           [&](auto part) { return static_cast<std::uint32_t>((snapshot.*part).x.size()); });
     return counts;
 }
 /// Message  SnapshotFrame or DecodedTile.

@@ -90,29 +90,29 @@ bool rise(const std::vector<std::uint32_t>& ids) {
 
 } // namespace
 
-void describe(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame& frame) {
+void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
     for (const auto part : snapshot_parts) {
-        const Entities& entities = scene.*part;
+        const Entities& entities = snapshot.*part;
         for (const Column* column : {&entities.id, &entities.y, &entities.width, &entities.height}) {
             const bool may_be_left_out = column != &entities.y; // what a kind does not have
             if (column->size() != entities.x.size() && !(may_be_left_out && column->empty())) {
-                throw std::invalid_argument{"a scene has columns of different lengths"};
+                throw std::invalid_argument{"a snapshot has columns of different lengths"};
             }
         }
     }
-    set_counts(counts_of(scene), frame);
-    frame.set_position_bytes(scene.position_bytes);
+    set_counts(counts_of(snapshot), frame);
+    frame.set_position_bytes(snapshot.position_bytes);
 }
 
-void encode(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame& frame) {
-    describe(scene, frame);
+void encode(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame) {
+    describe(snapshot, frame);
     frame.set_codec(evod::v1::CODEC_COLUMNS);
     BodyWriter writer{body_bytes(frame)};
     const auto positions = [&](const Column& column) {
-        scene.position_bytes == 2 ? writer.plain<std::uint16_t>(column) : writer.plain<std::uint32_t>(column);
+        snapshot.position_bytes == 2 ? writer.plain<std::uint16_t>(column) : writer.plain<std::uint32_t>(column);
     };
     for (const auto part : snapshot_parts) {
-        const Entities& entities = scene.*part; // columns that a kind does not have are empty
+        const Entities& entities = snapshot.*part; // columns that a kind does not have are empty
         writer.plain<std::uint32_t>(entities.id);
         positions(entities.x);
         positions(entities.y);

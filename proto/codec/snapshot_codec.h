@@ -1,7 +1,7 @@
-// Snapshot codec: a scene → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
+// Snapshot codec: a snapshot → the body of a SnapshotFrame → a picture, CODEC_COLUMNS. The layout is told in
 // stream.proto.
 //
-// The server encodes a picture once for all its viewers; clients decode. The encoder is handed scenes that are right;
+// The server encodes a picture once for all its viewers; clients decode. The encoder is handed snapshots that are right;
 // the decoder trusts nothing.
 //
 // Threads      none; nothing here is shared.
@@ -20,10 +20,10 @@ namespace evod::codec {
 
 /// Sets the counts and position_bytes of `frame`, and leaves its other fields alone. Throws std::invalid_argument where
 /// the columns of a kind differ in length.
-void describe(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame& frame);
+void describe(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
 
-/// Sets codec, body and checksum of `frame` too, which has its sequence. scene: of a whole island.
-void encode(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame& frame);
+/// Sets codec, body and checksum of `frame` too, which has its sequence. snapshot: of a whole island.
+void encode(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame& frame);
 
 struct DecodedOrganisms {
     std::vector<std::uint32_t> id; // rising

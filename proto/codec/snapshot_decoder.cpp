@@ -51,14 +51,14 @@ DecodedBoxes boxes_of(const Entities& entities) {
     return boxes;
 }
 
-DecodedSnapshot picture_of(const QuantisedSnapshot& scene, evod::v1::SnapshotFrame about) {
+DecodedSnapshot picture_of(const QuantisedSnapshot& snapshot, evod::v1::SnapshotFrame about) {
     return {.about = std::move(about),
-            .organisms = {kept(scene.organisms.id), in_px(scene.organisms.x), in_px(scene.organisms.y),
-                          in_px(scene.organisms.width), in_px(scene.organisms.height)},
-            .food = {kept(scene.food.id), in_px(scene.food.x), in_px(scene.food.y)},
-            .poison = {kept(scene.poison.id), in_px(scene.poison.x), in_px(scene.poison.y)},
-            .crates = boxes_of(scene.crates),
-            .obstacles = boxes_of(scene.obstacles),
+            .organisms = {kept(snapshot.organisms.id), in_px(snapshot.organisms.x), in_px(snapshot.organisms.y),
+                          in_px(snapshot.organisms.width), in_px(snapshot.organisms.height)},
+            .food = {kept(snapshot.food.id), in_px(snapshot.food.x), in_px(snapshot.food.y)},
+            .poison = {kept(snapshot.poison.id), in_px(snapshot.poison.x), in_px(snapshot.poison.y)},
+            .crates = boxes_of(snapshot.crates),
+            .obstacles = boxes_of(snapshot.obstacles),
             .tiles = {}};
 }
 
@@ -97,7 +97,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode(evod::v1::SnapshotFrame frame) {
 }
 
 void SnapshotDecoder::forget() {
-    scene_ = nullptr;
+    snapshot_ = nullptr;
     whole_.reset();
     tiles_.reset();
 }
@@ -124,7 +124,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
     const Baseline* const base = keyframe ? nullptr : &whole_->baseline;
     const Counts counts = counts_of(frame);
     const auto content = content_of(std::move(*frame.mutable_body()), frame.compression(),
-                                    body_bytes_max(counts, base ? base->scene.get() : nullptr));
+                                    body_bytes_max(counts, base ? base->snapshot.get() : nullptr));
     frame.clear_body();
     frame.clear_tiles(); // without tile_px they mean nothing
     if (!content) {
@@ -139,9 +139,9 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_whole(evod::v1::SnapshotFrame fr
         return baseline.error();
     }
     forget();
-    scene_ = baseline->scene;
+    snapshot_ = baseline->snapshot;
     whole_ = Whole{.baseline = *std::move(baseline), .about = frame};
-    return picture_of(*scene_, std::move(frame));
+    return picture_of(*snapshot_, std::move(frame));
 }
 
 Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame frame) {
@@ -154,7 +154,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
     }
     Tiles next{.layout = *layout, .bases = {}};
     std::vector<DecodedTile> seen;
-    std::vector<const QuantisedSnapshot*> scenes;
+    std::vector<const QuantisedSnapshot*> snapshots;
     std::uint64_t content_bytes_left = *client_limits.stream_bytes_max; // of all tiles together
     for (evod::v1::SnapshotTile& tile : *frame.mutable_tiles()) {
         if (tile.tile() >= layout->count()) {
@@ -183,14 +183,14 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
         const Counts counts = counts_of(tile);
         const std::uint64_t bytes_max = tile.detail() == evod::v1::DETAIL_DENSITY
                                             ? density_bytes_max
-                                            : body_bytes_max(counts, base ? base->baseline.scene.get() : nullptr);
+                                            : body_bytes_max(counts, base ? base->baseline.snapshot.get() : nullptr);
         const auto content =
             content_of(std::move(*tile.mutable_body()), tile.compression(), std::min(bytes_max, content_bytes_left));
         if (!content) {
             return content.error();
         }
         content_bytes_left -= std::min<std::uint64_t>(content_bytes_left, content->size());
-        if (checksum_of(frame, tile, *content) != tile.checksum()) {
+        if (checksum_of(frame.tile_px(), frame.position_bytes(), tile, *content) != tile.checksum()) {
             return Damage{"a tile's checksum is not that of its body"};
         }
         DecodedTile& picture = seen.emplace_back();
@@ -205,7 +205,7 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
             if (!baseline) {
                 return baseline.error();
             }
-            scenes.push_back(baseline->scene.get());
+            snapshots.push_back(baseline->snapshot.get());
             next.bases[tile.tile()] = {.sequence = tile.sequence(), .baseline = *std::move(baseline)};
         } else if (tile.detail() == evod::v1::DETAIL_DOTS) {
             auto dots = decode_dots(*content, counts, *layout, tile.tile());
@@ -223,16 +223,16 @@ Result<DecodedSnapshot> SnapshotDecoder::decode_tiles(evod::v1::SnapshotFrame fr
             return Damage{"a tile's detail is " + std::to_string(tile.detail()) + ", not one that is known here"};
         }
     }
-    auto scene = merged(frame.position_bytes(), scenes);
-    if (!scene) {
-        return scene.error();
+    auto snapshot = merged(frame.position_bytes(), snapshots);
+    if (!snapshot) {
+        return snapshot.error();
     }
     forget();
-    scene_ = std::make_shared<const QuantisedSnapshot>(*std::move(scene));
+    snapshot_ = std::make_shared<const QuantisedSnapshot>(*std::move(snapshot));
     tiles_ = std::move(next);
     frame.clear_body();
     frame.clear_tiles();
-    DecodedSnapshot picture = picture_of(*scene_, std::move(frame));
+    DecodedSnapshot picture = picture_of(*snapshot_, std::move(frame));
     picture.tiles = std::move(seen);
     return picture;
 }

@@ -29,10 +29,10 @@ class SnapshotDecoder {
     Result<DecodedSnapshot> decode(evod::v1::SnapshotFrame frame);
 
     /// Deltas are of no use now: there has been no keyframe yet, or damage after it.
-    bool needs_keyframe() const { return !scene_; }
+    bool needs_keyframe() const { return !snapshot_; }
 
     /// What the last picture of CODEC_DELTA consisted of; null before a keyframe. With tiles, those of DETAIL_FULL.
-    const QuantisedSnapshot* scene() const { return scene_.get(); }
+    const QuantisedSnapshot* snapshot() const { return snapshot_.get(); }
 
   private:
     struct Whole {
@@ -51,7 +51,7 @@ class SnapshotDecoder {
     Result<DecodedSnapshot> decode_tiles(evod::v1::SnapshotFrame frame);
     void forget();
 
-    std::shared_ptr<const QuantisedSnapshot> scene_;
+    std::shared_ptr<const QuantisedSnapshot> snapshot_;
     std::optional<Whole> whole_;
     std::optional<Tiles> tiles_;
 };

@@ -80,8 +80,8 @@ TileRange tiles_of(const TileLayout& layout) {
     return {.column_begin = 0, .column_end = layout.columns, .row_begin = 0, .row_end = layout.rows};
 }
 
-SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> scene, const TileLayout& layout)
-    : scene_{std::move(scene)}
+SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, const TileLayout& layout)
+    : snapshot_{std::move(snapshot)}
     , layout_{layout}
     , side_log2_{static_cast<unsigned>(std::countr_zero(layout.tile_px)) + steps_per_px_log2}
     , together_(layout.count()) {
@@ -90,7 +90,7 @@ SnapshotTiles::SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> scene, con
     static_assert(tiles_max <= 1 << 16);
     std::uint64_t counted = 0;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-        const Entities& entities = (*scene_).*snapshot_parts[p];
+        const Entities& entities = (*snapshot_).*snapshot_parts[p];
         const std::size_t size = entities.x.size();
         Part& part = parts_[p];
         part.begin.resize(count + 1);
@@ -144,7 +144,7 @@ Counts SnapshotTiles::counts_before(std::uint32_t tile) const {
 
 QuantisedView SnapshotTiles::full(std::uint32_t tile) {
     QuantisedView view;
-    view.position_bytes = scene_->position_bytes;
+    view.position_bytes = snapshot_->position_bytes;
     view.of_tile = true;
     constexpr std::array<EntitiesView QuantisedView::*, snapshot_parts.size()> parts_seen{
         &QuantisedView::organisms, &QuantisedView::food, &QuantisedView::poison, &QuantisedView::crates,
@@ -158,7 +158,7 @@ QuantisedView SnapshotTiles::full(std::uint32_t tile) {
         }
         Part& part = parts_[p];
         const std::uint32_t begin = part.begin[tile];
-        const Entities& from = (*scene_).*snapshot_parts[p];
+        const Entities& from = (*snapshot_).*snapshot_parts[p];
         const auto column = [&](std::size_t c, const Column& whole) -> Numbers {
             if (whole.empty()) {
                 return {};
@@ -194,7 +194,7 @@ std::string SnapshotTiles::dots(std::uint32_t tile) const {
     std::size_t next = 0;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         for (const std::uint32_t entity : of(p, tile)) {
-            const Place at = place((*scene_).*snapshot_parts[p], entity, tile);
+            const Place at = place((*snapshot_).*snapshot_parts[p], entity, tile);
             body[next] = static_cast<char>(at.x);
             body[count + next++] = static_cast<char>(at.y);
         }
@@ -210,7 +210,7 @@ std::string SnapshotTiles::density(std::uint32_t tile) const {
     for (std::size_t p = 0; p < counted_parts; ++p) {
         std::fill(cells.begin(), cells.end(), 0U);
         for (const std::uint32_t entity : of(p, tile)) {
-            const Place at = place((*scene_).*snapshot_parts[p], entity, tile);
+            const Place at = place((*snapshot_).*snapshot_parts[p], entity, tile);
             ++cells[(static_cast<std::size_t>(at.y >> shift) << cells_per_side_log2_) + (at.x >> shift)];
         }
         writer.column(cells);
@@ -219,7 +219,7 @@ std::string SnapshotTiles::density(std::uint32_t tile) const {
 }
 
 Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const QuantisedSnapshot* const> tiles) {
-    QuantisedSnapshot scene{.position_bytes = position_bytes, .of_tile = true};
+    QuantisedSnapshot snapshot{.position_bytes = position_bytes, .of_tile = true};
     struct Found {
         std::uint32_t id, tile, index;
     };
@@ -236,7 +236,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
         if (const auto twice = std::ranges::adjacent_find(found, {}, &Found::id); twice != found.end()) {
             return Damage{"a snapshot has id " + std::to_string(twice->id) + " in two tiles"};
         }
-        Entities& to = scene.*part;
+        Entities& to = snapshot.*part;
         const auto gather = [&](Column Entities::*column) {
             for (const Found& one : found) {
                 const Column& from = tiles[one.tile]->*part.*column;
@@ -249,7 +249,7 @@ Result<QuantisedSnapshot> merged(std::uint32_t position_bytes, std::span<const Q
             gather(column);
         }
     }
-    return scene;
+    return snapshot;
 }
 
 Result<DecodedDots> decode_dots(std::string_view body, const Counts& counts, const TileLayout& layout,
@@ -306,16 +306,16 @@ Result<DecodedDensity> decode_density(std::string_view body, const Counts& count
     return density;
 }
 
-std::uint32_t checksum_of(const evod::v1::SnapshotFrame& about, const evod::v1::SnapshotTile& tile,
+std::uint32_t checksum_of(std::uint32_t tile_px, std::uint32_t position_bytes, const evod::v1::SnapshotTile& tile,
                           std::string_view body) {
     std::array<char, 3 * 4> place;
-    store(std::uint32_t{about.tile_px()}, &place[0]);
+    store(tile_px, &place[0]);
     store(std::uint32_t{tile.tile()}, &place[4]);
     store(static_cast<std::uint32_t>(tile.detail()), &place[8]);
     return checksum_of({.sequence = tile.sequence(),
                         .base_sequence = tile.base_sequence(),
                         .counts = counts_of(tile),
-                        .position_bytes = about.position_bytes()},
+                        .position_bytes = position_bytes},
                        body, crc32({place.data(), place.size()}));
 }
 

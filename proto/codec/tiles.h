@@ -67,11 +67,11 @@ TileRange tiles_of(const evod::v1::Region& region, const TileLayout& layout);
 /// All of them.
 TileRange tiles_of(const TileLayout& layout);
 
-/// A scene, and what of it is in which tile. To make one is to number the entities; those of a tile are put together
+/// A snapshot, and what of it is in which tile. To make one is to number the entities; those of a tile are put together
 /// when it is first asked for. Used by one thread.
 class SnapshotTiles {
   public:
-    SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> scene, const TileLayout& layout);
+    SnapshotTiles(std::shared_ptr<const QuantisedSnapshot> snapshot, const TileLayout& layout);
 
     const TileLayout& layout() const { return layout_; }
 
@@ -87,9 +87,9 @@ class SnapshotTiles {
 
   private:
     struct Part {
-        std::vector<std::uint32_t> order; // indices of the scene's entities, tile after tile, rising within each
+        std::vector<std::uint32_t> order; // indices of the snapshot's entities, tile after tile, rising within each
         std::vector<std::uint32_t> begin; // of each tile in `order`; and the end of the last
-        // The scene's columns in that order, of the tiles that are put together; null where it has none, and before.
+        // The snapshot's columns in that order, of the tiles that are put together; null where it has none, and before.
         std::array<std::unique_ptr<std::uint32_t[]>, 5> columns;
     };
     std::span<const std::uint32_t> of(std::size_t part, std::uint32_t tile) const;
@@ -99,7 +99,7 @@ class SnapshotTiles {
     };
     Place place(const Entities& entities, std::uint32_t entity, std::uint32_t tile) const;
 
-    std::shared_ptr<const QuantisedSnapshot> scene_;
+    std::shared_ptr<const QuantisedSnapshot> snapshot_;
     TileLayout layout_;
     unsigned side_log2_;               // of a tile, in steps
     unsigned cells_per_side_log2_ = 0; // of densities
@@ -118,10 +118,11 @@ Result<DecodedDensity> decode_density(std::string_view body, const Counts& count
 /// The longest body that a tile of DETAIL_DENSITY can have.
 constexpr std::uint64_t density_bytes_max = 16 << 10;
 
-/// DecodedTile.checksum.
+/// SnapshotTile.checksum.
 ///
-/// about  the frame that the tile is in; body: before it is compressed.
-std::uint32_t checksum_of(const evod::v1::SnapshotFrame& about, const evod::v1::SnapshotTile& tile,
+/// tile_px, position_bytes  of the frame.
+/// body                     before compression.
+std::uint32_t checksum_of(std::uint32_t tile_px, std::uint32_t position_bytes, const evod::v1::SnapshotTile& tile,
                           std::string_view body);
 
 } // namespace evod::codec

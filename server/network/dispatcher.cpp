@@ -163,7 +163,7 @@ void refuse(v1::Response& response, const base::Refusal& refused) {
 } // namespace
 
 Dispatcher::Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
-                       runtime::Demand& demand, Streams& streams, LimitCounters& limit_counters,
+                       runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
                        std::function<void()> shut_down, std::function<v1::Metrics()> metrics)
     : mailbox_{mailbox}
     , outbox_{outbox}
@@ -400,7 +400,7 @@ bool Dispatcher::carry_out(simulation::Command command, const v1::Request& reque
                 streams_.forget_world(world);
             }
             if (told->event) {
-                streams_.tell(*told->event);
+                streams_.publish(*told->event);
             }
             if (told->refused) {
                 return; // nothing has changed
@@ -582,8 +582,8 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
     }
     if (request.has_set_view()) {
         const std::uint32_t subscription_id = request.set_view().subscription_id();
-        const auto found = session.snapshots.find(subscription_id);
-        if (found == session.snapshots.end()) {
+        const auto found = session.snapshots.subscriptions.find(subscription_id);
+        if (found == session.snapshots.subscriptions.end()) {
             return refuse_it(no_such_subscription("set_view.subscription_id", subscription_id));
         }
         if (!found->second.view) {
@@ -600,15 +600,15 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
 
     // The world is looked up by the simulation; the subscription begins back here.
     const auto full = [this](const Session& s) {
-        const bool is = s.snapshots.size() + s.events.size() >= subscriptions_max;
+        const bool is = s.snapshots.subscriptions.size() + s.events.size() >= subscriptions_max;
         if (is) {
             limit_counters_.met(Limit::Subscriptions);
         }
         return is;
     };
-    const auto too_many_islands = [this](const Session& s, const SnapshotSubscription& wanted) {
+    const auto too_many_islands = [this](const Session& s, const streaming::SnapshotSubscription& wanted) {
         std::size_t watched = wanted.island_count;
-        for (const auto& [number, other] : s.snapshots) {
+        for (const auto& [number, other] : s.snapshots.subscriptions) {
             watched += other.island_count;
         }
         if (watched > watched_islands_max) {
@@ -622,7 +622,7 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                                   base::Reason::SubscriptionsMax);
     const std::string name = name_of(request);
     if (request.has_subscribe_snapshots()) {
-        auto wanted = std::make_shared<SnapshotSubscription>();
+        auto wanted = std::make_shared<streaming::SnapshotSubscription>();
         ask(
             session, id,
             [this, name, request, wanted](const simulation::Laboratory& laboratory, v1::Response& response) {
@@ -631,26 +631,11 @@ void Dispatcher::subscription(Session& session, const v1::Request& request) {
                 if (!watched) {
                     return refuse(response, protocol::with_paths(watched.error(), name));
                 }
-                wanted->world = watched->world;
-                if (subscribe.has_island()) {
-                    wanted->island = subscribe.island();
-                } else {
-                    wanted->island_count = watched->island_count;
-                }
-                wanted->rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
-                if (wanted->rate_hz < subscribe.rate_hz()) {
+                const double rate_hz = std::clamp(subscribe.rate_hz(), snapshot_rate_hz_min, snapshot_rate_hz_max);
+                if (rate_hz < subscribe.rate_hz()) {
                     limit_counters_.met(Limit::SnapshotRate);
                 }
-                if (subscribe.codec() != v1::CODEC_UNSPECIFIED) {
-                    wanted->codec = subscribe.codec();
-                }
-                wanted->compression = subscribe.compression();
-                if (subscribe.has_unacknowledged_max()) {
-                    wanted->unacknowledged_max = subscribe.unacknowledged_max();
-                }
-                if (subscribe.has_view()) {
-                    wanted->set_view(subscribe.view());
-                }
+                *wanted = streaming::to_subscription(subscribe, watched->world, watched->island_count, rate_hz);
             },
             [this, wanted, full, too_many, too_many_islands](Session& subscriber, v1::Response& response) {
                 if (response.status().code() != v1::CODE_UNSPECIFIED) {

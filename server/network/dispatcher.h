@@ -23,9 +23,9 @@ class Dispatcher {
     /// Everything handed in outlives the dispatcher, and the simulation thread ends before it.
     /// shut_down  ends the server.
     /// metrics    what it counts.
-    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox, runtime::Demand& demand,
-               Streams& streams, LimitCounters& limit_counters, std::function<void()> shut_down,
-               std::function<v1::Metrics()> metrics);
+    Dispatcher(asio::io_context& context, runtime::Mailbox& mailbox, runtime::Outbox& outbox,
+               runtime::StreamDemand& demand, Streams& streams, LimitCounters& limit_counters,
+               std::function<void()> shut_down, std::function<v1::Metrics()> metrics);
 
     void handle(Session& session, v1::Request request);
 
@@ -86,7 +86,7 @@ class Dispatcher {
 
     runtime::Mailbox& mailbox_;
     runtime::Outbox& outbox_;
-    runtime::Demand& demand_;
+    runtime::StreamDemand& demand_;
     Streams& streams_;
     LimitCounters& limit_counters_;
     std::function<void()> shut_down_;

@@ -281,7 +281,7 @@ bool Server::run() {
                     // As an answer is, so that it is not dropped among many events: newcomers are told of it, too.
                     outbox_.answer([this, event = protocol::event_of(storage)] {
                         host_.storage = event.storage_changed().storage();
-                        streams_.tell(event);
+                        streams_.publish(event);
                     });
                 },
             .counted = &worlds_counted_,

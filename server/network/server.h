@@ -125,7 +125,7 @@ class Server {
     std::optional<runtime::TimeTravel::Replay> replay_; // until the simulation has it
     runtime::SteadyClock clock_;
     runtime::Mailbox mailbox_;
-    runtime::Demand demand_;
+    runtime::StreamDemand demand_;
     runtime::Outbox outbox_;
     metrics::Worlds worlds_counted_;
     Pulse pulse_{mailbox_, outbox_};

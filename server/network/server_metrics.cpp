@@ -58,7 +58,7 @@ void add_sessions(v1::Metrics& to, const Sessions& all, std::size_t sessions_max
     std::uint64_t pictures = 0, events = 0;
     for (const auto& [session_number, session] : all) {
         ++by_role[session->greeted() ? access::name_of(session->visitor().role) : "none"];
-        pictures += session->snapshots.size();
+        pictures += session->snapshots.subscriptions.size();
         events += session->events.size();
     }
     auto sessions = add_gauge(to, "evod_sessions", "Connected clients; none: those that have not said hello yet");

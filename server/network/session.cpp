@@ -8,7 +8,6 @@
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <google/protobuf/wire_format_lite.h>
 
 #include <netinet/tcp.h>
 
@@ -16,7 +15,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -26,8 +24,8 @@ namespace {
 constexpr std::size_t name_bytes_max = 64;
 constexpr std::uint32_t client_frame_bytes_min = 65'536; // every client takes at least this
 constexpr std::size_t batch_frames_max = 64;
-constexpr std::size_t pictures_at_once = 32; // of one session, before the others have their turn
-// Many parts of a picture, or a few that are short, are put together before they are handed to the system.
+constexpr std::size_t snapshots_at_once = 32; // of one session, before other sessions are served
+// A frame of many parts, or of a few short ones, is copied together before it is passed to the kernel.
 constexpr std::size_t gathered_parts_max = 12, gathered_bytes_min = 32 << 10;
 static_assert(gathered_parts_max + 2 <= Line::buffers_at_once, "there are a header and a tail, too");
 
@@ -100,23 +98,9 @@ SharedBytes encode_event(v1::Event event) {
     return encode_control(message);
 }
 
-void SnapshotSubscription::set_view(const v1::View& wanted) {
-    view = wanted;
-    if (view->detail() == v1::DETAIL_UNSPECIFIED) {
-        view->set_detail(v1::DETAIL_FULL);
-    }
-    const auto bytes_per_s = static_cast<double>(view->bytes_per_s_max());
-    if (!view->has_bytes_per_s_max()) {
-        budget.reset();
-    } else if (budget) {
-        budget->change(bytes_per_s, view->detail());
-    } else {
-        budget.emplace(bytes_per_s, view->detail());
-    }
-}
-
 Session::Session(tcp::socket socket, SessionHost& host, std::uint64_t number)
-    : line_{std::move(socket), host.tls}
+    : snapshots{*host.clock, host.traffic.pictures_dropped, *this}
+    , line_{std::move(socket), host.tls}
     , host_{host}
     , number_{number}
     , peer_{peer_of(line_.socket())}
@@ -339,7 +323,7 @@ void Session::on_frame(const codec::Frame& frame) {
         host_.handle(*this, std::move(*message->mutable_request()));
         break;
     case v1::ClientMessage::kAcknowledgeSnapshot:
-        on_acknowledgement(message->acknowledge_snapshot());
+        snapshots.acknowledge(message->acknowledge_snapshot());
         break;
     case v1::ClientMessage::kHello:
         send_unasked(protocol::refusing(0, refusal(base::RefusalCode::FailedPrecondition,
@@ -390,6 +374,7 @@ void Session::on_hello(const v1::Hello& hello) {
     greeted_ = true;
     if (hello.frame_bytes_max() != 0) {
         frame_bytes_max_ = hello.frame_bytes_max();
+        snapshots.set_frame_bytes_max(frame_bytes_max_);
     }
     hello_timer_.cancel();
     reader_.set_limits({.control_bytes_max = control_frame_bytes_max(), .stream_bytes_max = std::nullopt});
@@ -535,241 +520,36 @@ void Session::count_dropped_events(std::uint64_t count) {
     wake_writer();
 }
 
-void Session::count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count) {
-    if (count == 0) {
-        return;
-    }
-    of.dropped_count += count;
-    host_.traffic.pictures_dropped.add(count);
-}
-
-void Session::picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture) {
-    const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end() || finishing_ || ended_) {
-        return;
-    }
-    SnapshotSubscription::Island& of = subscription->second.islands[island];
-    const bool waited = static_cast<bool>(of.waiting), was_shown = of.shown.has_value();
-    if (waited && was_shown) {
-        of.not_before = {};
-    } else if (waited) {
-        count_dropped_pictures(subscription->second, 1);
-    }
-    of.shown.reset();
-    of.columns = picture.columns ? Buffers::Held{host_.buffers, picture.columns} : Buffers::Held{};
-    of.waiting = std::move(picture);
-    if (!waited || was_shown) {
-        give_turn(subscription_id, island, of);
-    }
-}
-
-void Session::send_waiting() {
-    // Without waking the writer: with many viewers that would cost as much as all the rest.
-    if (idle_ && may_send_pictures()) {
-        send_pictures();
-    } else {
-        wake_writer();
-    }
-}
-
-void Session::keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
-    const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end()) {
-        return;
-    }
-    SnapshotSubscription::Island& of = subscription->second.islands[island];
-    of.last_sent = 0;
-    of.tiles_sent.forget();
-    show_again(subscription_id, island, std::move(newest));
-}
-
-void Session::show_again(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest) {
-    const auto subscription = snapshots.find(subscription_id);
-    if (subscription == snapshots.end()) {
-        return;
-    }
-    SnapshotSubscription::Island& of = subscription->second.islands[island];
-    of.not_before = {};
-    of.shown.reset();
-    if (of.waiting) {
-        give_turn(subscription_id, island, of);
-    } else {
-        picture(subscription_id, island, std::move(newest));
-    }
-    wake_writer(); // and no more: the answer to what asked for this goes first
-}
-
-void Session::on_acknowledgement(const v1::AcknowledgeSnapshot& acknowledged) {
-    const auto subscription = snapshots.find(acknowledged.subscription_id());
-    if (subscription == snapshots.end()) {
-        return; // unsubscribed while it was on its way
-    }
-    const auto island = subscription->second.islands.find(acknowledged.island());
-    if (island == subscription->second.islands.end()) {
-        return;
-    }
-    auto& unacknowledged = island->second.unacknowledged;
-    while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence()) {
-        unacknowledged.pop_front();
-    }
-    if (island->second.waiting && island->second.turn == 0) {
-        give_turn(acknowledged.subscription_id(), acknowledged.island(), island->second);
-    }
-    wake_writer();
-}
-
-void Session::give_turn(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Island& of) {
-    of.turn = ++last_turn_;
-    turns_.push_back({subscription_id, island, of.turn});
-}
-
-bool Session::next_picture() {
-    const auto now = host_.clock->now();
-    while (!postponed_.empty() && postponed_.begin()->first <= now) {
-        turns_.push_back(postponed_.begin()->second);
-        postponed_.erase(postponed_.begin());
-    }
-    // Each turn is looked at once, however many there are: those that are not due go elsewhere, or away.
-    while (!turns_.empty()) {
-        const Turn turn = turns_.front();
-        turns_.pop_front();
-        const auto found = snapshots.find(turn.subscription_id);
-        if (found == snapshots.end()) {
-            continue; // unsubscribed
-        }
-        SnapshotSubscription& subscription = found->second;
-        const auto of = subscription.islands.find(turn.island);
-        if (of == subscription.islands.end() || of->second.turn != turn.number || !of->second.waiting) {
-            continue;
-        }
-        SnapshotSubscription::Island& island = of->second;
-        if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max) {
-            island.turn = 0; // until an acknowledgement comes
-            continue;
-        }
-        if (!take(turn.subscription_id, subscription, island)) {
-            postponed_.emplace(island.not_before, turn);
-            continue;
-        }
-        if (outgoing_.body_bytes() > frame_bytes_max_) {
-            leave_out(subscription, island);
-            continue;
-        }
-        if (island.waiting) {
-            give_turn(turn.subscription_id, turn.island, island);
-        }
-        return true;
-    }
-    next_budget_ = postponed_.empty() ? runtime::Clock::time_point::max() : postponed_.begin()->first;
-    return false;
-}
-
-void Session::leave_out(SnapshotSubscription& subscription, SnapshotSubscription::Island& island) {
-    count_dropped_pictures(subscription, 1);
-    if (subscription.unacknowledged_max) {
-        island.unacknowledged.pop_back();
-    }
-    island.waiting = {};
-    island.columns = {};
-    island.shown.reset();
-    island.last_sent = 0; // the next one is not encoded against a picture that the client has not
-    island.tiles_sent.forget();
-}
-
-bool Session::take(std::uint32_t subscription_id, SnapshotSubscription& subscription,
-                   SnapshotSubscription::Island& island) {
-    outgoing_.parts.clear();
-    set_tail(outgoing_, subscription_id, subscription.dropped_count);
-    outgoing_.picture = island.waiting;
-    const SnapshotSubscription::Waiting& picture = outgoing_.picture;
-    if (picture.columns) {
-        outgoing_.parts.push_back(&picture.columns);
-    } else if (picture.chained) {
-        outgoing_.parts.push_back(&picture.chained->after(island.last_sent, subscription.compression));
-    } else {
-        const v1::View& view = *subscription.view;
-        const codec::TileLayout& layout = picture.tiled->layout();
-        const codec::TileRange seen =
-            view.has_region() ? codec::tiles_of(view.region(), layout) : codec::tiles_of(layout);
-        const auto add_parts = [&](v1::Detail detail) {
-            outgoing_.parts.clear();
-            island.tiles_sent.add_parts(*picture.tiled, seen, detail, subscription.compression, outgoing_.parts);
-        };
-        v1::Detail detail = view.detail();
-        if (subscription.budget) {
-            const auto now = host_.clock->now();
-            if (now < island.not_before) {
-                return false;
-            }
-            const auto cost = [&](v1::Detail tried) {
-                add_parts(tried);
-                return codec::header_bytes + outgoing_.body_bytes();
-            };
-            const streaming::Bandwidth::Choice choice = island.shown
-                                                            ? subscription.budget->look_closer(now, *island.shown, cost)
-                                                            : subscription.budget->choose(now, cost);
-            island.not_before = choice.again;
-            if (!choice.detail) {
-                return false;
-            }
-            detail = *choice.detail;
-        } else {
-            add_parts(detail);
-        }
-        island.tiles_sent.sent(*picture.tiled, seen, detail);
-        island.shown.reset();
-        if (detail != view.detail()) {
-            island.shown = detail;
-        }
-    }
-    island.last_sent = picture.sequence;
-    if (subscription.unacknowledged_max) {
-        island.unacknowledged.push_back(picture.sequence);
-    }
-    if (!island.shown) {
-        island.waiting = {};
-        island.columns = {};
-    }
-    return true;
-}
-
-void Session::set_tail(Outgoing& of, std::uint32_t subscription_id, std::uint64_t dropped_count) {
-    using google::protobuf::internal::WireFormatLite;
-    std::uint8_t* end = WireFormatLite::WriteUInt32ToArray(v1::SnapshotFrame::kSubscriptionIdFieldNumber,
-                                                           subscription_id, of.tail_room.data());
-    if (dropped_count > 0) {
-        end = WireFormatLite::WriteUInt64ToArray(v1::SnapshotFrame::kDroppedCountFieldNumber, dropped_count, end);
-    }
-    of.tail_bytes = static_cast<std::size_t>(end - of.tail_room.data());
-}
-
-std::size_t Session::Outgoing::body_bytes() const {
-    return std::accumulate(parts.begin(), parts.end(), tail_bytes,
-                           [](std::size_t bytes, const SharedBytes* part) { return bytes + (*part)->size(); });
-}
-
-bool Session::may_send_pictures() const {
+bool Session::may_send_snapshots() const {
     return begun_ && !finishing_ && !ended_ && !input_over_ && queue_.empty() && sending_.empty() &&
            dropped_events_ == 0;
 }
 
-void Session::send_pictures() {
-    std::size_t sent = 0;
-    for (; sent < pictures_at_once && may_send_pictures() && next_picture(); ++sent) {
-        send_outgoing();
+void Session::send_snapshots() {
+    if (!idle_ || !may_send_snapshots()) {
+        return wake_writer();
     }
-    outgoing_.picture = {}; // nobody counts what it holds
-    if (sent == pictures_at_once || next_budget_ != runtime::Clock::time_point::max() || !may_send_pictures()) {
+    // Without waking the writer: with many viewers that would cost as much as all the rest.
+    std::size_t sent = 0;
+    for (; sent < snapshots_at_once && may_send_snapshots(); ++sent) {
+        const streaming::OutgoingFrame* const frame = snapshots.next();
+        if (frame == nullptr) {
+            break;
+        }
+        send_frame(*frame);
+    }
+    snapshots.release();
+    if (sent == snapshots_at_once || snapshots.retry_at() != runtime::Clock::time_point::max() ||
+        !may_send_snapshots()) {
         wake_writer();
     }
 }
 
-void Session::send_outgoing() {
-    const auto& parts = outgoing_.parts;
-    const auto& header = outgoing_.header;
-    const auto tail_begin = reinterpret_cast<const char*>(outgoing_.tail_room.data());
-    const std::size_t body_bytes = outgoing_.body_bytes();
-    outgoing_.header =
+void Session::send_frame(const streaming::OutgoingFrame& frame) {
+    const auto& parts = frame.parts;
+    const std::string_view tail = frame.tail_view();
+    const std::size_t body_bytes = frame.body_bytes();
+    const auto header =
         codec::encode_header({.channel = codec::Channel::Stream, .body_bytes = static_cast<std::uint32_t>(body_bytes)});
     const bool together = parts.size() > gathered_parts_max || body_bytes < gathered_bytes_min;
     std::array<asio::const_buffer, Line::buffers_at_once> buffers;
@@ -779,14 +559,14 @@ void Session::send_outgoing() {
         for (const SharedBytes* part : parts) {
             host_.frame += **part;
         }
-        host_.frame.append(tail_begin, outgoing_.tail_bytes);
+        host_.frame += tail;
         buffers[buffer_count++] = asio::buffer(host_.frame);
     } else {
         buffers[buffer_count++] = asio::buffer(header);
         for (const SharedBytes* part : parts) {
             buffers[buffer_count++] = asio::buffer(**part);
         }
-        buffers[buffer_count++] = asio::buffer(tail_begin, outgoing_.tail_bytes);
+        buffers[buffer_count++] = asio::buffer(tail);
     }
     const auto [error, count] = line_.write_now(std::span{buffers}.first(buffer_count));
     if (error) {
@@ -796,19 +576,19 @@ void Session::send_outgoing() {
     if (count == header.size() + body_bytes) {
         return host_.traffic.pictures_sent.add();
     }
-    // Parts are held as what they are, shared by all who are sent them.
     rest_.buffers.clear();
     if (together) {
         const auto rest = std::make_shared<const std::string>(host_.frame, count);
-        sending_.push_back({{host_.buffers, rest}, Kind::Picture});
+        sending_.push_back({{host_.buffers, rest}, Kind::Snapshot});
         rest_.buffers.push_back(asio::buffer(*rest));
         return;
     }
+    // The parts are not copied: all sessions that are sent them share them.
     rest_.header = header;
-    rest_.tail.assign(tail_begin, outgoing_.tail_bytes);
+    rest_.tail = tail;
     rest_.buffers.push_back(asio::buffer(rest_.header));
     for (const SharedBytes* part : parts) {
-        sending_.push_back({{host_.buffers, *part}, Kind::Picture});
+        sending_.push_back({{host_.buffers, *part}, Kind::Snapshot});
         rest_.buffers.push_back(asio::buffer(**part));
     }
     rest_.buffers.push_back(asio::buffer(rest_.tail));
@@ -900,18 +680,18 @@ asio::awaitable<void> Session::write() {
             v1::Event event;
             event.mutable_events_dropped()->set_dropped_count(std::exchange(dropped_events_, 0));
             enqueue(encode_event(std::move(event)), Kind::Event);
-        } else if (!finishing_ && next_picture()) {
-            send_outgoing();
-            // Other sessions have their turn, too.
-            if (++sent_at_once == pictures_at_once) {
+        } else if (const auto* frame = finishing_ ? nullptr : snapshots.next()) {
+            send_frame(*frame);
+            // Other sessions are served in between.
+            if (++sent_at_once == snapshots_at_once) {
                 sent_at_once = 0;
                 co_await asio::post(line_.socket().get_executor(), no_throw);
             }
         } else if (finishing_) {
             break;
         } else {
-            outgoing_.picture = {}; // nobody counts what it holds
-            co_await wait_for_work(next_budget_);
+            snapshots.release();
+            co_await wait_for_work(snapshots.retry_at());
         }
     }
     if (finishing_ && !ended_) {
@@ -947,11 +727,6 @@ std::size_t Session::held_bytes() const {
     for (const Queued& queued : sending_) {
         bytes += queued.bytes.share();
     }
-    for (const auto& [id, subscription] : snapshots) {
-        for (const auto& [index, island] : subscription.islands) {
-            bytes += island.columns.share();
-        }
-    }
     return bytes;
 }
 
@@ -968,6 +743,7 @@ void Session::finish() {
         return;
     }
     finishing_ = true;
+    snapshots.stop();
     hello_timer_.cancel();
     turn_timer_.cancel();
     farewell_timer_.expires_after(farewell_timeout);
@@ -994,11 +770,7 @@ void Session::close() {
     farewell_timer_.cancel();
     // What is being sent goes when the line has let go of it.
     queue_.clear();
-    for (auto& [id, subscription] : snapshots) {
-        subscription.islands.clear();
-    }
-    turns_.clear();
-    postponed_.clear();
+    snapshots.clear();
     reader_bytes_.set(0);
     expected_bytes_.set(0);
     held_back_.clear();

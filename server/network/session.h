@@ -19,9 +19,7 @@
 #include "server/network/line.h"
 #include "server/network/token_bucket.h"
 #include "server/runtime/clock.h"
-#include "server/streaming/bandwidth.h"
-#include "server/streaming/delta_stream.h"
-#include "server/streaming/tiles.h"
+#include "server/streaming/snapshot_queue.h"
 
 #include <boost/asio/steady_timer.hpp>
 
@@ -64,48 +62,11 @@ struct SessionHost {
     std::function<void(Session&)> ended = {}; // called once
 };
 
-struct SnapshotSubscription {
-    std::string world;
-    std::optional<std::uint32_t> island; // nullopt: all
-    std::uint32_t island_count = 1;      // of these, when it began
-    double rate_hz = 1;
-    std::uint64_t newcomer = 0;              // number of the subscription among all of the server
-    runtime::Clock::time_point next_picture; // not before then
-    std::uint64_t dropped_count = 0;
-    v1::Codec codec = v1::CODEC_COLUMNS;
-    v1::Compression compression = v1::COMPRESSION_NONE;
-    std::optional<std::uint32_t> unacknowledged_max; // pictures of an island on their way; nullopt: any number
-    std::optional<v1::View> view;                    // CODEC_DELTA: pictures come in tiles
-    std::optional<streaming::Bandwidth> budget;      // of view
-
-    void set_view(const v1::View& wanted);
-
-    /// A picture as it waits, in one of three ways.
-    struct Waiting {
-        std::uint64_t sequence = 0;
-        SharedBytes columns = {};                 // fields 1 to 49
-        streaming::DeltaSnapshotPtr chained = {}; // CODEC_DELTA: its form is chosen when it is sent
-        streaming::TiledSnapshotPtr tiled = {};   // with a view: so are its tiles and theirs
-        explicit operator bool() const { return columns || chained || tiled; }
-    };
-    struct Island {
-        Waiting waiting;                          // the newest picture not yet sent, or not as closely as is wanted
-        std::optional<v1::Detail> shown;          // of `waiting`: as it was sent; nullopt: it was not
-        Buffers::Held columns;                    // of `waiting`; chained ones are kept by their chain
-        runtime::Clock::time_point not_before;    // the budget does not allow it
-        std::uint64_t last_sent = 0;              // its sequence; 0: a keyframe is next
-        streaming::SentTiles tiles_sent;          // with a view
-        std::deque<std::uint64_t> unacknowledged; // sequences, rising; empty without unacknowledged_max
-        std::uint64_t turn = 0;                   // number of its turn to be sent; 0: it waits for an acknowledgement
-    };
-    std::map<std::uint32_t, Island> islands; // by index
-};
-
 struct EventSubscription {
     std::optional<std::string> world; // nullopt: all
 };
 
-class Session : public std::enable_shared_from_this<Session> {
+class Session : public std::enable_shared_from_this<Session>, private streaming::SnapshotSender {
   public:
     Session(tcp::socket socket, SessionHost& host, std::uint64_t number);
 
@@ -134,17 +95,6 @@ class Session : public std::enable_shared_from_this<Session> {
     void send_unasked(const v1::Response& response);
     void event(const SharedBytes& frame);
     void count_dropped_events(std::uint64_t count);
-    /// Pictures of one of its subscriptions that were replaced by newer ones.
-    void count_dropped_pictures(SnapshotSubscription& of, std::uint64_t count);
-    /// Takes a picture for a subscription in the place of one that has not been sent; send_waiting() is to follow.
-    void picture(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting picture);
-    /// Sends pictures that wait: at once, as far as they may be sent and the line takes them.
-    void send_waiting();
-    /// What this subscription is sent next of an island is a keyframe: one that waits, or else `newest`.
-    void keyframe(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest);
-    /// Something else is to be seen of an island now: of the picture that waits, or else of `newest`.
-    void show_again(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Waiting newest);
-
     /// Says what was wrong, and ends the session.
     void fail(const base::Refusal& refusal);
     /// Writes what is waiting, then closes; no more requests are read.
@@ -161,7 +111,7 @@ class Session : public std::enable_shared_from_this<Session> {
     void make_room();
 
     std::uint32_t next_subscription_id() { return ++subscription_id_; }
-    std::map<std::uint32_t, SnapshotSubscription> snapshots; // by subscription id
+    streaming::SnapshotQueue snapshots; // its subscriptions to snapshots, and what waits of them
     std::map<std::uint32_t, EventSubscription> events;
     std::set<std::string> pasts; // worlds that it has opened to look at the past
 
@@ -173,9 +123,9 @@ class Session : public std::enable_shared_from_this<Session> {
     std::optional<v1::Request> take_held_back();
 
   private:
-    enum class Kind { Answer, Unasked, Event, Picture };
+    enum class Kind { Answer, Unasked, Event, Snapshot };
     struct Queued {
-        Buffers::Held bytes; // a frame, or fields 1 to 49 of a picture
+        Buffers::Held bytes; // a frame, or a part of a snapshot
         Kind kind;
     };
 
@@ -193,30 +143,11 @@ class Session : public std::enable_shared_from_this<Session> {
     /// Of a frame from the client, after its hello.
     std::uint32_t control_frame_bytes_max() const;
     void on_hello(const v1::Hello& hello);
-    void on_acknowledgement(const v1::AcknowledgeSnapshot& acknowledged);
-    /// A picture whose turn it is.
-    struct Outgoing {
-        SnapshotSubscription::Waiting picture; // has the parts
-        std::vector<const SharedBytes*> parts; // fields 1 to 49
-        std::array<std::byte, codec::header_bytes> header;
-        std::array<std::uint8_t, 24> tail_room; // begins with fields 50 and up
-        std::size_t tail_bytes = 0;
-        std::size_t body_bytes() const;
-    };
-    /// Puts the picture whose turn it is into outgoing_; false: none may be sent now.
-    bool next_picture();
-    /// Gives what waits of an island its turn, after those that have one.
-    void give_turn(std::uint32_t subscription_id, std::uint32_t island, SnapshotSubscription::Island& of);
-    /// Drops the picture in outgoing_, which is larger than the client takes.
-    void leave_out(SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
-    /// Sends the pictures that may be sent now, as far as the line takes them at once. What is left of one goes into
-    /// sending_ and rest_, and the writer sees to it.
-    void send_pictures();
-    void send_outgoing();
-    static void set_tail(Outgoing& of, std::uint32_t subscription_id, std::uint64_t dropped_count);
-    bool may_send_pictures() const;
-    /// The same of this one. false: the budget does not allow it yet.
-    bool take(std::uint32_t subscription_id, SnapshotSubscription& subscription, SnapshotSubscription::Island& island);
+    void send_snapshots() override;
+    void send_snapshots_later() override { wake_writer(); }
+    /// Writes a frame as far as the connection accepts it at once. The rest goes into sending_ and rest_ for the writer.
+    void send_frame(const streaming::OutgoingFrame& frame);
+    bool may_send_snapshots() const;
     void enqueue(SharedBytes frame, Kind kind);
     /// Whether the client takes a frame of that size, header included.
     bool takes(std::size_t frame_bytes) const { return frame_bytes - codec::header_bytes <= frame_bytes_max_; }
@@ -257,23 +188,12 @@ class Session : public std::enable_shared_from_this<Session> {
         std::array<std::byte, codec::header_bytes> header;
         std::string tail;
         std::vector<asio::const_buffer> buffers;       // of these, and of what is in sending_
-    } rest_;                                           // of a picture that the line did not take at once
+    } rest_;                                           // of a snapshot that the connection did not accept at once
     std::size_t response_bytes_ = 0, event_bytes_ = 0; // in both
     Line::Progress progress_;
     runtime::Clock::duration stalled_{}; // seen to take nothing, though something waited
     std::size_t in_flight_ = 0;          // requests whose answer is not yet being written
     std::uint64_t dropped_events_ = 0;   // not yet told
-    // Of the pictures that wait in `snapshots`: each has one turn, the last that it was given. One that waits for an
-    // acknowledgement has none until that comes; one that its budget does not allow yet stands in postponed_.
-    struct Turn {
-        std::uint32_t subscription_id, island;
-        std::uint64_t number; // another one than SnapshotSubscription::Island::turn: it was given another turn since
-    };
-    std::deque<Turn> turns_;
-    std::multimap<runtime::Clock::time_point, Turn> postponed_;
-    std::uint64_t last_turn_ = 0;
-    Outgoing outgoing_;
-    runtime::Clock::time_point next_budget_; // when a picture may be sent that its budget does not allow now
     std::uint32_t subscription_id_ = 0;
 };
 

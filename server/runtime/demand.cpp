@@ -4,16 +4,16 @@
 
 namespace evod::runtime {
 
-void Demand::set(Watches watches) {
+void StreamDemand::set(WorldDemands worlds) {
     const std::lock_guard lock{mutex_};
-    watches_ = std::move(watches);
+    worlds_ = std::move(worlds);
     changed_.store(true, std::memory_order_release);
 }
 
-Watches Demand::take() {
+WorldDemands StreamDemand::take() {
     const std::lock_guard lock{mutex_};
     changed_.store(false, std::memory_order_release);
-    return watches_;
+    return worlds_;
 }
 
 } // namespace evod::runtime

@@ -1,6 +1,8 @@
-// Demand: who is watched, and how closely. Nobody watched costs nothing.
+// Stream demand: the worlds and islands that sessions are subscribed to, and how often. A world without subscriptions costs
+// nothing.
 //
-// Threads      set by the network thread, read by the simulation thread when it has changed.
+// Owner        the server.
+// Threads      set by the network thread; read by the simulation thread when it has changed.
 #pragma once
 
 #include <atomic>
@@ -12,31 +14,31 @@
 
 namespace evod::runtime {
 
-/// What all subscriptions to one world want together.
-struct Watch {
-    double rate_hz = 0; // the highest that somebody wants, > 0
+/// What all subscriptions to one world need together.
+struct WorldDemand {
+    double rate_hz = 0; // the highest of their rates, > 0
     bool all_islands = false;
-    std::vector<std::uint32_t> islands; // rising; without meaning for all_islands
-    std::uint64_t newcomers = 0;        // rises when somebody new watches: a picture is wanted now
+    std::vector<std::uint32_t> islands; // rising; meaningless with all_islands
+    std::uint64_t newcomers = 0;        // rises when a subscription needs a snapshot at once
 };
 
-using Watches = std::map<std::string, Watch, std::less<>>; // by world
+using WorldDemands = std::map<std::string, WorldDemand, std::less<>>; // by world
 
-class Demand {
+class StreamDemand {
   public:
-    void set(Watches watches);
+    void set(WorldDemands worlds);
 
     bool changed() const { return changed_.load(std::memory_order_acquire); }
-    Watches take();
+    WorldDemands take();
 
-    /// Whether anybody wants events at all.
+    /// Whether any session is subscribed to events.
     void want_events(bool wanted) { events_wanted_.store(wanted, std::memory_order_relaxed); }
     bool events_wanted() const { return events_wanted_.load(std::memory_order_relaxed); }
 
   private:
     std::atomic<bool> changed_ = false, events_wanted_ = false;
     std::mutex mutex_; // guards what follows
-    Watches watches_;
+    WorldDemands worlds_;
 };
 
 } // namespace evod::runtime

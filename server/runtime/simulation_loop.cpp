@@ -45,7 +45,7 @@ bool changes_something(const simulation::Command& command) {
 
 } // namespace
 
-SimulationLoop::SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
+SimulationLoop::SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                LoopOutputs outputs, simulation::Laboratory laboratory, recording::Recorder* recorder,
                                std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}
@@ -555,7 +555,7 @@ void SimulationLoop::show(const simulation::Entry& entry, Track& track, Clock::t
     if (!track.watch) {
         return;
     }
-    const Watch& watch = *track.watch;
+    const WorldDemand& watch = *track.watch;
     const bool newcomer = track.newcomers_served != watch.newcomers;
     const auto between = seconds(1 / watch.rate_hz);
     if (!newcomer && !track.changed) {

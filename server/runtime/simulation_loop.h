@@ -63,7 +63,7 @@ class SimulationLoop {
     /// laboratory  with the worlds that are there from the beginning.
     /// recorder    what is done is written down there, and commands are answered once they are; nullptr: nothing is.
     /// replay      a world that shows the run of a file.
-    SimulationLoop(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
+    SimulationLoop(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                    simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
                    std::optional<TimeTravel::Replay> replay = {});
 
@@ -94,7 +94,7 @@ class SimulationLoop {
         Clock::duration lost{};         // that its clock was slowed by
         std::uint32_t ticks_a_look = 1; // at full speed
         // For those who watch.
-        const Watch* watch = nullptr;
+        const WorldDemand* watch = nullptr;
         std::uint64_t newcomers_served = 0;
         bool changed = true; // since the last picture, by a command or a goal
         std::uint64_t pictured_tick = 0;
@@ -140,7 +140,7 @@ class SimulationLoop {
     Clock::duration period(const simulation::Entry& entry) const;
 
     Mailbox& mailbox_;
-    Demand& demand_;
+    StreamDemand& demand_;
     base::Executor& executor_;
     Clock& clock_;
     const LoopOutputs outputs_;
@@ -150,7 +150,7 @@ class SimulationLoop {
     std::optional<Clock::time_point> waiting_since_; // for one that does write
     TimeTravel past_;
     std::map<std::string, Track, std::less<>> tracks_;
-    Watches watches_;
+    WorldDemands watches_;
     SnapshotPool pool_;
     std::vector<Mail> mail_;
     std::deque<QueryMail> queries_; // one of a session at most

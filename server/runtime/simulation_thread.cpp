@@ -6,7 +6,7 @@
 
 namespace evod::runtime {
 
-SimulationThread::SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock,
+SimulationThread::SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock,
                                    LoopOutputs outputs, simulation::Laboratory laboratory,
                                    recording::Recorder* recorder, std::optional<TimeTravel::Replay> replay)
     : mailbox_{mailbox}

@@ -14,7 +14,7 @@ namespace evod::runtime {
 class SimulationThread {
   public:
     /// Starts. Everything handed in outlives the thread.
-    SimulationThread(Mailbox& mailbox, Demand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
+    SimulationThread(Mailbox& mailbox, StreamDemand& demand, base::Executor& executor, Clock& clock, LoopOutputs outputs,
                      simulation::Laboratory laboratory = {}, recording::Recorder* recorder = nullptr,
                      std::optional<TimeTravel::Replay> replay = {});
     ~SimulationThread() { stop(); }

@@ -1,10 +1,12 @@
-// Bandwidth: how closely a viewer is shown each picture so that it is sent no more bytes a second than it wants.
+// Bandwidth: the detail in which a viewer is sent each snapshot, so that it gets at most the bytes per second it wants.
 //
-// What is not spent is saved for a while, for keyframes are long. When a picture costs more than there is, detail is
-// left out, and where that does not help the picture is. More detail is tried again after a while, of the same picture
-// if no other has come; if it cannot be kept up, after a longer one.
+// Unspent bytes accumulate for a while, because keyframes are long. When a snapshot costs more than has accumulated, it
+// is sent in less detail; if even the least detail costs too much, it is delayed. More detail is tried again after a
+// while, of the same snapshot if no newer one has arrived. If more detail cannot be sustained, the next attempt comes
+// later.
 //
-// Owner        a subscription; on the network thread.
+// Owner        a subscription.
+// Threads      the network thread.
 #pragma once
 
 #include "evod/v1/stream.pb.h"
@@ -20,92 +22,92 @@ namespace evod::streaming {
 class Bandwidth {
   public:
     using Clock = runtime::Clock;
-    static constexpr double saved_s_max = 2;                                 // of the rate, is saved
-    static constexpr std::chrono::seconds patience_min{2}, patience_max{64}; // before more detail is tried
+    static constexpr double accumulated_s_max = 2;                     // seconds of the rate that can accumulate
+    static constexpr std::chrono::seconds retry_min{2}, retry_max{64}; // until more detail is tried
 
-    /// bytes_per_s  above 0; most: the detail that is wanted.
+    /// bytes_per_s  > 0.
+    /// most         the wanted detail.
     Bandwidth(double bytes_per_s, v1::Detail most) { change(bytes_per_s, most); }
 
-    /// Something else is wanted now: it is shown as closely as it can be. What is saved stays, as far as it may; what
-    /// may be saved beyond that is there, as at the beginning.
+    /// Sets another rate and detail, which is tried at once. Accumulated bytes stay, up to the new maximum. A higher
+    /// maximum is filled at once, as at the beginning.
     void change(double bytes_per_s, v1::Detail most);
 
     struct Choice {
-        std::optional<v1::Detail> detail; // nullopt: the picture cannot be sent yet
-        Clock::time_point again;          // then it can; or, if it is sent in less detail than is wanted, look_closer()
+        std::optional<v1::Detail> detail; // nullopt: the snapshot cannot be sent yet
+        Clock::time_point again;          // when to call again; after less detail than wanted, when to call refine()
     };
-    /// How closely a picture is shown now; what that costs is spent.
+    /// Chooses the detail of a snapshot and spends its cost.
     ///
-    /// cost  bytes of the picture at a detail; asked last of the one that is chosen.
+    /// cost  returns the bytes of the snapshot at a detail; its last call is for the chosen one.
     template <class Cost>
     Choice choose(Clock::time_point now, const Cost& cost);
 
-    /// The same of a picture that was shown already, and stays: in more detail than that, or not at all.
+    /// The same for a snapshot that was already sent: chooses more detail, or none.
     ///
-    /// shown  less than is wanted.
+    /// shown  the detail in which it was sent, less than wanted.
     template <class Cost>
-    Choice look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost);
+    Choice refine(Clock::time_point now, v1::Detail shown, const Cost& cost);
 
   private:
-    double saved_bytes_max() const { return saved_s_max * bytes_per_s_; }
-    Clock::time_point when_saved(double bytes, Clock::time_point now) const;
-    void tell_more(v1::Detail detail, Clock::time_point now);
-    void save(Clock::time_point now);
-    void tell_less(Clock::time_point now);
+    double bytes_max() const { return accumulated_s_max * bytes_per_s_; }
+    Clock::time_point when_accumulated(double bytes, Clock::time_point now) const;
+    void raise_detail(v1::Detail detail, Clock::time_point now);
+    void accumulate(Clock::time_point now);
+    void lower_detail(Clock::time_point now);
     static v1::Detail less(v1::Detail detail) { return static_cast<v1::Detail>(detail + 1); }
 
-    double bytes_per_s_ = 0, saved_bytes_ = 0; // below 0 after a picture longer than can be saved for
+    double bytes_per_s_ = 0, bytes_ = 0; // < 0 after a snapshot longer than can accumulate
     v1::Detail most_ = v1::DETAIL_FULL, detail_ = v1::DETAIL_FULL;
-    Clock::duration patience_ = patience_min;
-    std::optional<Clock::time_point> looked_; // at what is saved
-    Clock::time_point rose_, try_more_;       // to detail_ from less; when that is to be tried
+    Clock::duration retry_after_ = retry_min;
+    std::optional<Clock::time_point> updated_; // bytes_
+    Clock::time_point raised_, try_more_;      // when detail_ was raised; when more detail is tried
 };
 
 template <class Cost>
 Bandwidth::Choice Bandwidth::choose(Clock::time_point now, const Cost& cost) {
-    save(now);
+    accumulate(now);
     if (detail_ != most_ && now >= try_more_) {
-        // From the most on: where little changes, all of a picture that is told from the one before may cost less than
-        // its dots.
-        const auto affordable = [&](v1::Detail detail) { return static_cast<double>(cost(detail)) <= saved_bytes_; };
+        // Starts with the most detail: where little changes, a full delta may cost less than dots.
+        const auto affordable = [&](v1::Detail detail) { return static_cast<double>(cost(detail)) <= bytes_; };
         v1::Detail more = most_;
         while (more != detail_ && !affordable(more)) {
             more = less(more);
         }
-        tell_more(more, now);
+        raise_detail(more, now);
     }
     for (;;) {
         const auto bytes = static_cast<double>(cost(detail_));
-        // What never can be saved for is sent when all is saved that can be.
-        const double needed = std::min(bytes, saved_bytes_max());
-        if (detail_ != v1::DETAIL_DENSITY && bytes > saved_bytes_) {
-            tell_less(now);
+        // A snapshot that costs more than can ever accumulate is sent when the maximum has accumulated.
+        const double needed = std::min(bytes, bytes_max());
+        if (detail_ != v1::DETAIL_DENSITY && bytes > bytes_) {
+            lower_detail(now);
             continue;
         }
-        if (needed > saved_bytes_) {
-            return {std::nullopt, when_saved(needed, now)};
+        if (needed > bytes_) {
+            return {std::nullopt, when_accumulated(needed, now)};
         }
-        saved_bytes_ -= bytes;
+        bytes_ -= bytes;
         return {detail_, detail_ == most_ ? now : try_more_};
     }
 }
 
 template <class Cost>
-Bandwidth::Choice Bandwidth::look_closer(Clock::time_point now, v1::Detail shown, const Cost& cost) {
-    save(now);
+Bandwidth::Choice Bandwidth::refine(Clock::time_point now, v1::Detail shown, const Cost& cost) {
+    accumulate(now);
     if (detail_ >= shown && now < try_more_) {
         return {std::nullopt, try_more_};
     }
     for (v1::Detail detail = most_; detail < shown; detail = less(detail)) {
         const auto bytes = static_cast<double>(cost(detail));
-        if (bytes > saved_bytes_max()) {
+        if (bytes > bytes_max()) {
             continue;
         }
-        if (bytes > saved_bytes_) {
-            return {std::nullopt, when_saved(bytes, now)};
+        if (bytes > bytes_) {
+            return {std::nullopt, when_accumulated(bytes, now)};
         }
-        saved_bytes_ -= bytes;
-        tell_more(detail, now);
+        bytes_ -= bytes;
+        raise_detail(detail, now);
         return {detail, try_more_};
     }
     return {std::nullopt, Clock::time_point::max()};

@@ -1,12 +1,21 @@
 #include "server/streaming/delta_stream.h"
 
-#include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/wire_format_lite.h>
-
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace evod::streaming {
+namespace {
+
+constexpr std::size_t organisms = 0, crates = 3; // in codec::Counts
+
+/// The part of long columns that belongs to one tile.
+template <class Part, class Displacements>
+Part part_of(Displacements& all, std::uint32_t begin, std::uint32_t count) {
+    return {std::span{all.x}.subspan(begin, count), std::span{all.y}.subspan(begin, count)};
+}
+
+} // namespace
 
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after) {
     if (!codec::same_unchanging(after, before) || after.generation() != before.generation() ||
@@ -17,77 +26,153 @@ std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, cons
     return static_cast<std::uint16_t>(after.generation_tick() - before.generation_tick());
 }
 
-DeltaSnapshotPtr DeltaSnapshot::next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                     bool with_delta) const {
-    const auto ticks = ticks_between(*about_, *about);
-    if (!ticks || !with_delta || !codec::follows(*scene, *baseline_.scene)) {
-        return std::make_shared<DeltaSnapshot>(std::move(about), std::move(scene), *compressor_);
+StreamedSnapshot::StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form form,
+                                   const std::shared_ptr<StreamedSnapshot>& previous, runtime::Clock::time_point now,
+                                   runtime::Clock::duration between)
+    : island_{std::move(island)}
+    , form_{form}
+    , layout_{form == Form::Tiles ? island_->tiles().layout()
+                                  : codec::TileLayout{.width_px = island_->about().width_px(),
+                                                      .height_px = island_->about().height_px()}}
+    , now_{now}
+    , between_{between}
+    , tiles_(layout_.count()) {
+    if (form == Form::Plain) {
+        return;
     }
-    // What stayed is paired once for both: the next baseline, and the delta, which whoever keeps up is sent.
-    codec::Baseline baseline = codec::initial_baseline(std::move(scene));
-    baseline.ticks = *ticks > 0 ? *ticks : baseline_.ticks;
-    const codec::AdvancedColumns moved{.organisms = {baseline.organisms.x, baseline.organisms.y},
-                                       .crates = {baseline.crates.x, baseline.crates.y}};
-    codec::Seams seams;
-    std::string delta = codec::encode_delta(baseline_, *baseline.scene, *ticks, &moved, &seams);
-    auto picture = std::make_shared<DeltaSnapshot>(std::move(about), std::move(baseline), *compressor_);
-    picture->delta_body_ = std::move(delta);
-    picture->delta_seams_ = std::move(seams);
-    picture->base_sequence_ = sequence();
-    return picture;
+    const codec::Counts all = counts_before(layout_.count());
+    for (auto* column : {&organisms_.x, &organisms_.y}) {
+        column->resize(all[organisms]);
+    }
+    for (auto* column : {&crates_.x, &crates_.y}) {
+        column->resize(all[crates]);
+    }
+    if (!previous) {
+        return;
+    }
+    previous->previous_ = nullptr; // sessions send only the newest snapshot
+    const auto ticks = ticks_between(previous->island_->about(), island_->about());
+    if (!ticks || previous->layout_ != layout_) {
+        return;
+    }
+    previous_ = previous;
+    ticks_ = *ticks;
 }
 
-const SharedBytes& DeltaSnapshot::form(Forms& forms, v1::Compression compression, bool as_delta) {
-    SharedBytes& bytes = forms[compression == v1::COMPRESSION_ZSTD ? 1 : 0];
+const SharedBytes* StreamedSnapshot::head() {
+    return form_ == Form::Tiles ? &island_->without_tiles() : nullptr;
+}
+
+const SharedBytes& StreamedSnapshot::tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression,
+                                          std::uint64_t sent) {
+    if (form_ == Form::Plain) {
+        return island_->plain();
+    }
+    if (detail != v1::DETAIL_FULL) {
+        return island_->coarse_tile(tile, detail, compression);
+    }
+    Tile& of = full(tile);
+    const bool has_base = sent != 0 && sent == of.base_sequence;
+    const Encoding encoding = sent == sequence() ? Encoding::Repeat : has_base ? Encoding::Delta : Encoding::Keyframe;
+    SharedBytes& bytes = of.encodings[static_cast<std::size_t>(encoding)][compression == v1::COMPRESSION_ZSTD ? 1 : 0];
     if (bytes) {
         return bytes;
     }
-    v1::SnapshotFrame frame = *about_;
-    frame.set_codec(v1::CODEC_DELTA);
-    if (as_delta) {
-        frame.set_base_sequence(base_sequence_);
-        codec::leave_out_unchanging(frame);
+    const auto encode = [&](std::uint64_t base_sequence, std::string_view body, const codec::Seams& seams) {
+        return form_ == Form::Whole ? island_->whole(base_sequence, body, seams, compression)
+                                    : island_->full_tile(tile, base_sequence, body, seams, compression);
+    };
+    switch (encoding) {
+    case Encoding::Keyframe: {
+        codec::Seams seams;
+        const std::string body = codec::encode_keyframe(baseline(tile), &seams);
+        bytes = encode(0, body, seams);
+        break;
     }
-    codec::Seams keyframe_seams;
-    const std::string keyframe = as_delta ? "" : codec::encode_keyframe(baseline_, &keyframe_seams);
-    const std::string& body = as_delta ? delta_body_ : keyframe;
-    frame.set_checksum(codec::checksum_of(frame, body));
-    std::string compressed;
-    const std::string_view sent =
-        sent_body(frame, body, as_delta ? delta_seams_ : keyframe_seams, compression, *compressor_, compressed);
-    std::string made;
-    made.reserve(frame.ByteSizeLong() + field_bytes(v1::SnapshotFrame::kBodyFieldNumber, sent.size()));
-    frame.AppendToString(&made);
-    append_field_head(v1::SnapshotFrame::kBodyFieldNumber, sent.size(), made);
-    made += sent;
-    return bytes = std::make_shared<const std::string>(std::move(made));
-}
-
-const DeltaSnapshotPtr& DeltaStream::add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                         codec::Compressor& compressor, runtime::Clock::time_point now,
-                                         runtime::Clock::duration between) {
-    // The next picture would come too late to be the keyframe.
-    const bool keyframe_due = now + between > keyframe_made_ + keyframe_interval;
-    latest_ = latest_ ? latest_->next(std::move(about), std::move(scene), !keyframe_due)
-                      : std::make_shared<DeltaSnapshot>(std::move(about), std::move(scene), compressor);
-    if (latest_->base_sequence() == 0) {
-        keyframe_made_ = now;
+    case Encoding::Delta:
+        bytes = encode(sent, of.delta, of.delta_seams);
+        break;
+    case Encoding::Repeat: {
+        const codec::BaselineView here = baseline(tile);
+        bytes = encode(sent, codec::encode_delta(here, here.snapshot, 0), {});
+        break;
     }
-    return latest_;
+    }
+    return bytes;
 }
 
-using google::protobuf::internal::WireFormatLite;
-using google::protobuf::io::CodedOutputStream;
-
-void append_field_head(int number, std::size_t bytes, std::string& to) {
-    std::array<std::uint8_t, 10> head; // two numbers of at most five bytes each
-    std::uint8_t* end = WireFormatLite::WriteTagToArray(number, WireFormatLite::WIRETYPE_LENGTH_DELIMITED, head.data());
-    end = CodedOutputStream::WriteVarint32ToArray(static_cast<std::uint32_t>(bytes), end);
-    to.append(reinterpret_cast<const char*>(head.data()), static_cast<std::size_t>(end - head.data()));
+StreamedSnapshot::Tile& StreamedSnapshot::full(std::uint32_t tile) {
+    if (tiles_[tile]) {
+        return *tiles_[tile];
+    }
+    Tile& of = *(tiles_[tile] = std::make_unique<Tile>());
+    of.keyframe_made = now_;
+    if (!previous_ || !previous_->tiles_[tile]) {
+        return of; // no viewer has the base of a delta
+    }
+    const Tile& before = *previous_->tiles_[tile];
+    const codec::QuantisedView here = view(tile);
+    // If the next snapshot came too late to be the keyframe for all, this one is it. It contains displacements of 0:
+    // others would take more bytes in the keyframe than they save in the delta after it.
+    const bool keyframe_due = now_ + between_ > before.keyframe_made + keyframe_interval;
+    if (keyframe_due || !codec::follows(here, previous_->view(tile))) {
+        return of;
+    }
+    const codec::Counts begin = counts_before(tile), count = counts(tile);
+    using Part = codec::AdvancedColumns::Displacements;
+    const codec::AdvancedColumns advanced{.organisms = part_of<Part>(organisms_, begin[organisms], count[organisms]),
+                                          .crates = part_of<Part>(crates_, begin[crates], count[crates])};
+    of.ticks = ticks_ > 0 ? ticks_ : before.ticks;
+    of.delta = codec::encode_delta(previous_->baseline(tile), here, ticks_, &advanced, &of.delta_seams);
+    of.base_sequence = previous_->sequence();
+    of.keyframe_made = before.keyframe_made;
+    return of;
 }
 
-std::size_t field_bytes(int number, std::size_t bytes) {
-    return WireFormatLite::TagSize(number, WireFormatLite::TYPE_BYTES) + WireFormatLite::LengthDelimitedSize(bytes);
+codec::QuantisedView StreamedSnapshot::view(std::uint32_t tile) const {
+    return form_ == Form::Tiles ? island_->tiles().full(tile) : codec::QuantisedView{island_->snapshot()};
+}
+
+codec::Counts StreamedSnapshot::counts_before(std::uint32_t tile) const {
+    if (form_ == Form::Tiles) {
+        return island_->tiles().counts_before(tile);
+    }
+    return tile == 0 ? codec::Counts{} : codec::counts_of(island_->snapshot());
+}
+
+codec::Counts StreamedSnapshot::counts(std::uint32_t tile) const {
+    return form_ == Form::Tiles ? island_->tiles().counts(tile) : codec::counts_of(island_->snapshot());
+}
+
+codec::BaselineView StreamedSnapshot::baseline(std::uint32_t tile) const {
+    const codec::Counts begin = counts_before(tile), count = counts(tile);
+    using Part = codec::BaselineView::Displacements;
+    codec::BaselineView baseline;
+    baseline.snapshot = view(tile);
+    baseline.organisms = part_of<Part>(organisms_, begin[organisms], count[organisms]);
+    baseline.crates = part_of<Part>(crates_, begin[crates], count[crates]);
+    baseline.ticks = tiles_[tile]->ticks;
+    return baseline;
+}
+
+void SentState::add_parts(StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail,
+                          v1::Compression compression, std::vector<const SharedBytes*>& parts) const {
+    if (const SharedBytes* const head = snapshot.head()) {
+        parts.push_back(head);
+    }
+    const std::uint32_t columns = snapshot.layout().columns;
+    for (std::uint32_t row = seen.row_begin; row < seen.row_end; ++row) {
+        const bool has_row = row >= full_.row_begin && row < full_.row_end;
+        for (std::uint32_t column = seen.column_begin; column < seen.column_end; ++column) {
+            const bool has = has_row && column >= full_.column_begin && column < full_.column_end;
+            parts.push_back(&snapshot.tile(row * columns + column, detail, compression, has ? sequence_ : 0));
+        }
+    }
+}
+
+void SentState::sent(const StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail) {
+    sequence_ = snapshot.sequence();
+    full_ = detail == v1::DETAIL_FULL ? seen : codec::TileRange{};
 }
 
 } // namespace evod::streaming

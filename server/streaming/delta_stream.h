@@ -1,122 +1,114 @@
-// Chains: the pictures of an island at one rate, each told from the one before, for whoever takes deltas.
+// Delta stream: the snapshots of one island that all viewers of one world, rate and form receive, each encoded against
+// the snapshot before it.
 //
-// A delta is made with its picture, for whoever keeps up is sent it; any other form when the first session asks for it.
-// Each is made once, and the sessions share the bytes. All viewers of a world at one rate are shown the same pictures,
-// so that what is a delta for one is a delta for all.
+// A whole snapshot is the case of one tile that needs no tile header; a plain snapshot is the case of one tile without
+// deltas. A form is encoded when the first session sends it, and only if a session sends it. The sessions share the
+// bytes. Because all viewers of a group receive the same snapshots, one delta serves all of them.
 //
-// Owner        Streams; a DeltaSnapshot lives as long as a session is to send it.
+// Owner        SnapshotStreams; a StreamedSnapshot lives until the last session has sent or replaced it.
 // Threads      the network thread.
 #pragma once
 
-#include "proto/codec/compression.h"
 #include "proto/codec/delta_codec.h"
-#include "proto/codec/shared_bytes.h"
+#include "proto/codec/tiles.h"
 #include "server/runtime/clock.h"
+#include "server/streaming/encoded_island.h"
 
 #include <array>
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
+#include <vector>
 
 namespace evod::streaming {
 
-using codec::SharedBytes;
-
-/// Everybody takes a keyframe at least so often, if there are pictures.
+/// Every viewer can be sent a keyframe for all at least this often, while there are snapshots.
 constexpr std::chrono::seconds keyframe_interval{2};
 
-/// A frame but for what is in it; immutable.
-using AboutPtr = std::shared_ptr<const v1::SnapshotFrame>;
-
-/// The ticks from one picture to the next; nullopt: another life, time turned back, or too much of it: nothing can be
-/// foretold.
+/// Ticks from one snapshot to the next. nullopt: the next cannot be predicted from the one before, because the run, the
+/// generation or an unchanging field differs, time went back, or the interval does not fit.
 std::optional<std::uint16_t> ticks_between(const v1::SnapshotFrame& before, const v1::SnapshotFrame& after);
 
-/// One picture of a chain, in every form in which it is sent: fields 1 to 49 of a SnapshotFrame.
-class DeltaSnapshot {
-  public:
-    /// about       what the codec says of it is set here.
-    /// scene       its entities, of which nothing has moved yet; or with the way they came.
-    /// compressor  there as long as forms of the picture are asked for.
-    DeltaSnapshot(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene, codec::Compressor& compressor)
-        : DeltaSnapshot{std::move(about), codec::initial_baseline(std::move(scene)), compressor} {}
-    DeltaSnapshot(AboutPtr about, codec::Baseline baseline, codec::Compressor& compressor)
-        : about_{std::move(about)}, baseline_{std::move(baseline)}, compressor_{&compressor} {}
-
-    /// The picture after this one. with_delta: it may be told as a delta; otherwise it is a keyframe for all, and
-    /// nothing has moved yet: displacements would take more bytes in it than they save in the delta after it.
-    std::shared_ptr<DeltaSnapshot> next(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                        bool with_delta) const;
-
-    std::uint64_t sequence() const { return about_->sequence(); }
-    /// Who was sent that picture last can take the delta; 0: there is none.
-    std::uint64_t base_sequence() const { return base_sequence_; }
-
-    /// As it is told to somebody who was sent that picture last; 0: none.
-    const SharedBytes& after(std::uint64_t sequence_sent, v1::Compression compression) {
-        return sequence_sent != 0 && sequence_sent == base_sequence_ ? delta(compression) : keyframe(compression);
-    }
-    const SharedBytes& keyframe(v1::Compression compression) { return form(keyframe_, compression, false); }
-    const SharedBytes& delta(v1::Compression compression) { return form(delta_, compression, true); }
-
-  private:
-    using Forms = std::array<SharedBytes, 2>; // as it is, compressed
-    const SharedBytes& form(Forms& forms, v1::Compression compression, bool as_delta);
-
-    AboutPtr about_;
-    codec::Baseline baseline_;
-    std::uint64_t base_sequence_ = 0;
-    std::string delta_body_; // if there is one
-    codec::Seams delta_seams_;
-    codec::Compressor* compressor_;
-    Forms keyframe_, delta_;
+enum class Form : std::uint8_t {
+    Plain, // CODEC_COLUMNS
+    Whole, // CODEC_DELTA
+    Tiles, // CODEC_DELTA with a View
 };
 
-using DeltaSnapshotPtr = std::shared_ptr<DeltaSnapshot>;
-
-/// The pictures of one island at one rate.
-class DeltaStream {
+/// One snapshot of an island, in every encoding that viewers of one group need.
+class StreamedSnapshot {
   public:
-    /// between  how long it usually is to the next picture.
-    const DeltaSnapshotPtr& add(AboutPtr about, std::shared_ptr<const codec::QuantisedSnapshot> scene,
-                                codec::Compressor& compressor, runtime::Clock::time_point now,
-                                runtime::Clock::duration between);
+    /// previous  the snapshot before it in the stream; null: there is none. It loses its own predecessor.
+    /// between   the usual time to the next snapshot.
+    StreamedSnapshot(std::shared_ptr<EncodedIsland> island, Form form,
+                     const std::shared_ptr<StreamedSnapshot>& previous, runtime::Clock::time_point now,
+                     runtime::Clock::duration between);
 
-    /// Null before the first.
-    const DeltaSnapshotPtr& latest() const { return latest_; }
+    std::uint64_t sequence() const { return island_->sequence(); }
+    Form form() const { return form_; }
+    /// Of one tile that covers the island, unless the form is Tiles.
+    const codec::TileLayout& layout() const { return layout_; }
+
+    /// The part of a frame that precedes its tiles; null if the only tile is the whole frame.
+    const SharedBytes* head();
+    /// A tile for one viewer; of the forms Plain and Whole, the frame.
+    ///
+    /// sent  sequence of the last snapshot in which the viewer was sent this tile at DETAIL_FULL; 0: none.
+    const SharedBytes& tile(std::uint32_t tile, v1::Detail detail, v1::Compression compression, std::uint64_t sent);
 
   private:
-    DeltaSnapshotPtr latest_;
-    runtime::Clock::time_point keyframe_made_; // the last that was one for all
+    enum class Encoding { Keyframe, Delta, Repeat };
+    /// A tile that some viewer was sent at DETAIL_FULL.
+    struct Tile {
+        std::uint16_t ticks = 0;                  // duration of its displacements
+        std::uint64_t base_sequence = 0;          // of `delta`; 0: the tile is a keyframe for all
+        runtime::Clock::time_point keyframe_made; // when the tile was last a keyframe for all
+        std::string delta;                        // body, if base_sequence is not 0
+        codec::Seams delta_seams;
+        std::array<std::array<SharedBytes, 2>, 3> encodings; // by Encoding: uncompressed, compressed
+    };
+    struct Displacements {
+        std::vector<std::uint32_t> x, y; // tile after tile
+    };
+
+    Tile& full(std::uint32_t tile);
+    codec::QuantisedView view(std::uint32_t tile) const;
+    /// Counts of all tiles before `tile`.
+    codec::Counts counts_before(std::uint32_t tile) const;
+    codec::Counts counts(std::uint32_t tile) const;
+    codec::BaselineView baseline(std::uint32_t tile) const;
+
+    std::shared_ptr<EncodedIsland> island_;
+    Form form_;
+    codec::TileLayout layout_;
+    std::shared_ptr<StreamedSnapshot> previous_; // null: no tile can be a delta
+    std::uint16_t ticks_ = 0;                    // since previous_
+    runtime::Clock::time_point now_;
+    runtime::Clock::duration between_;
+    std::vector<std::unique_ptr<Tile>> tiles_; // by index; null: no viewer was sent it
+    Displacements organisms_, crates_;
 };
 
-/// A body as it is sent: compressed, if that is asked for and makes it shorter; then the message is told so.
-///
-/// message     a SnapshotFrame or a SnapshotTile.
-/// compressed  what the answer is a view of in that case.
-template <class Message>
-std::string_view sent_body(Message& message, std::string_view body, const codec::Seams& seams,
-                           v1::Compression compression, codec::Compressor& compressor, std::string& compressed) {
-    if (compression != v1::COMPRESSION_ZSTD) {
-        return body;
-    }
-    compressed = compressor.compress(body, seams);
-    if (compressed.size() >= body.size()) {
-        return body;
-    }
-    message.set_compression(v1::COMPRESSION_ZSTD);
-    return compressed;
-}
+using StreamedSnapshotPtr = std::shared_ptr<StreamedSnapshot>;
 
-/// What a field of bytes begins with, added to a message that lies there serialized: what is long, as a body is, is
-/// then copied once only, when it is added itself.
-void append_field_head(int number, std::size_t bytes, std::string& to);
-/// Of that head and the bytes.
-std::size_t field_bytes(int number, std::size_t bytes);
+/// What one viewer was sent last of an island. It decides which tiles the viewer can be sent as deltas.
+class SentState {
+  public:
+    /// Appends the parts of a frame: together its fields 1 to 49. They live as long as the snapshot.
+    void add_parts(StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail,
+                   v1::Compression compression, std::vector<const SharedBytes*>& parts) const;
+
+    /// Records that this frame was sent.
+    void sent(const StreamedSnapshot& snapshot, const codec::TileRange& seen, v1::Detail detail);
+
+    /// The next frame will consist of keyframes.
+    void reset() { *this = {}; }
+
+  private:
+    std::uint64_t sequence_ = 0;
+    codec::TileRange full_; // the tiles sent at DETAIL_FULL
+};
 
 } // namespace evod::streaming

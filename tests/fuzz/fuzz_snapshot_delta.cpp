@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         for (auto& tile : *frame.mutable_tiles()) {
             if (tile.compression() != evod::v1::COMPRESSION_ZSTD) {
-                tile.set_checksum(evod::codec::checksum_of(frame, tile, tile.body()));
+                tile.set_checksum(evod::codec::checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
             }
         }
         const auto picture = decoder.decode(std::move(frame));

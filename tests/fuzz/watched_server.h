@@ -57,7 +57,7 @@ class WatchedServer {
     boost::asio::io_context context_{1};
     base::InlineExecutor executor_;
     runtime::Mailbox mailbox_;
-    runtime::Demand demand_;
+    runtime::StreamDemand demand_;
     runtime::Outbox outbox_;
     network::Sessions sessions_;
     std::uint64_t session_number_ = 0;

@@ -25,20 +25,20 @@ class Sender {
 
     Sent send(const LivingIsland& island, std::uint16_t ticks) {
         Sent sent{.columns = island.about(), .keyframe = island.about(), .delta = {}};
-        const auto scene = std::make_shared<const QuantisedSnapshot>(island.scene());
-        encode(*scene, sent.columns);
-        const bool has_base = baseline_.scene && follows(*scene, *baseline_.scene);
+        const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
+        encode(*snapshot, sent.columns);
+        const bool has_base = baseline_.snapshot && follows(*snapshot, *baseline_.snapshot);
         sent.columns.set_sequence(++sequence_);
         sent.keyframe.set_sequence(sequence_);
         sent.keyframe.set_codec(evod::v1::CODEC_DELTA);
         sent.delta = sent.keyframe;
         if (has_base) {
             sent.delta.set_base_sequence(sequence_ - 1);
-            sent.delta.set_body(encode_delta(baseline_, *scene, ticks));
+            sent.delta.set_body(encode_delta(baseline_, *snapshot, ticks));
             sent.delta.set_checksum(checksum_of(sent.delta, sent.delta.body()));
-            leave_out_unchanging(sent.delta);
+            clear_unchanging(sent.delta);
         }
-        baseline_ = has_base ? advanced_baseline(baseline_, scene, ticks) : initial_baseline(scene);
+        baseline_ = has_base ? advanced_baseline(baseline_, snapshot, ticks) : initial_baseline(snapshot);
         sent.keyframe.set_body(encode_keyframe(baseline_));
         sent.keyframe.set_checksum(checksum_of(sent.keyframe, sent.keyframe.body()));
         if (!has_base) {
@@ -82,11 +82,11 @@ RC_GTEST_PROP(DeltaCodec, EveryPictureComesBackExactly, (std::uint64_t seed, boo
             island.live(random, ticks);
         }
         auto sent = sender.send(island, ticks);
-        const QuantisedSnapshot scene = island.scene();
+        const QuantisedSnapshot snapshot = island.snapshot();
         const auto expected = decode(sent.columns).value();
         const auto same = [&](const Result<DecodedSnapshot>& picture, const SnapshotDecoder& decoder) {
             RC_ASSERT(picture.has_value());
-            RC_ASSERT(*decoder.scene() == scene);
+            RC_ASSERT(*decoder.snapshot() == snapshot);
             RC_ASSERT(picture->organisms.id == expected.organisms.id);
             RC_ASSERT(picture->organisms.x_px == expected.organisms.x_px);
             RC_ASSERT(picture->organisms.health == expected.organisms.health);
@@ -117,19 +117,19 @@ RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (
         Baseline base;
         base.ticks = static_cast<std::uint16_t>(any(1 + below(random, 17)));
         auto there = std::make_shared<QuantisedSnapshot>(), here = std::make_shared<QuantisedSnapshot>();
-        for (QuantisedSnapshot* scene : {there.get(), here.get()}) {
-            scene->position_bytes = 4;
-            scene->organisms.id.resize(count);
-            std::iota(scene->organisms.id.begin(), scene->organisms.id.end(), 0U);
-            for (Column* column : {&scene->organisms.x, &scene->organisms.y}) {
+        for (QuantisedSnapshot* snapshot : {there.get(), here.get()}) {
+            snapshot->position_bytes = 4;
+            snapshot->organisms.id.resize(count);
+            std::iota(snapshot->organisms.id.begin(), snapshot->organisms.id.end(), 0U);
+            for (Column* column : {&snapshot->organisms.x, &snapshot->organisms.y}) {
                 for (std::size_t i = 0; i < count; ++i) {
                     column->push_back(any(32));
                 }
             }
-            scene->organisms.width.assign(count, 5);
-            scene->organisms.height.assign(count, 6);
+            snapshot->organisms.width.assign(count, 5);
+            snapshot->organisms.height.assign(count, 6);
         }
-        base.scene = there;
+        base.snapshot = there;
         for (Column* column : {&base.organisms.x, &base.organisms.y}) {
             for (std::size_t i = 0; i < count; ++i) {
                 column->push_back(any(bits));
@@ -138,7 +138,7 @@ RC_GTEST_PROP(DeltaCodec, WhateverHasMovedHoweverFarIsForetoldAlikeByBothEnds, (
         const std::string body = encode_delta(base, *here, ticks);
         const auto told = decode_body(body, {.counts = counts_of(*here), .position_bytes = 4}, &base);
         RC_ASSERT(told.has_value());
-        RC_ASSERT(*told->scene == *here);
+        RC_ASSERT(*told->snapshot == *here);
     }
 }
 
@@ -148,10 +148,10 @@ TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
     Random random{7};
     for (const std::uint64_t stays_percent : {0, 5, 20, 40, 90, 100}) {
         auto there = std::make_shared<QuantisedSnapshot>(), here = std::make_shared<QuantisedSnapshot>();
-        const auto lie = [&](QuantisedSnapshot& scene, std::uint32_t id, std::uint64_t place) {
-            scene.food.id.push_back(id);
-            scene.food.x.push_back(place & 0xffff);
-            scene.food.y.push_back(place >> 16 & 0xffff);
+        const auto lie = [&](QuantisedSnapshot& snapshot, std::uint32_t id, std::uint64_t place) {
+            snapshot.food.id.push_back(id);
+            snapshot.food.x.push_back(place & 0xffff);
+            snapshot.food.y.push_back(place >> 16 & 0xffff);
         };
         for (std::uint32_t id = 0; id < id_end; ++id) {
             const bool stays = below(random, all) < stays_percent;
@@ -167,7 +167,7 @@ TEST(DeltaCodec, ItemsThatAreMostlyOthersTakeNoMoreThanToldAnew) {
         const std::string delta = encode_delta(base, *here, 300), keyframe = encode_keyframe(initial_baseline(here));
         const auto told = decode_body(delta, {.counts = counts_of(*here)}, &base);
         ASSERT_TRUE(told.has_value()) << stays_percent;
-        EXPECT_TRUE(*told->scene == *here) << stays_percent;
+        EXPECT_TRUE(*told->snapshot == *here) << stays_percent;
         EXPECT_LT(delta.size(), keyframe.size() + 100) << stays_percent;
         if (stays_percent >= 40) {
             EXPECT_LT(delta.size(), keyframe.size() * 9 / 10) << stays_percent;

@@ -107,10 +107,10 @@ struct LivingIsland {
         }
     }
 
-    QuantisedSnapshot scene() const {
-        QuantisedSnapshot scene;
-        scene.position_bytes = position_bytes_of(side_px, side_px);
-        const PositionInSteps in_steps{12, scene.position_bytes};
+    QuantisedSnapshot snapshot() const {
+        QuantisedSnapshot snapshot;
+        snapshot.position_bytes = position_bytes_of(side_px, side_px);
+        const PositionInSteps in_steps{12, snapshot.position_bytes};
         const auto place = [&](Entities& entities, const auto& entity) {
             entities.x.push_back(in_steps(static_cast<std::int32_t>(std::min<std::int64_t>(entity.x, 0x7fffffff))));
             entities.y.push_back(in_steps(static_cast<std::int32_t>(std::min<std::int64_t>(entity.y, 0x7fffffff))));
@@ -120,24 +120,24 @@ struct LivingIsland {
             entities.height.push_back(size_in_steps(height));
         };
         for (const Organism& organism : organisms) {
-            scene.organisms.id.push_back(organism.id);
-            place(scene.organisms, organism);
-            size(scene.organisms, organism.radius, organism.health);
+            snapshot.organisms.id.push_back(organism.id);
+            place(snapshot.organisms, organism);
+            size(snapshot.organisms, organism.radius, organism.health);
         }
-        for (const auto& [items, entities] : {std::pair{&food, &scene.food}, std::pair{&poison, &scene.poison}}) {
+        for (const auto& [items, entities] : {std::pair{&food, &snapshot.food}, std::pair{&poison, &snapshot.poison}}) {
             for (const Item& item : *items) {
                 entities->id.push_back(item.id);
                 place(*entities, item);
             }
         }
         for (const auto& [boxes, entities] :
-             {std::pair{&crates, &scene.crates}, std::pair{&obstacles, &scene.obstacles}}) {
+             {std::pair{&crates, &snapshot.crates}, std::pair{&obstacles, &snapshot.obstacles}}) {
             for (const Box& box : *boxes) {
                 place(*entities, box);
                 size(*entities, box.half_width, box.half_height);
             }
         }
-        return scene;
+        return snapshot;
     }
 
     /// All of a frame but its body, codec and sequence.
@@ -148,7 +148,7 @@ struct LivingIsland {
         frame.set_island_count(1);
         frame.set_width_px(side_px);
         frame.set_height_px(side_px);
-        describe(scene(), frame);
+        describe(snapshot(), frame);
         return frame;
     }
 };

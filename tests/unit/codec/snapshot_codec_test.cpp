@@ -15,7 +15,7 @@ namespace {
 using Ids = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
-QuantisedSnapshot small_scene() {
+QuantisedSnapshot small_snapshot() {
     return {
         .organisms = {.id = {3, 9}, .x = {1600, 20480}, .y = {1, 11520}, .width = {160, 129}, .height = {1608, 65535}},
         .food = {.id = {0, 4}, .x = {16, 32}, .y = {48, 64}, .width = {}, .height = {}},
@@ -24,12 +24,12 @@ QuantisedSnapshot small_scene() {
         .obstacles = {.id = {}, .x = {176}, .y = {192}, .width = {208}, .height = {224}}};
 }
 
-evod::v1::SnapshotFrame frame_of(const QuantisedSnapshot& scene) {
+evod::v1::SnapshotFrame frame_of(const QuantisedSnapshot& snapshot) {
     evod::v1::SnapshotFrame frame;
     frame.set_island_count(1);
     frame.set_width_px(1280);
     frame.set_height_px(720);
-    encode(scene, frame);
+    encode(snapshot, frame);
     return frame;
 }
 
@@ -46,7 +46,7 @@ TEST(SnapshotCodec, ABodyIsTheseBytes) {
 }
 
 TEST(SnapshotCodec, APictureComesBack) {
-    auto frame = frame_of(small_scene());
+    auto frame = frame_of(small_snapshot());
     frame.set_tick(77);
     const auto picture = decode(frame);
     ASSERT_TRUE(picture) << picture.error().what;
@@ -72,10 +72,10 @@ TEST(SnapshotCodec, AnEmptyIslandIsAnEmptyBody) {
 }
 
 TEST(SnapshotCodec, PositionsMayTakeFourBytes) {
-    QuantisedSnapshot scene = small_scene();
-    scene.position_bytes = 4;
-    scene.organisms.x[1] = 16 * 285'999 + 8;
-    const auto frame = frame_of(scene);
+    QuantisedSnapshot snapshot = small_snapshot();
+    snapshot.position_bytes = 4;
+    snapshot.organisms.x[1] = 16 * 285'999 + 8;
+    const auto frame = frame_of(snapshot);
     EXPECT_EQ(frame.position_bytes(), 4U);
     EXPECT_EQ(decode(frame)->organisms.x_px, (Floats{100.F, 285'999.5F}));
     EXPECT_EQ(decode(frame)->obstacles.half_height_px, (Floats{14.F}));
@@ -83,19 +83,19 @@ TEST(SnapshotCodec, PositionsMayTakeFourBytes) {
 
 TEST(SnapshotCodec, ColumnsOfDifferentLengthsAreTheCallersError) {
     for (const auto column : {&Entities::id, &Entities::x, &Entities::y}) {
-        QuantisedSnapshot scene = small_scene();
-        (scene.food.*column).pop_back();
+        QuantisedSnapshot snapshot = small_snapshot();
+        (snapshot.food.*column).pop_back();
         evod::v1::SnapshotFrame frame;
-        EXPECT_THROW(encode(scene, frame), std::invalid_argument);
+        EXPECT_THROW(encode(snapshot, frame), std::invalid_argument);
     }
-    QuantisedSnapshot scene = small_scene();
-    scene.poison.y.clear();
+    QuantisedSnapshot snapshot = small_snapshot();
+    snapshot.poison.y.clear();
     evod::v1::SnapshotFrame frame;
-    EXPECT_THROW(encode(scene, frame), std::invalid_argument);
+    EXPECT_THROW(encode(snapshot, frame), std::invalid_argument);
 }
 
 TEST(SnapshotDamage, EveryOtherLengthOfBodyIsRefused) {
-    const auto whole = frame_of(small_scene());
+    const auto whole = frame_of(small_snapshot());
     for (std::size_t length = 0; length < whole.body().size(); ++length) {
         auto cut = whole;
         cut.mutable_body()->resize(length);
@@ -107,7 +107,7 @@ TEST(SnapshotDamage, EveryOtherLengthOfBodyIsRefused) {
 }
 
 TEST(SnapshotDamage, IsNamed) {
-    const auto whole = frame_of(small_scene());
+    const auto whole = frame_of(small_snapshot());
     const auto complaint = [&](const auto& change) {
         auto frame = whole;
         change(frame);

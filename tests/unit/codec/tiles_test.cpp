@@ -64,14 +64,14 @@ TEST(TileRange, IsOfTheTilesThatARegionTouches) {
     EXPECT_EQ(tiles_of(layout), tiles_of(region(0, 0, 2000, 1100), layout));
 }
 
-/// A scene as tiles tell it: its boxes have ids.
-QuantisedSnapshot with_ids(QuantisedSnapshot scene) {
-    scene.of_tile = true;
-    for (Entities* boxes : {&scene.crates, &scene.obstacles}) {
+/// A snapshot as tiles tell it: its boxes have ids.
+QuantisedSnapshot with_ids(QuantisedSnapshot snapshot) {
+    snapshot.of_tile = true;
+    for (Entities* boxes : {&snapshot.crates, &snapshot.obstacles}) {
         boxes->id.resize(boxes->x.size());
         std::iota(boxes->id.begin(), boxes->id.end(), 0U);
     }
-    return scene;
+    return snapshot;
 }
 
 QuantisedSnapshot copy_of(const QuantisedView& view) {
@@ -102,8 +102,8 @@ LivingIsland random_island(std::uint64_t seed) {
 
 RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheScene, (std::uint64_t seed)) {
     const LivingIsland island = random_island(seed);
-    const auto scene = std::make_shared<const QuantisedSnapshot>(island.scene());
-    SnapshotTiles tiled{scene, tile_layout(island.side_px, island.side_px)};
+    const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
+    SnapshotTiles tiled{snapshot, tile_layout(island.side_px, island.side_px)};
     const std::uint32_t side = tiled.layout().tile_px * 16;
     std::vector<QuantisedSnapshot> tiles;
     Counts counts{};
@@ -119,20 +119,20 @@ RC_GTEST_PROP(SnapshotTiles, AllTilesTogetherAreTheScene, (std::uint64_t seed)) 
             }
         }
     }
-    RC_ASSERT(counts == counts_of(*scene));
+    RC_ASSERT(counts == counts_of(*snapshot));
     std::vector<const QuantisedSnapshot*> pointers;
     for (const QuantisedSnapshot& tile : tiles) {
         pointers.push_back(&tile);
     }
-    const auto together = merged(scene->position_bytes, pointers);
+    const auto together = merged(snapshot->position_bytes, pointers);
     RC_ASSERT(together.has_value());
-    RC_ASSERT(*together == with_ids(*scene));
+    RC_ASSERT(*together == with_ids(*snapshot));
 }
 
 RC_GTEST_PROP(SnapshotTiles, DotsAndDensitiesAreWhatCountingFinds, (std::uint64_t seed)) {
     const LivingIsland island = random_island(seed);
-    const auto scene = std::make_shared<const QuantisedSnapshot>(island.scene());
-    SnapshotTiles tiled{scene, tile_layout(island.side_px, island.side_px)};
+    const auto snapshot = std::make_shared<const QuantisedSnapshot>(island.snapshot());
+    SnapshotTiles tiled{snapshot, tile_layout(island.side_px, island.side_px)};
     const TileLayout& layout = tiled.layout();
     for (std::uint32_t tile = 0; tile < layout.count(); ++tile) {
         const auto dots = decode_dots(tiled.dots(tile), tiled.counts(tile), layout, tile);
@@ -172,7 +172,7 @@ TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
     while (island.organisms.size() < 4000) {
         island.add_organism(random);
     }
-    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()),
+    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.snapshot()),
                         tile_layout(island.side_px, island.side_px)};
     std::size_t dots = 0, densities = 0;
     for (std::uint32_t tile = 0; tile < tiled.layout().count(); ++tile) {
@@ -186,7 +186,7 @@ TEST(Density, TakesHalfTheBytesOfDotsWhereThereAreMany) {
 
 /// A frame of all tiles, each at the detail that its index gives.
 evod::v1::SnapshotFrame frame_of(const LivingIsland& island, std::uint64_t sequence) {
-    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.scene()),
+    SnapshotTiles tiled{std::make_shared<const QuantisedSnapshot>(island.snapshot()),
                         tile_layout(island.side_px, island.side_px)};
     evod::v1::SnapshotFrame frame = island.about();
     frame.set_codec(evod::v1::CODEC_DELTA);
@@ -206,7 +206,7 @@ evod::v1::SnapshotFrame frame_of(const LivingIsland& island, std::uint64_t seque
         tile.set_body(index % 3 == 0 ? encode_keyframe(initial_baseline(
                                            std::make_shared<const QuantisedSnapshot>(copy_of(tiled.full(index)))))
                                      : (index % 3 == 1 ? tiled.dots(index) : tiled.density(index)));
-        tile.set_checksum(checksum_of(frame, tile, tile.body()));
+        tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
     }
     return frame;
 }
@@ -220,7 +220,7 @@ evod::v1::SnapshotFrame some_frame() {
 
 /// The checksum of what was changed is right again.
 void mend(const evod::v1::SnapshotFrame& frame, evod::v1::SnapshotTile& tile) {
-    tile.set_checksum(checksum_of(frame, tile, tile.body()));
+    tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
 }
 
 TEST(TiledFrame, IsDecodedTileByTile) {
@@ -336,7 +336,7 @@ TEST(TiledFrameDamage, ManyTilesHoldNoMoreThanOneFrameMay) {
         tile.set_obstacle_count(0);
         tile.set_compression(evod::v1::COMPRESSION_ZSTD);
         tile.set_body(zeros);
-        tile.set_checksum(checksum_of(frame, tile, std::string(70 << 20, '\0')));
+        tile.set_checksum(checksum_of(frame.tile_px(), frame.position_bytes(), tile, std::string(70 << 20, '\0')));
     }
     const auto picture = SnapshotDecoder{}.decode(frame);
     ASSERT_FALSE(picture);

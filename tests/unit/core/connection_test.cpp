@@ -430,11 +430,11 @@ class WalkingPictures {
         frame.set_sequence(++sequence_);
         frame.set_tick(sequence_);
         const codec::Baseline baseline =
-            baseline_.scene ? codec::advanced_baseline(baseline_, scene, 1) : codec::initial_baseline(scene);
+            baseline_.snapshot ? codec::advanced_baseline(baseline_, scene, 1) : codec::initial_baseline(scene);
         if (as_delta) {
             frame.set_base_sequence(sequence_ - 1);
             frame.set_body(codec::encode_delta(baseline_, *scene, 1));
-            codec::leave_out_unchanging(frame);
+            codec::clear_unchanging(frame);
         } else {
             frame.set_body(codec::encode_keyframe(baseline));
         }
@@ -596,11 +596,11 @@ v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequen
     tile.set_sequence(sequence);
     tile.set_base_sequence(base_sequence);
     codec::BaselineView standing;
-    standing.scene = tiled.full(0);
+    standing.snapshot = tiled.full(0);
     const std::vector<std::uint32_t> still(2);
     standing.organisms = {still, still};
-    tile.set_body(base_sequence ? codec::encode_delta(standing, standing.scene, 1) : codec::encode_keyframe(standing));
-    tile.set_checksum(codec::checksum_of(frame, tile, tile.body()));
+    tile.set_body(base_sequence ? codec::encode_delta(standing, standing.snapshot, 1) : codec::encode_keyframe(standing));
+    tile.set_checksum(codec::checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
     return frame;
 }
 

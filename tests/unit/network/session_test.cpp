@@ -26,7 +26,7 @@ class SessionTest : public testing::Test {
         session = std::make_shared<Session>(acceptor.accept(), host, 1);
         session->start();
         for (const std::uint32_t id : {1U, 2U}) {
-            session->snapshots[id].codec = v1::CODEC_COLUMNS;
+            session->snapshots.subscriptions[id];
         }
         context.poll(); // now the line can be written to, and the writer has nothing to do
     }
@@ -36,19 +36,22 @@ class SessionTest : public testing::Test {
         EXPECT_TRUE(over);
     }
 
-    static SharedBytes picture_bytes(std::uint64_t sequence, std::size_t body_bytes) {
-        v1::SnapshotFrame frame;
-        frame.set_sequence(sequence);
-        frame.set_body(std::string(body_bytes, static_cast<char>('a' + sequence % 26)));
-        return std::make_shared<const std::string>(frame.SerializeAsString());
+    /// A snapshot whose frame is filled up by the name of its world.
+    void offer(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t sequence, std::size_t name_bytes) {
+        v1::SnapshotFrame about;
+        about.set_sequence(sequence);
+        about.set_world(name_of(sequence, name_bytes));
+        auto encoded =
+            std::make_shared<streaming::EncodedIsland>(std::move(about), codec::QuantisedSnapshot{}, compressor);
+        session->snapshots.offer(
+            subscription_id, island,
+            std::make_shared<streaming::StreamedSnapshot>(std::move(encoded), streaming::Form::Plain, nullptr,
+                                                          clock.now(), runtime::Clock::duration{}));
     }
-    void picture(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t sequence, std::size_t body_bytes) {
-        session->picture(subscription_id, island,
-                         {.sequence = sequence,
-                          .columns = picture_bytes(sequence, body_bytes),
-                          .chained = nullptr,
-                          .tiled = nullptr});
+    static std::string name_of(std::uint64_t sequence, std::size_t bytes) {
+        return std::string(bytes, static_cast<char>('a' + sequence % 26));
     }
+    void send() { session->snapshots.sender().send_snapshots(); }
 
     /// Reads what has come, once the session has done what it can; whole frames go to `frames`.
     void read() {
@@ -75,6 +78,7 @@ class SessionTest : public testing::Test {
     }
 
     support::ManualClock clock;
+    codec::Compressor compressor;
     LimitCounters counters;
     Buffers buffers{std::size_t{1} << 30, [] {}};
     SessionHost host{counters, buffers};
@@ -88,40 +92,40 @@ class SessionTest : public testing::Test {
 };
 
 TEST_F(SessionTest, APictureThatTheLineTakesIsSentAtOnce) {
-    picture(2, 5, 7, 100);
-    session->send_waiting();
+    offer(2, 5, 7, 100);
+    send();
     read(); // no turn of the loop was needed
     ASSERT_EQ(frames.size(), 1U);
     EXPECT_EQ(frames[0].subscription_id(), 2U);
     EXPECT_EQ(frames[0].dropped_count(), 0U);
     EXPECT_EQ(frames[0].sequence(), 7U);
-    EXPECT_EQ(frames[0].body(), std::string(100, 'h'));
+    EXPECT_EQ(frames[0].world(), name_of(7, 100));
     EXPECT_EQ(host.traffic.pictures_sent.value(), 1U);
     EXPECT_EQ(buffers.bytes(), 0U);
 }
 
 TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
     constexpr std::size_t large = 20'000'000;
-    picture(1, 0, 1, large);
-    session->send_waiting();
+    offer(1, 0, 1, large);
+    send();
     EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
     EXPECT_GT(buffers.bytes(), large) << "what waits is counted";
     // Meanwhile others come for it: of each island the newest goes on waiting.
     for (std::uint64_t sequence = 2; sequence < 6; ++sequence) {
-        picture(1, 0, sequence, 50);
-        picture(2, 3, sequence, 60'000);
-        session->send_waiting();
+        offer(1, 0, sequence, 50);
+        offer(2, 3, sequence, 60'000);
+        send();
     }
     context.poll();
     EXPECT_EQ(host.traffic.pictures_sent.value(), 0U);
     read_until(3);
     EXPECT_EQ(frames[0].sequence(), 1U);
-    EXPECT_EQ(frames[0].body(), std::string(large, 'b'));
+    EXPECT_EQ(frames[0].world(), name_of(1, large));
     EXPECT_EQ(frames[1].sequence(), 5U);
     EXPECT_EQ(frames[1].dropped_count(), 3U);
     EXPECT_EQ(frames[2].sequence(), 5U);
     EXPECT_EQ(frames[2].subscription_id(), 2U);
-    EXPECT_EQ(frames[2].body(), std::string(60'000, 'f'));
+    EXPECT_EQ(frames[2].world(), name_of(5, 60'000));
     context.poll();
     EXPECT_EQ(host.traffic.pictures_sent.value(), 3U);
     EXPECT_EQ(buffers.bytes(), 0U);
@@ -131,8 +135,8 @@ TEST_F(SessionTest, WhatTheLineDoesNotTakeAtOnceComesWholeAndThenTheNext) {
 
 TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
     using namespace std::chrono_literals;
-    picture(1, 0, 1, 20'000'000);
-    session->send_waiting();
+    offer(1, 0, 1, 20'000'000);
+    send();
     context.poll();
     session->mind_progress(0s);
     for (int i = 0; i < 9; ++i) {
@@ -151,8 +155,8 @@ TEST_F(SessionTest, AClientThatTakesNothingIsClosedInTime) {
 TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
     std::uint64_t sequence = 0;
     for (int round = 0; round < 1000; ++round) {
-        picture(1, static_cast<std::uint32_t>(round), ++sequence, 20'000);
-        session->send_waiting();
+        offer(1, static_cast<std::uint32_t>(round), ++sequence, 20'000);
+        send();
         if (round % 7 == 0) {
             context.poll();
         }
@@ -165,11 +169,11 @@ TEST_F(SessionTest, ManySmallPicturesComeInOrderHoweverSlowlyTheyAreRead) {
 }
 
 TEST_F(SessionTest, AnswersGoBeforePicturesThatComeWithThem) {
-    picture(1, 0, 1, 10);
+    offer(1, 0, 1, 10);
     v1::Response response;
     response.set_request_id(4);
     session->send_unasked(response);
-    session->send_waiting();
+    send();
     read_until(1);
     EXPECT_EQ(channels, (std::vector{codec::Channel::Control, codec::Channel::Stream}));
 }
@@ -178,8 +182,8 @@ TEST_F(SessionTest, AClientThatHasGoneEndsTheSession) {
     client.set_option(asio::socket_base::linger{true, 0});
     client.close();
     for (int i = 0; i < 3; ++i) {
-        picture(1, 0, 1, 100'000);
-        session->send_waiting();
+        offer(1, 0, 1, 100'000);
+        send();
     }
     context.run();
     EXPECT_TRUE(over);

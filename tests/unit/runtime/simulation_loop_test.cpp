@@ -59,7 +59,8 @@ class Loop : public testing::Test {
     const simulation::Entry& world(std::string_view name = "") { return **loop.laboratory().find(name); }
     std::uint64_t tick(std::string_view name = "") { return world(name).world.moment().tick; }
     void watch(const char* name, double rate_hz, std::uint64_t newcomers = 1) {
-        demand.set({{name, Watch{.rate_hz = rate_hz, .all_islands = true, .islands = {}, .newcomers = newcomers}}});
+        demand.set(
+            {{name, WorldDemand{.rate_hz = rate_hz, .all_islands = true, .islands = {}, .newcomers = newcomers}}});
     }
     /// Time passes in steps of 1 ms, with a pass after each.
     void live_through(std::chrono::milliseconds time) {
@@ -70,7 +71,7 @@ class Loop : public testing::Test {
     }
 
     Mailbox mailbox;
-    Demand demand;
+    StreamDemand demand;
     base::InlineExecutor executor;
     support::ManualClock clock;
     std::vector<simulation::Event> events;
@@ -475,7 +476,7 @@ TEST_F(Loop, OnlyTheIslandsThatAreWatchedAreCopied) {
     auto command = create("w");
     command.parameters.island_count = 5;
     send(command);
-    demand.set({{"w", Watch{.rate_hz = 1, .all_islands = false, .islands = {1, 3, 99}, .newcomers = 1}}});
+    demand.set({{"w", WorldDemand{.rate_hz = 1, .all_islands = false, .islands = {1, 3, 99}, .newcomers = 1}}});
     loop.pass();
     ASSERT_EQ(pictures.size(), 1);
     ASSERT_EQ(pictures[0]->islands.size(), 2);
@@ -610,8 +611,8 @@ TEST_F(Loop, TheSameCommandsAtTheSameTicksGiveTheHashOfAWorldAdvancedDirectly) {
 
 TEST(SimulationThread, GivesTheHashOfAWorldAdvancedDirectly) {
     Mailbox mailbox;
-    Demand demand;
-    demand.set({{"w", Watch{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
+    StreamDemand demand;
+    demand.set({{"w", WorldDemand{.rate_hz = 100, .all_islands = true, .islands = {}, .newcomers = 1}}});
     base::InlineExecutor executor;
     SteadyClock clock;
     SimulationThread thread{

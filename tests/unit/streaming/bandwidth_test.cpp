@@ -19,16 +19,16 @@ using v1::DETAIL_FULL;
 class BandwidthTest : public testing::Test {
   protected:
     /// What becomes of a picture of these costs now, and what of one every 50 ms for a while.
-    std::optional<v1::Detail> choose(Bandwidth& budget) {
-        const auto detail = budget.choose(clock_.now(), [&](v1::Detail of) { return costs_.at(of); }).detail;
+    std::optional<v1::Detail> choose(Bandwidth& bandwidth) {
+        const auto detail = bandwidth.choose(clock_.now(), [&](v1::Detail of) { return costs_.at(of); }).detail;
         sent_bytes_ += detail ? costs_.at(*detail) : 0;
         return detail;
     }
-    std::vector<std::optional<v1::Detail>> choose_for(Bandwidth& budget, std::chrono::seconds time) {
+    std::vector<std::optional<v1::Detail>> choose_for(Bandwidth& bandwidth, std::chrono::seconds time) {
         std::vector<std::optional<v1::Detail>> chosen;
         for (auto passed = 0ms; passed < time; passed += 50ms) {
             clock_.advance(50ms);
-            chosen.push_back(choose(budget));
+            chosen.push_back(choose(bandwidth));
         }
         return chosen;
     }
@@ -49,8 +49,8 @@ class BandwidthTest : public testing::Test {
 };
 
 TEST_F(BandwidthTest, EverythingIsShownWhileThereIsEnough) {
-    Bandwidth budget{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
-    for (const auto& detail : choose_for(budget, 60s)) {
+    Bandwidth bandwidth{20'000, DETAIL_FULL}; // just enough for 20 pictures a second
+    for (const auto& detail : choose_for(bandwidth, 60s)) {
         EXPECT_EQ(detail, DETAIL_FULL);
     }
 }
@@ -65,9 +65,9 @@ TEST_F(BandwidthTest, DetailIsLeftOutBeforePicturesAre) {
     EXPECT_GT(count(in_density, DETAIL_DENSITY), 1000);
     EXPECT_EQ(count(in_dots, std::nullopt), 0);
     EXPECT_EQ(count(in_density, std::nullopt), 0);
-    Bandwidth pictures{1'000, DETAIL_FULL};
-    choose_for(pictures, 60s);
-    const auto few = choose_for(pictures, 2s);
+    Bandwidth few_bytes{1'000, DETAIL_FULL};
+    choose_for(few_bytes, 60s);
+    const auto few = choose_for(few_bytes, 2s);
     EXPECT_GT(count(few, std::nullopt), 10);
     EXPECT_GT(count(few, DETAIL_DENSITY), 10);
 }
@@ -75,129 +75,129 @@ TEST_F(BandwidthTest, DetailIsLeftOutBeforePicturesAre) {
 TEST_F(BandwidthTest, IsKeptInTheLongRunWhateverPicturesCost) {
     std::uint64_t random = 1;
     for (const double bytes_per_s : {1'000.0, 7'000.0, 30'000.0}) {
-        Bandwidth budget{bytes_per_s, DETAIL_FULL};
+        Bandwidth bandwidth{bytes_per_s, DETAIL_FULL};
         sent_bytes_ = 0;
         for (int round = 0; round < 200; ++round) {
             random = random * 6364136223846793005U + 1442695040888963407U;
             costs_[DETAIL_FULL] = (random >> 33) % 5000;
             costs_[DETAIL_DOTS] = (random >> 40) % 2000;
             costs_[DETAIL_DENSITY] = (random >> 45) % 1500;
-            choose_for(budget, 1s);
+            choose_for(bandwidth, 1s);
         }
         // What was saved at first, and the longest picture.
-        EXPECT_LE(static_cast<double>(sent_bytes_), (200 + Bandwidth::saved_s_max) * bytes_per_s + 5000);
+        EXPECT_LE(static_cast<double>(sent_bytes_), (200 + Bandwidth::accumulated_s_max) * bytes_per_s + 5000);
         EXPECT_GT(static_cast<double>(sent_bytes_), 100 * bytes_per_s) << "it is made use of, too";
     }
 }
 
 TEST_F(BandwidthTest, DetailComesBackWhenItFitsAgain) {
-    Bandwidth budget{10'000, DETAIL_FULL};
-    EXPECT_GT(count(choose_for(budget, 30s), DETAIL_DOTS), 400);
+    Bandwidth bandwidth{10'000, DETAIL_FULL};
+    EXPECT_GT(count(choose_for(bandwidth, 30s), DETAIL_DOTS), 400);
     costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 300}, {DETAIL_DENSITY, 100}};
-    const auto chosen = choose_for(budget, std::chrono::seconds{Bandwidth::patience_max} + 1s);
+    const auto chosen = choose_for(bandwidth, std::chrono::seconds{Bandwidth::retry_max} + 1s);
     EXPECT_EQ(chosen.back(), DETAIL_FULL);
     EXPECT_EQ(changes(chosen), 1U);
 }
 
 TEST_F(BandwidthTest, EverythingIsShownWhereItCostsLessThanDots) {
-    Bandwidth budget{10'000, DETAIL_FULL};
-    choose_for(budget, 30s);
+    Bandwidth bandwidth{10'000, DETAIL_FULL};
+    choose_for(bandwidth, 30s);
     costs_ = {{DETAIL_FULL, 400}, {DETAIL_DOTS, 1200}, {DETAIL_DENSITY, 100}};
-    EXPECT_EQ(choose_for(budget, std::chrono::seconds{Bandwidth::patience_max} + 1s).back(), DETAIL_FULL);
+    EXPECT_EQ(choose_for(bandwidth, std::chrono::seconds{Bandwidth::retry_max} + 1s).back(), DETAIL_FULL);
 }
 
 TEST_F(BandwidthTest, DetailDoesNotComeAndGoWithEveryPicture) {
-    Bandwidth budget{6'000, DETAIL_FULL}; // dots, just
-    choose_for(budget, 60s);
-    EXPECT_LE(changes(choose_for(budget, 120s)), 8U) << "of 2400 pictures";
+    Bandwidth bandwidth{6'000, DETAIL_FULL}; // dots, just
+    choose_for(bandwidth, 60s);
+    EXPECT_LE(changes(choose_for(bandwidth, 120s)), 8U) << "of 2400 pictures";
 }
 
 TEST_F(BandwidthTest, AKeyframeNowAndThenIsSavedFor) {
-    Bandwidth budget{12'000, DETAIL_FULL};
+    Bandwidth bandwidth{12'000, DETAIL_FULL};
     for (int i = 0; i < 1000; ++i) { // 39 of 400 bytes and one of 8,000 every 2 s: 11,800 a second
         costs_[DETAIL_FULL] = i % 40 == 0 ? 8000 : 400;
         clock_.advance(50ms);
-        ASSERT_EQ(choose(budget), DETAIL_FULL) << i;
+        ASSERT_EQ(choose(bandwidth), DETAIL_FULL) << i;
     }
 }
 
 TEST_F(BandwidthTest, WhatIsLongerThanCanBeSavedForIsSentNowAndThen) {
     costs_ = {{DETAIL_FULL, 90'000}, {DETAIL_DOTS, 80'000}, {DETAIL_DENSITY, 70'000}};
-    Bandwidth budget{1'000, DETAIL_FULL};
-    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+    Bandwidth bandwidth{1'000, DETAIL_FULL};
+    EXPECT_EQ(choose(bandwidth), DETAIL_DENSITY);
     sent_bytes_ = 0;
-    const auto chosen = choose_for(budget, 700s);
+    const auto chosen = choose_for(bandwidth, 700s);
     EXPECT_EQ(count(chosen, DETAIL_DENSITY), 10);
     EXPECT_EQ(sent_bytes_, 700'000U);
 }
 
 TEST_F(BandwidthTest, TellsWhenAPictureCanBeSent) {
     costs_ = {{DETAIL_DENSITY, 1'500}};
-    Bandwidth budget{1'000, DETAIL_DENSITY};
+    Bandwidth bandwidth{1'000, DETAIL_DENSITY};
     const auto cost = [&](v1::Detail of) { return costs_.at(of); };
-    EXPECT_TRUE(choose(budget)); // 500 are left
+    EXPECT_TRUE(choose(bandwidth)); // 500 are left
     const auto now = clock_.now();
-    EXPECT_EQ(budget.choose(now, cost).again, now + 1s);
-    EXPECT_FALSE(budget.choose(now + 999ms, cost).detail);
-    EXPECT_EQ(budget.choose(now + 1s, cost).detail, DETAIL_DENSITY);
+    EXPECT_EQ(bandwidth.choose(now, cost).again, now + 1s);
+    EXPECT_FALSE(bandwidth.choose(now + 999ms, cost).detail);
+    EXPECT_EQ(bandwidth.choose(now + 1s, cost).detail, DETAIL_DENSITY);
 }
 
 TEST_F(BandwidthTest, WhatStaysIsShownMoreCloselyWhenThereIsEnough) {
     const auto cost = [&](v1::Detail of) { return costs_.at(of); };
-    const auto look_closer = [&](Bandwidth& budget) { return budget.look_closer(clock_.now(), DETAIL_DENSITY, cost); };
-    Bandwidth budget{550, DETAIL_FULL};
-    EXPECT_EQ(choose(budget), DETAIL_FULL); // 100 are left
-    const Bandwidth::Choice shown = budget.choose(clock_.now(), cost);
+    const auto refine = [&](Bandwidth& bandwidth) { return bandwidth.refine(clock_.now(), DETAIL_DENSITY, cost); };
+    Bandwidth bandwidth{550, DETAIL_FULL};
+    EXPECT_EQ(choose(bandwidth), DETAIL_FULL); // 100 are left
+    const Bandwidth::Choice shown = bandwidth.choose(clock_.now(), cost);
     EXPECT_EQ(shown.detail, DETAIL_DENSITY);
-    EXPECT_EQ(shown.again, clock_.now() + Bandwidth::patience_min);
-    EXPECT_EQ(look_closer(budget).again, shown.again);
-    clock_.advance(Bandwidth::patience_min);
-    EXPECT_EQ(look_closer(budget).detail, DETAIL_FULL); // 100 are left
+    EXPECT_EQ(shown.again, clock_.now() + Bandwidth::retry_min);
+    EXPECT_EQ(refine(bandwidth).again, shown.again);
+    clock_.advance(Bandwidth::retry_min);
+    EXPECT_EQ(refine(bandwidth).detail, DETAIL_FULL); // 100 are left
     // Another island's picture, that was shown as this was.
-    const Bandwidth::Choice other = look_closer(budget);
+    const Bandwidth::Choice other = refine(bandwidth);
     EXPECT_FALSE(other.detail);
     clock_.advance(other.again - clock_.now() - 1ms);
-    EXPECT_FALSE(look_closer(budget).detail);
+    EXPECT_FALSE(refine(bandwidth).detail);
     clock_.advance(1ms);
-    EXPECT_EQ(look_closer(budget).detail, DETAIL_FULL);
+    EXPECT_EQ(refine(bandwidth).detail, DETAIL_FULL);
     costs_[DETAIL_FULL] = 1101; // than which less can be saved
     clock_.advance(1h);
-    EXPECT_EQ(look_closer(budget).detail, DETAIL_DOTS);
+    EXPECT_EQ(refine(bandwidth).detail, DETAIL_DOTS);
     costs_[DETAIL_DOTS] = 1101;
-    EXPECT_EQ(look_closer(budget).again, Bandwidth::Clock::time_point::max());
+    EXPECT_EQ(refine(bandwidth).again, Bandwidth::Clock::time_point::max());
 }
 
 TEST_F(BandwidthTest, AHugePictureDoesNotKeepAnotherWishAway) {
-    Bandwidth budget{500, DETAIL_DENSITY};
+    Bandwidth bandwidth{500, DETAIL_DENSITY};
     costs_[DETAIL_DENSITY] = 1'000'000;
-    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+    EXPECT_EQ(choose(bandwidth), DETAIL_DENSITY);
     costs_[DETAIL_DENSITY] = 100; // of a small region
-    budget.change(500, DETAIL_DENSITY);
+    bandwidth.change(500, DETAIL_DENSITY);
     clock_.advance(2200ms);
-    EXPECT_EQ(choose(budget), DETAIL_DENSITY);
+    EXPECT_EQ(choose(bandwidth), DETAIL_DENSITY);
 }
 
 TEST_F(BandwidthTest, WhoWantsMoreHasMoreAtOnce) {
-    Bandwidth budget{500, DETAIL_FULL};
-    EXPECT_EQ(choose(budget), DETAIL_FULL); // nothing is left
-    budget.change(400, DETAIL_FULL);
-    EXPECT_EQ(choose(budget), std::nullopt);
-    budget.change(900, DETAIL_FULL);
-    EXPECT_EQ(choose(budget), DETAIL_FULL);
+    Bandwidth bandwidth{500, DETAIL_FULL};
+    EXPECT_EQ(choose(bandwidth), DETAIL_FULL); // nothing is left
+    bandwidth.change(400, DETAIL_FULL);
+    EXPECT_EQ(choose(bandwidth), std::nullopt);
+    bandwidth.change(900, DETAIL_FULL);
+    EXPECT_EQ(choose(bandwidth), DETAIL_FULL);
 }
 
 TEST_F(BandwidthTest, NoMoreIsShownThanIsWantedAndAnotherWishHoldsAtOnce) {
-    Bandwidth budget{1e9, DETAIL_DOTS};
-    for (const auto& detail : choose_for(budget, 10s)) {
+    Bandwidth bandwidth{1e9, DETAIL_DOTS};
+    for (const auto& detail : choose_for(bandwidth, 10s)) {
         EXPECT_EQ(detail, DETAIL_DOTS);
     }
-    budget.change(3'000, DETAIL_FULL);
-    EXPECT_EQ(choose(budget), DETAIL_FULL);
-    choose_for(budget, 10s);
-    EXPECT_NE(choose(budget), DETAIL_FULL);
-    budget.change(1e9, DETAIL_FULL);
+    bandwidth.change(3'000, DETAIL_FULL);
+    EXPECT_EQ(choose(bandwidth), DETAIL_FULL);
+    choose_for(bandwidth, 10s);
+    EXPECT_NE(choose(bandwidth), DETAIL_FULL);
+    bandwidth.change(1e9, DETAIL_FULL);
     clock_.advance(50ms);
-    EXPECT_EQ(choose(budget), DETAIL_FULL);
+    EXPECT_EQ(choose(bandwidth), DETAIL_FULL);
 }
 
 } // namespace

@@ -1,12 +1,10 @@
-// Viewers who miss pictures, of every kind at once: what each of them makes of what comes is, whole number for whole
-// number, what the server had, whatever was dropped on the way.
+// Dropped snapshots: viewers that miss snapshots in every combination of ways. What each of them decodes equals what the
+// server had, whole number for whole number, whatever was dropped.
 //
-// FRAMES, in the environment, says how many pictures are compared; docs/LONG_TESTS.md.
-#include "server/streaming/delta_stream.h"
-
-#include "proto/codec/snapshot_decoder.h"
+// The environment variable FRAMES sets how many snapshots are compared; docs/LONG_TESTS.md.
 #include "tests/support/everyday.h"
 #include "tests/unit/codec/living_island.h"
+#include "tests/unit/streaming/viewer.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +19,7 @@ using codec::below;
 using codec::Random;
 using runtime::Clock;
 
-/// The server's end: an island that lives, dies out, is born again, stands still; and its chain.
+/// The server's end: an island that lives, dies out, is populated again and pauses; and its delta stream.
 class Server {
   public:
     Server(std::uint64_t seed, double side_px) : random_{seed} {
@@ -29,7 +27,7 @@ class Server {
         island_.populate(random_);
     }
 
-    DeltaSnapshotPtr next() {
+    StreamedSnapshotPtr next() {
         std::uint64_t ticks = below(random_, 8) == 0 ? 0 : 1 + below(random_, 4); // 0: it is paused
         if (below(random_, 60) == 0) {
             ticks += 300; // a command took long
@@ -56,49 +54,49 @@ class Server {
         about.set_sequence(++sequence_);
         about.set_generation(generation_);
         about.set_generation_tick(tick_);
-        scene_ = std::make_shared<const codec::QuantisedSnapshot>(island_.scene());
+        snapshot_ = island_.snapshot();
         now_ += between;
-        return chain_.add(std::make_shared<const v1::SnapshotFrame>(std::move(about)), scene_, compressor_, now_,
-                          between);
+        return latest_ = std::make_shared<StreamedSnapshot>(
+                   std::make_shared<EncodedIsland>(std::move(about), snapshot_, compressor_), Form::Whole, latest_,
+                   now_, between);
     }
-    const codec::QuantisedSnapshot& scene() const { return *scene_; }
+    const codec::QuantisedSnapshot& snapshot() const { return snapshot_; }
 
   private:
     static constexpr auto between = 50ms;
     Random random_;
     codec::LivingIsland island_;
-    std::shared_ptr<const codec::QuantisedSnapshot> scene_;
+    codec::QuantisedSnapshot snapshot_;
     codec::Compressor compressor_;
     std::uint64_t sequence_ = 0, tick_ = 0, generation_ = 1;
     Clock::time_point now_{1h};
-    DeltaStream chain_;
+    StreamedSnapshotPtr latest_;
 };
 
-/// How a viewer fares, each a share of 1000.
+/// What happens to a viewer, each in 1/1000 of the snapshots.
 struct Habits {
-    std::uint64_t slow = 0;    // pictures that are replaced by newer ones before they are sent
-    std::uint64_t lost = 0;    // what is sent and not looked at
-    std::uint64_t damaged = 0; // what comes with a bit turned
-    std::uint64_t asks = 0;    // asks for a keyframe without need
+    std::uint64_t slow = 0;    // replaced by newer ones before they are sent
+    std::uint64_t lost = 0;    // sent, but not decoded
+    std::uint64_t damaged = 0; // received with one bit flipped
+    std::uint64_t asks = 0;    // preceded by an unnecessary request for a keyframe
     v1::Compression compression = v1::COMPRESSION_NONE;
 };
 
 class DroppingViewer {
   public:
-    DroppingViewer(const Habits& habits, std::uint64_t seed) : habits_{habits}, random_{seed} {}
+    DroppingViewer(const Habits& habits, std::uint64_t seed)
+        : habits_{habits}, random_{seed}, viewer_{habits.compression} {}
 
-    /// Returns whether a picture came to be compared.
-    bool take(DeltaSnapshot& picture, const codec::QuantisedSnapshot& scene) {
-        if (hiccup_ > 0 || happens(habits_.slow)) { // often several one after another
-            hiccup_ = hiccup_ > 0 ? hiccup_ - 1 : below(random_, 6);
+    /// Returns whether a snapshot was received and compared.
+    bool take(StreamedSnapshot& snapshot, const codec::QuantisedSnapshot& expected) {
+        if (skipped_ > 0 || happens(habits_.slow)) { // often several in a row
+            skipped_ = skipped_ > 0 ? skipped_ - 1 : below(random_, 6);
             return false;
         }
         if (happens(habits_.asks)) {
-            sent_ = 0;
+            viewer_.request_keyframe();
         }
-        v1::SnapshotFrame frame;
-        EXPECT_TRUE(frame.ParseFromString(*picture.after(sent_, habits_.compression)));
-        sent_ = picture.sequence();
+        v1::SnapshotFrame frame = viewer_.send(snapshot);
         (frame.base_sequence() == 0 ? keyframes_ : deltas_) += 1;
         if (happens(habits_.lost)) {
             return false;
@@ -106,26 +104,26 @@ class DroppingViewer {
         if (happens(habits_.damaged) && !frame.body().empty()) {
             char& byte = (*frame.mutable_body())[below(random_, frame.body().size())];
             byte = static_cast<char>(byte ^ (1 << below(random_, 8)));
-            // A few bits of a zstd frame mean nothing; any other must be found out.
-            const bool means_nothing = decoder_.decode(std::move(frame)).has_value();
-            if (means_nothing) {
-                EXPECT_EQ(*decoder_.scene(), scene) << "picture " << picture.sequence();
+            // A few bits of a zstd frame are unused; every other flip must be detected.
+            const bool unused = viewer_.decode(std::move(frame)).has_value();
+            if (unused) {
+                EXPECT_EQ(*viewer_.snapshot(), expected) << "snapshot " << snapshot.sequence();
             }
-            decoded_ = picture.sequence();
-            if (!means_nothing) {
+            decoded_ = snapshot.sequence();
+            if (!unused) {
                 refused();
             }
-            return means_nothing;
+            return unused;
         }
         const bool has_base = frame.base_sequence() == 0 || frame.base_sequence() == decoded_;
-        const auto decoded = decoder_.decode(std::move(frame));
-        EXPECT_EQ(decoded.has_value(), has_base) << "picture " << picture.sequence();
+        const auto decoded = viewer_.decode(std::move(frame));
+        EXPECT_EQ(decoded.has_value(), has_base) << "snapshot " << snapshot.sequence();
         if (!decoded) {
             refused();
             return false;
         }
-        decoded_ = picture.sequence();
-        EXPECT_EQ(*decoder_.scene(), scene) << "picture " << picture.sequence();
+        decoded_ = snapshot.sequence();
+        EXPECT_EQ(*viewer_.snapshot(), expected) << "snapshot " << snapshot.sequence();
         return true;
     }
     std::uint64_t keyframes() const { return keyframes_; }
@@ -134,22 +132,22 @@ class DroppingViewer {
 
   private:
     bool happens(std::uint64_t share) { return below(random_, 1000) < share; }
-    /// Asks for a keyframe, as clients do.
+    /// Requests a keyframe, as clients do after damage.
     void refused() {
-        EXPECT_TRUE(decoder_.needs_keyframe());
-        sent_ = decoded_ = 0;
+        EXPECT_TRUE(viewer_.needs_keyframe());
+        viewer_.request_keyframe();
+        decoded_ = 0;
         ++refusals_;
     }
 
     Habits habits_;
     Random random_;
-    codec::SnapshotDecoder decoder_;
-    std::uint64_t sent_ = 0;    // as the server has it
-    std::uint64_t decoded_ = 0; // what the decoder stands on
-    std::uint64_t hiccup_ = 0, keyframes_ = 0, deltas_ = 0, refusals_ = 0;
+    Viewer viewer_;
+    std::uint64_t decoded_ = 0; // sequence of the decoder's baseline
+    std::uint64_t skipped_ = 0, keyframes_ = 0, deltas_ = 0, refusals_ = 0;
 };
 
-TEST(DroppedSnapshots, WhatIsDecodedIsWhatTheServerHad) {
+TEST(DroppedSnapshots, DecodedSnapshotsEqualThoseOfTheServer) {
     const std::vector<Habits> all_habits{
         {},
         {.compression = v1::COMPRESSION_ZSTD},
@@ -168,11 +166,11 @@ TEST(DroppedSnapshots, WhatIsDecodedIsWhatTheServerHad) {
             viewers.emplace_back(habits, 1000 * seed + viewers.size());
         }
         for (int n = 0; n < 250; ++n) {
-            const DeltaSnapshotPtr picture = server.next();
+            const StreamedSnapshotPtr snapshot = server.next();
             for (DroppingViewer& viewer : viewers) {
-                compared += viewer.take(*picture, server.scene());
+                compared += viewer.take(*snapshot, server.snapshot());
             }
-            ASSERT_FALSE(HasFailure()) << "seed " << seed << ", after picture " << n;
+            ASSERT_FALSE(HasFailure()) << "seed " << seed << ", after snapshot " << n;
         }
         for (std::size_t v = 0; v < viewers.size(); ++v) {
             EXPECT_GT(viewers[v].keyframes(), 0U) << "viewer " << v;

@@ -59,12 +59,12 @@ TEST(Quantise, ItemsThatAreAwayAreLeftOut) {
     island.food.all = {{1 * step, 2 * step, 0}, {3, 4, 9}, {5 * step, 6 * step, 0}, {7, 8, 1}};
     island.food.present_count = 2;
     island.poison.all = {{1, 1, 5}};
-    const codec::QuantisedSnapshot scene = quantise(island);
-    EXPECT_THAT(scene.food.id, ElementsAre(0, 2));
-    EXPECT_THAT(scene.food.x, ElementsAre(1, 5));
-    EXPECT_THAT(scene.food.y, ElementsAre(2, 6));
-    EXPECT_THAT(scene.food.width, IsEmpty());
-    EXPECT_THAT(scene.poison.id, IsEmpty());
+    const codec::QuantisedSnapshot snapshot = quantise(island);
+    EXPECT_THAT(snapshot.food.id, ElementsAre(0, 2));
+    EXPECT_THAT(snapshot.food.x, ElementsAre(1, 5));
+    EXPECT_THAT(snapshot.food.y, ElementsAre(2, 6));
+    EXPECT_THAT(snapshot.food.width, IsEmpty());
+    EXPECT_THAT(snapshot.poison.id, IsEmpty());
 }
 
 TEST(Quantise, CratesAndObstaclesAreToldApart) {
@@ -74,11 +74,11 @@ TEST(Quantise, CratesAndObstaclesAreToldApart) {
                     .half_width_px = {1, 2, 3},
                     .half_height_px = {4, 5, 6}};
     island.crate_count = 2;
-    const codec::QuantisedSnapshot scene = quantise(island);
-    EXPECT_THAT(scene.crates.x, ElementsAre(1, 2));
-    EXPECT_THAT(scene.crates.id, IsEmpty());
-    EXPECT_THAT(scene.obstacles.y, ElementsAre(6));
-    EXPECT_THAT(scene.obstacles.height, ElementsAre(96));
+    const codec::QuantisedSnapshot snapshot = quantise(island);
+    EXPECT_THAT(snapshot.crates.x, ElementsAre(1, 2));
+    EXPECT_THAT(snapshot.crates.id, IsEmpty());
+    EXPECT_THAT(snapshot.obstacles.y, ElementsAre(6));
+    EXPECT_THAT(snapshot.obstacles.height, ElementsAre(96));
 }
 
 TEST(Quantise, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
@@ -87,9 +87,9 @@ TEST(Quantise, PositionsTakeFourBytesWhereTwoCannotCountTheIsland) {
     EXPECT_EQ(quantise(island).position_bytes, 2U);
     island.width_px = 286'000;
     island.organisms = lying(2, {{1, 285'999 * physics::units_per_px, 0, 1, 1}});
-    const codec::QuantisedSnapshot scene = quantise(island);
-    EXPECT_EQ(scene.position_bytes, 4U);
-    EXPECT_THAT(scene.organisms.x, ElementsAre(16 * 285'999));
+    const codec::QuantisedSnapshot snapshot = quantise(island);
+    EXPECT_EQ(snapshot.position_bytes, 4U);
+    EXPECT_THAT(snapshot.organisms.x, ElementsAre(16 * 285'999));
 }
 
 } // namespace

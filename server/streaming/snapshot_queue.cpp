@@ -1,0 +1,205 @@
+#include "server/streaming/snapshot_queue.h"
+
+#include "proto/codec/framing.h"
+
+#include <google/protobuf/wire_format_lite.h>
+
+#include <numeric>
+#include <utility>
+
+namespace evod::streaming {
+
+std::size_t OutgoingFrame::body_bytes() const {
+    return std::accumulate(parts.begin(), parts.end(), tail_bytes,
+                           [](std::size_t bytes, const SharedBytes* part) { return bytes + (*part)->size(); });
+}
+
+void SnapshotQueue::count_dropped(SnapshotSubscription& of, std::uint64_t count) {
+    if (count > 0) {
+        of.dropped_count += count;
+        dropped_.add(count);
+    }
+}
+
+void SnapshotQueue::offer(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr snapshot) {
+    const auto subscription = subscriptions.find(subscription_id);
+    if (subscription == subscriptions.end() || stopped_) {
+        return;
+    }
+    Island& of = subscription->second.islands[island];
+    const bool waited = of.waiting != nullptr, was_shown = of.shown.has_value();
+    if (waited && was_shown) {
+        of.not_before = {};
+    } else if (waited) {
+        count_dropped(subscription->second, 1);
+    }
+    of.shown.reset();
+    of.waiting = std::move(snapshot);
+    if (!waited || was_shown) {
+        give_turn(subscription_id, island, of);
+    }
+}
+
+void SnapshotQueue::send_keyframe(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr newest) {
+    if (const auto found = subscriptions.find(subscription_id); found != subscriptions.end()) {
+        found->second.islands[island].sent.reset();
+        send_again(subscription_id, island, std::move(newest));
+    }
+}
+
+void SnapshotQueue::send_again(std::uint32_t subscription_id, std::uint32_t island, StreamedSnapshotPtr newest) {
+    const auto subscription = subscriptions.find(subscription_id);
+    if (subscription == subscriptions.end()) {
+        return;
+    }
+    Island& of = subscription->second.islands[island];
+    of.not_before = {};
+    of.shown.reset();
+    if (of.waiting) {
+        give_turn(subscription_id, island, of);
+    } else {
+        offer(subscription_id, island, std::move(newest));
+    }
+    sender_.send_snapshots_later();
+}
+
+void SnapshotQueue::acknowledge(const v1::AcknowledgeSnapshot& acknowledged) {
+    const auto subscription = subscriptions.find(acknowledged.subscription_id());
+    if (subscription == subscriptions.end()) {
+        return; // the client unsubscribed meanwhile
+    }
+    const auto island = subscription->second.islands.find(acknowledged.island());
+    if (island == subscription->second.islands.end()) {
+        return;
+    }
+    auto& unacknowledged = island->second.unacknowledged;
+    while (!unacknowledged.empty() && unacknowledged.front() <= acknowledged.sequence()) {
+        unacknowledged.pop_front();
+    }
+    if (island->second.waiting && island->second.turn == 0) {
+        give_turn(acknowledged.subscription_id(), acknowledged.island(), island->second);
+    }
+    sender_.send_snapshots_later();
+}
+
+void SnapshotQueue::give_turn(std::uint32_t subscription_id, std::uint32_t index, Island& island) {
+    island.turn = ++last_turn_;
+    turns_.push_back({subscription_id, index, island.turn});
+}
+
+const OutgoingFrame* SnapshotQueue::next() {
+    const auto now = clock_.now();
+    while (!postponed_.empty() && postponed_.begin()->first <= now) {
+        turns_.push_back(postponed_.begin()->second);
+        postponed_.erase(postponed_.begin());
+    }
+    // Each turn is examined once: a turn that is not due moves elsewhere or is deleted.
+    while (!turns_.empty()) {
+        const Turn turn = turns_.front();
+        turns_.pop_front();
+        const auto found = subscriptions.find(turn.subscription_id);
+        if (found == subscriptions.end()) {
+            continue; // unsubscribed
+        }
+        SnapshotSubscription& subscription = found->second;
+        const auto of = subscription.islands.find(turn.island);
+        if (of == subscription.islands.end() || of->second.turn != turn.number || !of->second.waiting) {
+            continue;
+        }
+        Island& island = of->second;
+        if (subscription.unacknowledged_max && island.unacknowledged.size() >= *subscription.unacknowledged_max) {
+            island.turn = 0; // until an acknowledgement arrives
+            continue;
+        }
+        if (!take(turn.subscription_id, subscription, island)) {
+            postponed_.emplace(island.not_before, turn);
+            continue;
+        }
+        if (outgoing_.body_bytes() > frame_bytes_max_) {
+            drop_outgoing(subscription, island);
+            continue;
+        }
+        if (island.waiting) {
+            give_turn(turn.subscription_id, turn.island, island);
+        }
+        return &outgoing_;
+    }
+    retry_at_ = postponed_.empty() ? Clock::time_point::max() : postponed_.begin()->first;
+    return nullptr;
+}
+
+void SnapshotQueue::drop_outgoing(SnapshotSubscription& subscription, Island& island) {
+    count_dropped(subscription, 1);
+    if (subscription.unacknowledged_max) {
+        island.unacknowledged.pop_back();
+    }
+    island.waiting = {};
+    island.shown.reset();
+    island.sent.reset(); // the client does not have this snapshot, so the next one must not be encoded against it
+}
+
+bool SnapshotQueue::take(std::uint32_t subscription_id, SnapshotSubscription& subscription, Island& island) {
+    outgoing_.snapshot = island.waiting;
+    set_tail(subscription_id, subscription.dropped_count);
+    StreamedSnapshot& snapshot = *island.waiting;
+    const auto& view = subscription.view;
+    const codec::TileRange seen = view && view->has_region() ? codec::tiles_of(view->region(), snapshot.layout())
+                                                             : codec::tiles_of(snapshot.layout());
+    const v1::Detail wanted = view ? view->detail() : v1::DETAIL_FULL;
+    const auto add_parts = [&](v1::Detail detail) {
+        outgoing_.parts.clear();
+        island.sent.add_parts(snapshot, seen, detail, subscription.compression, outgoing_.parts);
+    };
+    v1::Detail detail = wanted;
+    if (subscription.bandwidth) {
+        const auto now = clock_.now();
+        if (now < island.not_before) {
+            return false;
+        }
+        const auto cost = [&](v1::Detail tried) {
+            add_parts(tried);
+            return codec::header_bytes + outgoing_.body_bytes();
+        };
+        const Bandwidth::Choice choice = island.shown ? subscription.bandwidth->refine(now, *island.shown, cost)
+                                                      : subscription.bandwidth->choose(now, cost);
+        island.not_before = choice.again;
+        if (!choice.detail) {
+            return false;
+        }
+        detail = *choice.detail;
+    } else {
+        add_parts(detail);
+    }
+    island.sent.sent(snapshot, seen, detail);
+    if (subscription.unacknowledged_max) {
+        island.unacknowledged.push_back(snapshot.sequence());
+    }
+    if (detail == wanted) {
+        island.shown.reset();
+        island.waiting = {}; // outgoing_ still owns it
+    } else {
+        island.shown = detail;
+    }
+    return true;
+}
+
+void SnapshotQueue::set_tail(std::uint32_t subscription_id, std::uint64_t dropped_count) {
+    using google::protobuf::internal::WireFormatLite;
+    std::uint8_t* end = WireFormatLite::WriteUInt32ToArray(v1::SnapshotFrame::kSubscriptionIdFieldNumber,
+                                                           subscription_id, outgoing_.tail.data());
+    if (dropped_count > 0) {
+        end = WireFormatLite::WriteUInt64ToArray(v1::SnapshotFrame::kDroppedCountFieldNumber, dropped_count, end);
+    }
+    outgoing_.tail_bytes = static_cast<std::size_t>(end - outgoing_.tail.data());
+}
+
+void SnapshotQueue::clear() {
+    stopped_ = true;
+    for (auto& [id, subscription] : subscriptions) {
+        subscription.islands.clear();
+    }
+    turns_.clear();
+    postponed_.clear();
+}
+
+} // namespace evod::streaming
