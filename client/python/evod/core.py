@@ -152,7 +152,7 @@ class Core:
                 elif self.connected:
                     self._take_snapshot(stream_pb2.SnapshotFrame.FromString(body))
                 else:
-                    raise DamagedData("it began with a snapshot")
+                    raise DamagedData("its first frame is a snapshot, not a Welcome")
         except (google.protobuf.message.DecodeError, DamagedData) as error:
             what = error.message if isinstance(error, DamagedData) else "a message cannot be read"
             if self.connected:
@@ -295,7 +295,7 @@ class Core:
                 self.failed = refused
             raise refused
         if kind != "welcome":
-            raise DamagedData("it did not begin with a welcome")
+            raise DamagedData("its first message is not a Welcome")
         if message.welcome.protocol_version != PROTOCOL_VERSION:
             self.failed = NoConnection(
                 f"the server at {self._server} uses protocol version {message.welcome.protocol_version}, this package version "

@@ -82,7 +82,7 @@ def read_token(token: str | None, token_file: str | os.PathLike[str] | None) -> 
 def tls_context(
     tls: bool, ca: str | os.PathLike[str] | None, cert: str | os.PathLike[str] | None, key: str | os.PathLike[str] | None
 ) -> ssl.SSLContext | None:
-    """The TLS settings; None without TLS. TLS is used with `tls`, and whenever one of the files is given.
+    """The TLS settings, or None without TLS. Any of `tls`, `ca` and `cert` turns TLS on.
 
     ca         PEM file of trusted certificates; without it the environment variable EVOD_CA, or those that the system trusts.
     cert, key  PEM files of the client certificate and its key; the key may be in the same file.

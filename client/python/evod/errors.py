@@ -1,4 +1,4 @@
-"""Errors: a sentence for people, a code for programs, and every field with a wrong value."""
+"""Exceptions: a message for people, a code for programs, and every field with a wrong value."""
 from __future__ import annotations
 
 from typing import Iterable, NamedTuple, TypeVar
@@ -83,7 +83,8 @@ def refusal(status: commands_pb2.Status) -> Error:
 def copy_of(error: E) -> E:
     """A new exception with the same content.
 
-    Each caller gets its own: the traceback of the first holds the frames of the task that keeps the connection.
+    Every caller raises its own copy. The traceback of the original refers to the frames of the connection task, and a caller
+    that clears the frames of a traceback, as unittest does, would end that task.
     """
     copy = type(error)(error.message, error.code, error.violations)
     copy.reason = error.reason
@@ -91,5 +92,5 @@ def copy_of(error: E) -> E:
 
 
 def wrong_argument(field: str, allowed: str, got: object, message: str = "the request is wrong") -> Error:
-    """The error that the server, too, would answer to this value of a field."""
+    """The error for a wrong argument, with the code that the server would answer."""
     return Error(message, commands_pb2.CODE_INVALID_ARGUMENT, [Violation(field, allowed, str(got))])

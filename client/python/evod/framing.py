@@ -7,7 +7,7 @@ from typing import Iterator
 from evod.errors import DamagedData
 
 CONTROL, STREAM = 1, 2
-BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # as clients accept them
+BODY_BYTES_MAX = {CONTROL: 64 << 20, STREAM: 256 << 20}  # the largest that a client accepts
 HEADER_BYTES = 8
 
 _header = struct.Struct("<2sBBI")
@@ -23,7 +23,7 @@ class FrameReader:
 
     def __init__(self) -> None:
         self._data = bytearray()
-        self._offset = 0  # of the first byte that belongs to no returned frame
+        self._offset = 0  # of the first byte not yet returned in a frame
 
     def feed(self, data: bytes | bytearray | memoryview) -> None:
         """Appends bytes in the order in which they arrived."""

@@ -14,7 +14,7 @@ ACCOUNT_PARTS = ("selection", "transmission", "migration", "change")
 
 
 def account_part(gene: world_pb2.GeneStatistics, part: str) -> float:
-    """The part of the gene's change named by ACCOUNT_PARTS; nan where the server sent none."""
+    """One of ACCOUNT_PARTS of a gene; nan if the server has no account for this generation."""
     return float(getattr(gene.account, part)) if gene.HasField("account") else numpy.nan
 
 
@@ -39,17 +39,17 @@ class Generation:
 
     @property
     def end_tick(self) -> int:
-        """The tick at which it ended, counted from the beginning of the run."""
+        """The tick at which the generation ended, counted from the beginning of the run."""
         return self.islands[0].end_tick
 
     @property
     def organism_count(self) -> int:
-        """How many organisms it had."""
+        """The number of organisms."""
         return sum(island.organism_count for island in self.islands)
 
     @property
     def alive_count(self) -> int:
-        """How many of them were alive at its end."""
+        """The number of organisms alive at the end of the generation."""
         return sum(island.alive_count for island in self.islands)
 
     @property
@@ -80,7 +80,7 @@ class Generation:
 
     @property
     def selection(self) -> numpy.typing.NDArray[Any]:
-        """The part of `change` due to selection: organisms with some genes had more descendants than others.
+        """The part of `change` due to selection: some organisms had more descendants than others.
 
         Shape (6,), in gene units, in the order of `evod.GENE_NAMES`; nan in the first generation, and in runs stored by
         versions that did not record it. selection + transmission + migration = change (docs/MODEL.md).
@@ -148,7 +148,7 @@ class Population:
     generation_tick: int  #: ticks since the generation began
     genes: numpy.typing.NDArray[numpy.float32]  #: shape (count, 6), in the order of evod.GENE_NAMES
     parents: numpy.typing.NDArray[numpy.uint32]  #: shape (count, 2): ids in the generation before; (0, 2) in the first generation
-    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): family of each, by its first ancestor; (0,) if unknown
+    founders: numpy.typing.NDArray[numpy.uint32]  #: shape (count,): number of the founder that each descends from; (0,) if unknown
     choices: numpy.typing.NDArray[numpy.uint8]  #: shape (count,): evod.v1.Choice, what each is about to do
     forces: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the force that each is about to exert, kg px/s²
     targets: numpy.typing.NDArray[numpy.float32]  #: shape (count, 2): the position that each is heading for, px
@@ -158,7 +158,7 @@ class Population:
 
 
 def population_of(parts: Sequence[commands_pb2.Population]) -> Population:
-    """Joins the consecutive parts of one population."""
+    """Joins the parts of one population, given in order."""
 
     def rows(field: str, kind: str, columns: int) -> Any:
         whole = [

@@ -18,8 +18,8 @@ from evod.program import find_program
 
 _STOP_TIMEOUT_S = 30  # for the server to write its runs; then it is killed
 _LISTENING = re.compile(r"listening on (127\.0\.0\.1:\d+)")
-# The parent process of the server. It stops the server when its input is closed: the kernel does that even if this program
-# is killed.
+# A shell that starts the server and stops it when its own input is closed. The kernel closes that input when this program
+# ends, even if it is killed.
 _SUPERVISOR = (
     '"$@" & evod=$!; exec >/dev/null 2>&1; read -r _; kill "$evod"; wait "$evod"; [ -z "$FOLDER" ] || rm -rf "$FOLDER"'
 )

@@ -34,12 +34,12 @@ class Description:
     name: str
     kind: str  #: "real", "count", "flag" or "choice"
     unit: str  #: "px", "s", "chance", …; "" for none
-    min: float  #: kinds "real" and "count": the least value allowed
-    max: float  #: and the greatest
-    choices: tuple[str, ...]  #: kind "choice": the values allowed
+    min: float  #: smallest value allowed, for the kinds "real" and "count"
+    max: float  #: largest value allowed
+    choices: tuple[str, ...]  #: values allowed, for the kind "choice"
     default: Value
     effect: str  #: when a change takes effect: "next tick", "next generation" or "reset"
-    help: str  #: one sentence
+    help: str  #: one sentence about its meaning
 
     @property
     def allowed(self) -> str:
@@ -94,14 +94,14 @@ class Actor:
 
     @classmethod
     def of(cls, message: world_pb2.Actor) -> Actor:
-        """Reads the message of the protocol."""
+        """Converts the message of the protocol."""
         kind = world_pb2.ActorKind.Name(message.kind).removeprefix("ACTOR_KIND_").lower()
         return cls(kind=kind, user=message.user, client=message.client, address=message.address)
 
 
 @dataclasses.dataclass(frozen=True)
 class PlannedChange:
-    """A planned change of parameters. When it is due the server checks it again, and makes all of it or drops it."""
+    """A planned change of parameters. When it is due the server checks it again, and applies all of it or drops it."""
 
     id: int  #: 0 for a dry run
     generation: int | None  #: due at the first tick of this generation; or None
@@ -111,7 +111,7 @@ class PlannedChange:
 
     @classmethod
     def of(cls, message: world_pb2.PlannedChange) -> PlannedChange:
-        """Reads the message of the protocol."""
+        """Converts the message of the protocol."""
         return cls(
             id=message.id,
             generation=message.generation if message.HasField("generation") else None,
@@ -138,7 +138,7 @@ class Registry(Mapping[str, Description]):
 
     @classmethod
     def of(cls, message: commands_pb2.Description) -> Registry:
-        """Reads the message of the protocol."""
+        """Converts the message of the protocol."""
         return cls({parameter.name: _description(parameter) for parameter in message.parameters})
 
     def __getitem__(self, name: str) -> Description:
@@ -310,7 +310,7 @@ class Parameters(Mapping[str, Parameter]):
 
 
 def value_of(message: world_pb2.ParameterValue) -> Value:
-    """The value in a message."""
+    """The Python value of a message."""
     value: Value = getattr(message, message.WhichOneof("kind") or "real")
     return value
 
@@ -325,7 +325,7 @@ def text_of(value: object) -> str:
 
 
 def number_text(number: float) -> str:
-    """A number in the fewest digits that give the same number when read again.
+    """Formats a number with the fewest digits that read back exactly.
 
     >>> number_text(1.0), number_text(0.001), number_text(5e5)
     ('1', '0.001', '5e+05')

@@ -290,7 +290,7 @@ class SnapshotStream:
                 self._core.acknowledge(subscription, taken)
         yield Until(lambda: subscription.arrived or subscription.refused)
         if not subscription.arrived:
-            raise subscription.refused or DamagedData("no snapshot came")
+            raise subscription.refused or DamagedData("the subscription ended without a snapshot")
         snapshot: Snapshot = subscription.arrived.popleft()
         self._taken = subscription.sessions, snapshot
         return snapshot
@@ -307,7 +307,7 @@ class SnapshotStream:
         subscription = self._subscription
         yield Until(lambda: subscription.server_id is not None or subscription.refused)
         if subscription.server_id is None:
-            raise subscription.refused or DamagedData("no subscription")
+            raise subscription.refused or DamagedData("the server did not accept the subscription")
         return subscription.server_id
 
     @property
@@ -424,7 +424,7 @@ def next_event(subscription: Subscription) -> Plan[stream_pb2.Event]:
     yield Until(lambda: subscription.has_event or subscription.refused)
     event = subscription.take_event()
     if event is None:
-        raise subscription.refused or DamagedData("no event came")
+        raise subscription.refused or DamagedData("the subscription ended without an event")
     return event
 
 

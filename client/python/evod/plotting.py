@@ -15,7 +15,7 @@ from evod.generations import ACCOUNT_PARTS, Generation, account_part
 Array = numpy.typing.NDArray[Any]
 
 _FOOD, _POISON, _WALL, _CRATE = "#2e8b57", "#b03060", "#555555", "#b8865b"
-_HEALTH_SHOWN = 150.0  # organisms with more have the last colour
+_HEALTH_SHOWN = 150.0  # the end of the colour scale
 
 
 def pyplot() -> Any:
@@ -57,7 +57,7 @@ class _Boxes(_Items, Protocol):
 
 
 class Island(Protocol):
-    """What is plotted of a Snapshot. As a protocol it keeps this module independent of evod.snapshots, which imports it."""
+    """The part of Snapshot that is plotted. evod.snapshots imports this module, so this module cannot import Snapshot."""
 
     @property
     def world(self) -> str: ...
@@ -261,7 +261,7 @@ def _by_generation(columns: Mapping[str, Any], name: str, over: Any) -> tuple[Ar
 
 
 def _spread(columns: Mapping[str, Any], name: str) -> tuple[Array, Array, Array]:
-    """Generations, and the mean and standard deviation over the organisms of all islands."""
+    """Arrays of generation numbers, means and standard deviations, over the organisms of all islands."""
     count = numpy.asarray(columns["organism_count"], float)
     mean, deviation = (numpy.asarray(columns[f"{name}_{what}"], float) for what in ("mean", "deviation"))
     sums = {"count": count, "sum": count * mean, "square": count * (deviation**2 + mean**2)}

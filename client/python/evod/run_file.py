@@ -62,8 +62,8 @@ class RunFile:
         self._program = program
         if not self.path.is_file():
             raise Error(f"there is no run file {self.path}")
-        # SQLite creates its shared memory beside the file. Where the folder is read-only, `immutable` lets it read without:
-        # no server can be writing there.
+        # SQLite creates its shared memory file beside the run file. In a read-only folder it cannot, and no server can be
+        # writing: `immutable` makes SQLite read without it.
         address = f"file:{urllib.parse.quote(str(self.path.resolve()))}?mode=ro"
         if not os.access(self.path.resolve().parent, os.W_OK):
             address += "&immutable=1"
@@ -74,7 +74,7 @@ class RunFile:
             # A view with the name of a table could run an endless query.
             foreign = next(self._rows("SELECT type, name FROM sqlite_schema WHERE type NOT IN ('table', 'index')"), None)
             if foreign:
-                raise DamagedData("")  # named below
+                raise DamagedData("")  # the handler below names it
             self.about: Mapping[str, str] = {key: value for key, value in self._rows("SELECT key, value FROM run")}
             self.name, self.run_id = self.about["name"], self.about["run_id"]
             self.seed = int(self.about["seed"])
@@ -139,7 +139,7 @@ class RunFile:
         accounts = [f"{gene}_{part}" for gene in GENE_NAMES for part in ACCOUNT_PARTS]
         if list(self._rows("SELECT 1 FROM sqlite_schema WHERE name = 'selection_account'")):
             columns, join = accounts, "LEFT JOIN selection_account USING (generation, island)"
-        else:  # files of formats before 3
+        else:  # a file of format 3 or older
             columns, join = [f"NULL AS {name}" for name in accounts], ""
         cursor = self._execute(
             f"SELECT statistics.*, {', '.join(columns)} FROM statistics {join} ORDER BY generation, island"
@@ -310,7 +310,7 @@ def _array(data: bytes, kind: str, count: int) -> numpy.typing.NDArray[Any]:
 
 
 def _organisms(count: int, elite: int, survivors: int, genes: bytes, parents: bytes) -> dict[str, Any]:
-    """The columns known at birth."""
+    """The columns of a population that are known when its generation begins."""
     chromosomes = _array(genes, "<f4", count * len(GENE_NAMES)).reshape(count, -1)
     if parents:
         first, second = _array(parents, "<u4", 2 * count).reshape(count, 2).T.astype(float)
