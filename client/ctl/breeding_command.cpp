@@ -1,4 +1,4 @@
-// breeding: how a generation was bred.
+// evoctl breeding: prints how a generation was bred.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
 #include "proto/command_line/command.h"
@@ -12,7 +12,7 @@ namespace {
 
 using Align = Table::Align;
 
-// Generations that are not held any more are simulated again first.
+// The server may first have to simulate a purged generation again.
 constexpr std::chrono::minutes answer_timeout{30};
 
 struct BreedingOptions {
@@ -32,7 +32,7 @@ std::string heading(const v1::Breeding& bred) {
         " were made; then came " + std::to_string(bred.elite_count()) + " elite, " +
         count(bred.survivor_count() - bred.elite_count(), "other survivor", "other survivors") + ", " +
         count(bred.descendant_count() - bred.survivor_count(), "child", "children") + "\n";
-    std::string choices; // as they held
+    std::string choices; // the parameters in force
     for (const auto& parameter : bred.parameters()) {
         if (parameter.value().has_choice() && parameter.name() != "emigrants" &&
             parameter.name() != "immigrants_replace") {
@@ -52,7 +52,7 @@ std::string more_text(std::uint64_t first, int shown, std::uint32_t count) {
 }
 
 std::string contender_text(const v1::Breeding& bred, const BreedingOptions& options) {
-    // Of a fitness that was shuffled it is also told what they came to themselves.
+    // A shuffled fitness is printed beside the organism's own.
     const bool shuffled = bred.contenders_size() > 0 && bred.contenders(0).has_own_fitness();
     std::vector<Table::Column> columns{{"ORGANISM", Align::Right},
                                        {shuffled ? "SHUFFLED" : "FITNESS", Align::Right},
@@ -121,7 +121,7 @@ std::string name_of(v1::MutationKind kind) {
     }
 }
 
-/// What became of its genes after the parents': "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
+/// How its genes differ from those of its parents: "swap 1 2 0 3 4 5; impulse 93.21 → 97.10 creep".
 std::string changes_of(const v1::Descendant& descendant, const v1::WorldInfo& world) {
     std::string text;
     if (descendant.has_order_mutation()) {
@@ -183,16 +183,16 @@ void breeding(const Common& common, const BreedingOptions& options) {
 } // namespace
 
 void add_breeding_command(command_line::Command& app, const Common& common) {
-    auto& command =
-        app.add_command("breeding", "How a generation was bred: the picks, the pairs, what became of their genes")
-            .group("Look");
+    auto& command = app.add_command("breeding", "How a generation was bred: selections, pairs, crossover and mutation")
+                        .group("Look");
     auto& options = command.keep(BreedingOptions{});
-    command.add_option("--generation", &options.generation, "Of the parents; without it the last that was bred from")
+    command
+        .add_option("--generation", &options.generation,
+                    "Generation of the parents; default: the last one that has descendants")
         .check(at_least_one);
     command.add_option("--island", &options.island, "Island, from 0").check(index_number);
-    command.add_option("--from", &options.from, "Where each list begins").check(index_number).show_default();
-    command
-        .add_option("--rows", &options.rows, "How many of each list are printed, at most 1000; of JSON, all that come")
+    command.add_option("--from", &options.from, "First row of each list").check(index_number).show_default();
+    command.add_option("--rows", &options.rows, "Rows of each list, at most 1000; with --json, all rows of the reply")
         .check(command_line::WholeNumber{1, 1000})
         .show_default();
     command.footer("Examples:\n  evoctl breeding\n  evoctl breeding --generation 3 --rows 50\n"

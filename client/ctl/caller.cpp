@@ -22,7 +22,7 @@ core::Endpoint endpoint_of(const std::string& text) {
     return *std::move(endpoint);
 }
 
-/// The terminal does not show what is typed, for as long as this lives and no signal ends the program.
+/// Switches the terminal's echo off for its lifetime; restores it also when a signal ends the program.
 class EchoOff {
   public:
     explicit EchoOff(const termios& as_it_was) {
@@ -31,7 +31,7 @@ class EchoOff {
         restore.sa_handler = [](int number) {
             ::tcsetattr(STDIN_FILENO, TCSANOW, &echoing);
             std::signal(number, SIG_DFL);
-            std::raise(number); // taken when this returns: it ends the program
+            std::raise(number); // delivered when this handler returns; ends the program
         };
         for (std::size_t i = 0; i < signals.size(); ++i) {
             ::sigaction(signals[i], &restore, &before_[i]);
@@ -54,7 +54,7 @@ class EchoOff {
     std::array<struct sigaction, signals.size()> before_{};
 };
 
-/// Typed by a person, and not shown; empty where nobody is there to ask.
+/// Asks for the token on the terminal without echo; empty if there is no terminal.
 std::string prompt_for_token(const std::string& server) {
     termios as_it_was{};
     if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1 || ::tcgetattr(STDIN_FILENO, &as_it_was) != 0) {
@@ -62,7 +62,7 @@ std::string prompt_for_token(const std::string& server) {
     }
     std::string token;
     {
-        // Before it asks: what is typed or pasted at once is neither shown nor thrown away.
+        // Before the prompt, so that text typed or pasted early is neither shown nor lost.
         const EchoOff echo_off{as_it_was};
         std::cerr << "token for " << server << ": " << std::flush;
         std::cin >> token;
@@ -105,7 +105,7 @@ v1::Response Caller::call(v1::Request request, std::optional<std::chrono::millis
         const bool usage = response.error().kind == core::Error::Kind::Usage;
         const bool late = response.error().kind == core::Error::Kind::Timeout;
         throw Stop{usage ? ExitCode::Usage : ExitCode::NoConnection,
-                   response.error().what + (late ? "; for a busy server wait longer, with --timeout" : "")};
+                   response.error().what + (late ? "; if the server is busy, wait longer with --timeout" : "")};
     }
     if (!core::accepted(*response)) {
         const bool wrong = response->status().code() == v1::CODE_INVALID_ARGUMENT;
@@ -135,7 +135,7 @@ v1::Storage Caller::storage() {
             return world.storage();
         }
     }
-    return welcome_.storage(); // there is nothing that could wait
+    return welcome_.storage(); // no world, so nothing can wait
 }
 
 void Caller::need_planned_changes() const {
@@ -188,9 +188,9 @@ std::string trouble_of(const v1::Storage& storage) {
 std::string durability_of(const v1::Welcome& welcome) {
     switch (welcome.durability()) {
     case v1::DURABILITY_NONE:
-        return "nothing is kept: worlds end with the server";
+        return "runs are not recorded: worlds end with the server";
     case v1::DURABILITY_RELAXED:
-        return "durability relaxed: what was answered survives evod, but perhaps not the machine";
+        return "durability relaxed: acknowledged commands survive a crash of evod, but perhaps not of the machine";
     default:
         return "";
     }
@@ -206,7 +206,7 @@ std::string sentence(const v1::WorldInfo& world) {
     std::string text = world.name() + ": " + state_of(world) + " at " + speed_of(world) + ", generation " +
                        std::to_string(world.generation()) + ", tick " + std::to_string(world.tick()) + " (" +
                        duration(world.simulated_s()) + ")";
-    // A world that shows the past waits at its end, whatever it was told.
+    // A replay waits at its end, whatever its goal.
     const bool under_way = world.state() == v1::RUN_STATE_RUNNING || world.state() == v1::RUN_STATE_PAUSED ||
                            (world.state() == v1::RUN_STATE_WAITING && world.has_replay());
     if (under_way && world.has_run_until_generation()) {
@@ -216,7 +216,7 @@ std::string sentence(const v1::WorldInfo& world) {
         text += ", until tick " + std::to_string(world.run_until_tick());
     }
     if (world.has_replay() && world.tick() >= world.replay().last_tick()) {
-        text += ", the last moment that its run file tells of: evoctl seek takes it to another";
+        text += ", the last tick in its run file: evoctl seek moves it to another";
     }
     return text;
 }

@@ -1,4 +1,4 @@
-// Caller: one call's line to the server. What goes wrong ends the call: see Stop.
+// Caller: the connection of one evoctl call to the server. An error ends the call by an exception: see Stop.
 #pragma once
 
 #include "client/core/connection.h"
@@ -23,14 +23,14 @@ class Command;
 
 namespace evod::ctl {
 
-/// What every subcommand can be given.
+/// Options of every subcommand.
 struct Common {
     std::string server = "localhost";
     core::Credentials credentials;
-    std::string world; // empty: the server's only one, or `default`
+    std::string world; // empty: the server's only world, or `default`
     double timeout_s = 10;
     bool json = false;
-    bool may_prompt = true; // for a token, whoever sits at the terminal
+    bool may_prompt = true; // may ask for a token on the terminal
 
     std::chrono::milliseconds timeout() const {
         return std::chrono::milliseconds{static_cast<std::int64_t>(timeout_s * 1000)};
@@ -42,17 +42,17 @@ class Caller {
     /// Connects, or throws Stop.
     explicit Caller(const Common& common);
 
-    /// The server's answer; throws Stop if it refuses or none comes, within that time or the one of every call.
+    /// Returns the server's response. Throws Stop if the server refuses, or does not answer within `timeout` (default: --timeout).
     v1::Response call(v1::Request request, std::optional<std::chrono::milliseconds> timeout = {});
 
     /// The server's registry of parameters.
     Registry registry();
-    /// The world that is meant, as it is now.
+    /// The current state of the world that `name` means (see Common::world).
     v1::WorldInfo world(const std::string& name);
-    /// How it stands with the server's disk, as it is now.
+    /// The current state of the server's storage.
     v1::Storage storage();
 
-    /// Throws Stop if the server does not know of them: it would make them at once, or not at all.
+    /// Throws Stop if the server does not support planned changes: it would apply them immediately, or not at all.
     void need_planned_changes() const;
 
     core::Connection& connection() { return *connection_; }
@@ -65,7 +65,7 @@ class Caller {
     v1::Welcome welcome_;
 };
 
-/// Prints an answer as JSON if that was asked for, else as `text` writes it.
+/// Prints a reply as JSON with --json, otherwise the result of `text()`.
 template <class Text>
 void print(const Common& common, const google::protobuf::Message& answer, const Text& text) {
     const std::string output = common.json ? to_json(answer) : visible(text());
@@ -74,22 +74,22 @@ void print(const Common& common, const google::protobuf::Message& answer, const 
 
 /// "running", "paused", …, "waits for the disk".
 std::string state_of(const v1::WorldInfo& world);
-/// "commands are refused: the disk is full", "worlds wait for the disk: …"; empty while it keeps up.
+/// "commands are refused: the disk is full", "worlds wait for the disk: …"; empty if the disk keeps up.
 std::string trouble_of(const v1::Storage& storage);
-/// What becomes of a command that was answered, where the machine may lose it; empty where it may not.
+/// What may happen to an acknowledged command if the machine fails; empty if nothing can.
 std::string durability_of(const v1::Welcome& welcome);
-/// What it was told, and whether the machine cannot keep up with that: "2x", "max", "100x (slower)".
+/// The requested speed, and whether the machine is slower: "2x", "max", "100x (slower)".
 std::string speed_of(const v1::WorldInfo& world);
 /// One world in a sentence: "default: running at 1x, generation 4, tick 9,000 of 2:30 min".
 std::string sentence(const v1::WorldInfo& world);
 
-/// Throws Stop with every mistake on a line of its own.
+/// Throws Stop with one mistake per line.
 [[noreturn]] void stop_for(const std::string& what, const Mistakes& mistakes);
 
-/// Ctrl-C from here on sets a flag instead of ending the program.
+/// From now on Ctrl-C sets a flag instead of ending the program.
 void catch_interrupts();
 bool interrupted();
-/// Whether people are looking at stdout.
+/// Whether stdout is a terminal.
 bool on_terminal();
 
 /// Checks of options.
@@ -97,7 +97,7 @@ inline constexpr command_line::WholeNumber whole_number{}, at_least_one{.min = 1
     index_number{.max = std::numeric_limits<std::uint32_t>::max()}; // of islands and organisms
 
 /// Each adds its subcommands to `app`.
-void add_look_commands(command_line::Command& app, const Common& common);
+void add_query_commands(command_line::Command& app, const Common& common);
 void add_parameter_commands(command_line::Command& app, const Common& common);
 void add_run_commands(command_line::Command& app, const Common& common);
 void add_breeding_command(command_line::Command& app, const Common& common);
@@ -106,8 +106,7 @@ void add_watch_commands(command_line::Command& app, const Common& common);
 void add_top_command(command_line::Command& app, const Common& common);
 void add_complete_command(command_line::Command& app);
 
-/// Prints what may come next after `words`, the last of which is being typed; nothing where no server is needed and
-/// none is there.
+/// Prints the possible completions of the last of `words`. Prints nothing if a server is needed and none answers.
 void complete(const command_line::Command& app, const std::vector<std::string>& words);
 
 } // namespace evod::ctl

@@ -12,8 +12,8 @@ namespace {
 
 using command_line::Command;
 
-// Bash cuts words at '=' and ':' in COMP_WORDS, so the line is cut here, at blanks; and readline puts in only what
-// comes after the last '=', so what stands before it is taken off the answers.
+// Bash splits COMP_WORDS at '=' and ':', so the script splits the line itself, at blanks. Readline inserts only what follows
+// the last '=', so the script removes the part before it from the completions.
 constexpr const char* bash_script = R"(# Completion of evoctl for bash. Use it: source <(evoctl complete bash)
 _evoctl() {
     local line=${COMP_LINE:0:COMP_POINT} words word current
@@ -30,7 +30,7 @@ _evoctl() {
 complete -F _evoctl evoctl
 )";
 
-/// Prints those of `candidates` that begin like the word being typed.
+/// Prints the candidates that begin with the word being typed.
 class Candidates {
   public:
     explicit Candidates(std::string word) : word_{std::move(word)} {}
@@ -44,7 +44,7 @@ class Candidates {
     std::string word_;
 };
 
-/// The server named by the words or the environment; a short wait, for someone is typing.
+/// The options of the words and the environment, with a short timeout because the user is typing.
 Common common_of(const std::vector<std::string>& words) {
     Common common;
     common.timeout_s = 1;
@@ -112,7 +112,7 @@ void complete(const Command& app, const std::vector<std::string>& words) {
     const std::string last = before.empty() ? "" : before.back();
     try {
         if (last == "--server" || last == "--experiment" || last == "--output") {
-            return; // hosts and files are not ours to know
+            return; // hosts and files: left to the shell
         }
         if (last == "--world") {
             complete_world(common_of(before), word);
@@ -137,12 +137,12 @@ void complete(const Command& app, const std::vector<std::string>& words) {
             Candidates{word}.add("bash");
         }
     } catch (const Stop&) {
-        // Someone is typing: an error here would only be in the way.
+        // The user is typing: an error message would be in the way.
     }
 }
 
 void add_complete_command(Command& app) {
-    auto& command = app.add_command("complete", "Completion for a shell: source <(evoctl complete bash)");
+    auto& command = app.add_command("complete", "Shell completion: source <(evoctl complete bash)");
     command.group("Shell");
     command.add_option("SHELL", &command.keep(std::string{}), "bash").required().choices({"bash"});
     command.action([] { std::cout << bash_script; });

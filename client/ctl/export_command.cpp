@@ -1,4 +1,4 @@
-// export: what the run file of a world holds, as text for other programs.
+// evoctl export: writes the tables of a world's run file as CSV or JSON lines.
 #include "client/ctl/caller.h"
 #include "proto/command_line/command.h"
 
@@ -14,7 +14,7 @@ namespace evod::ctl {
 
 namespace {
 
-/// Generations that are not held any more are simulated again: a part may take that long.
+/// Timeout of one part: the server may have to simulate purged generations again.
 constexpr std::chrono::minutes part_timeout{60};
 
 const std::map<std::string, v1::RunTable> tables{{"generations", v1::RUN_TABLE_GENERATIONS},
@@ -81,7 +81,7 @@ void export_run(const Common& common, const ExportOptions& options) {
     v1::Request request = request_of(common, options);
     Caller caller{common};
     v1::ExportPart part = caller.call(std::move(request), part_timeout).export_part();
-    // Not before there is something to write: what is refused leaves a file of that name as it is.
+    // Opened when the first part arrives, so that a refusal leaves an existing file unchanged.
     std::ofstream file;
     if (!options.output.empty()) {
         file.open(options.output, std::ios::binary);
@@ -92,8 +92,9 @@ void export_run(const Common& common, const ExportOptions& options) {
     std::ostream& out = options.output.empty() ? std::cout : file;
     if (part.generations_left_out() > 0) {
         std::cerr << "evoctl: " << part.generations_left_out()
-                  << " generations are left out: they are not held any more, and follow another version of the model "
-                     "than the server, which cannot simulate them again\n";
+                  << " generations are missing: they were purged, and the server has another version of the model, so "
+                     "that it "
+                     "cannot simulate them again\n";
     }
     while (out.write(part.text().data(), static_cast<std::streamsize>(part.text().size())) && !part.last()) {
         v1::Request next;
@@ -119,24 +120,25 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& values) {
 } // namespace
 
 void add_export_command(command_line::Command& app, const Common& common) {
-    auto& command = app.add_command("export", "Write what the run file of a world holds, up to now").group("Look");
+    auto& command = app.add_command("export", "Write a table of a world's run, up to now").group("Look");
     auto& options = command.keep(ExportOptions{});
     command
-        .add_option("--what", &options.what,
-                    "generations: their statistics; organisms: parents, genes and fate of each; lineage: who came of "
-                    "whom; population: the genes of one generation, for `create --population`; events: the commands")
+        .add_option(
+            "--what", &options.what,
+            "generations: statistics; organisms: parents, genes and fate of each; lineage: parents and children; "
+            "population: the genes of one generation, for `create --population`; events: the commands")
         .required()
         .choices(names_of(tables));
-    command.add_option("--of", &options.of, "GENERATION:ISLAND:ORGANISM: the lineage of this organism alone");
-    command.add_option("--generation", &options.generation, "Of the population; otherwise the last that has begun")
+    command.add_option("--of", &options.of, "GENERATION:ISLAND:ORGANISM: only the lineage of this organism");
+    command.add_option("--generation", &options.generation, "Generation of the population; default: the current one")
         .check(whole_number);
-    command.add_option("--format", &options.format, "csv, or jsonl: an object of JSON a line")
+    command.add_option("--format", &options.format, "csv, or jsonl: one JSON object per line")
         .choices(names_of(formats))
         .show_default();
-    command.add_option("--output", &options.output, "File; without it, standard output");
+    command.add_option("--output", &options.output, "File; default: standard output");
     command.footer("Examples:\n  evoctl export --what organisms --output organisms.csv\n"
                    "  evoctl export --what population > plate.csv && evoctl create copy --population plate.csv\n\n"
-                   "A folder with all of it, to be given away, is made beside the run file: evod export RUN.evod "
+                   "A folder with all tables, for other people: run this beside the run file: evod export RUN.evod "
                    "--bundle FOLDER");
     command.action([&] { export_run(common, options); });
 }

@@ -15,15 +15,15 @@ namespace {
 
 /// Protobuf writes every 64-bit number as a string: here those below 2^53 become numbers.
 ///
-/// of  whose message the object is.
+/// of  the descriptor of the object's message.
 std::string with_numbers(std::string_view json, const google::protobuf::Descriptor& of) {
     using google::protobuf::FieldDescriptor;
     struct Level {
         const google::protobuf::Descriptor* of;
-        const FieldDescriptor* in; // the field whose value it is
+        const FieldDescriptor* in; // the field that contains it
     };
     std::vector<Level> levels;
-    const FieldDescriptor* field = nullptr; // whose value comes
+    const FieldDescriptor* field = nullptr; // of the next value
     std::string text;
     for (std::size_t i = 0; i < json.size(); ++i) {
         if (json[i] == '{') {
@@ -66,7 +66,7 @@ std::string to_json(const google::protobuf::Message& message, bool many_lines) {
     options.add_whitespace = many_lines;
     std::string text;
     if (const auto status = google::protobuf::util::MessageToJsonString(message, &text, options); !status.ok()) {
-        throw Stop{ExitCode::Refused, "the answer cannot be written as JSON: " + std::string{status.message()}};
+        throw Stop{ExitCode::Refused, "the reply cannot be written as JSON: " + std::string{status.message()}};
     }
     if (!text.ends_with('\n')) {
         text += '\n';

@@ -1,4 +1,4 @@
-// JSON of messages, for programs that read what evoctl prints.
+// JSON: converts messages for programs that read the output of evoctl.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -7,8 +7,8 @@
 
 namespace evod::ctl {
 
-/// JSON with the names of the .proto files; on one line or many.
-/// 64-bit numbers below 2^53 are numbers there, larger ones strings, as not every reader of JSON has them exactly.
+/// Converts a message to JSON with the field names of the .proto files, on one line or many. 64-bit numbers from 2^53 on
+/// become strings, because many JSON readers cannot represent them exactly.
 std::string to_json(const google::protobuf::Message& message, bool many_lines = true);
 
 } // namespace evod::ctl

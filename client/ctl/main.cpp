@@ -1,4 +1,4 @@
-// evoctl: one command a call, to a server of evod.
+// evoctl: sends one command to an evod server.
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
 #include "proto/command_line/command.h"
@@ -14,7 +14,7 @@ using namespace evod::ctl;
 
 namespace {
 
-/// The first word that must be a command is looked at before the rest: a slip of the finger should be told as one.
+/// Checks the subcommand before everything else, so that a typing error in it is reported as such.
 void require_known_command(const evod::command_line::Command& app, int argc, char** argv) {
     std::vector<std::string> names;
     for (const auto& command : app.commands()) {
@@ -26,8 +26,10 @@ void require_known_command(const evod::command_line::Command& app, int argc, cha
             word == "--ca" || word == "--cert" || word == "--key") {
             ++i; // its value
         } else if (word == "--token" || word.starts_with("--token=")) {
-            throw Stop{ExitCode::Usage, "a command line is no place for a token, for everybody on the machine can read "
-                                        "it: put it into EVOD_TOKEN, or into a file for --token-file"};
+            throw Stop{
+                ExitCode::Usage,
+                "--token: every user of the machine can read a command line; put the token into EVOD_TOKEN, or into a "
+                "file for --token-file"};
         } else if (!word.starts_with('-')) {
             if (std::ranges::find(names, word) == names.end()) {
                 throw Stop{ExitCode::Usage,
@@ -42,15 +44,14 @@ void require_known_command(const evod::command_line::Command& app, int argc, cha
 
 int main(int argc, char** argv) {
     Common common;
-    evod::command_line::Command app{"evoctl", "evoctl: one command a call, to a server of evod",
-                                    "evoctl " EVOD_VERSION};
+    evod::command_line::Command app{"evoctl", "evoctl: sends one command to an evod server", "evoctl " EVOD_VERSION};
     app.add_option("--server", &common.server, "HOST:PORT of the server").environment("EVOD_SERVER").show_default();
     add_options(app, common.credentials);
-    app.add_option("--world", &common.world, "World; without it the only one, or 'default'").environment("EVOD_WORLD");
-    app.add_option("--timeout", &common.timeout_s, "Seconds to wait for an answer")
+    app.add_option("--world", &common.world, "World; default: the only one, or 'default'").environment("EVOD_WORLD");
+    app.add_option("--timeout", &common.timeout_s, "Seconds to wait for a reply")
         .show_default()
         .check(evod::command_line::RealNumber{0.001, 86400});
-    app.add_flag("--json", &common.json, "Print the answer as JSON; numbers from 2^53 on are strings");
+    app.add_flag("--json", &common.json, "Print the reply as JSON; numbers from 2^53 on are strings");
     app.accept_options_after_commands();
     app.help_column(32);
     app.footer("Examples:\n"
@@ -59,11 +60,11 @@ int main(int argc, char** argv) {
                "  evoctl --server lab:7744 watch        live, from another machine\n"
                "\n"
                "Exit codes: 0 done, 1 refused by the server, 2 wrong usage or a value that is not allowed,\n"
-               "3 no connection or no answer, 4 the server wants a token that it knows. With --json, standard error "
-               "has a Status in JSON.");
+               "3 no connection or no reply, 4 the server requires a valid token. With --json, standard error "
+               "contains a Status in JSON.");
     add_run_commands(app, common);
     add_parameter_commands(app, common);
-    add_look_commands(app, common);
+    add_query_commands(app, common);
     add_breeding_command(app, common);
     add_export_command(app, common);
     add_watch_commands(app, common);

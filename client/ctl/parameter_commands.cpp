@@ -1,4 +1,4 @@
-// Parameters: set, get, params.
+// Commands for parameters: set, changes, cancel, get, params.
 #include "client/core/actor.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
@@ -37,7 +37,7 @@ const v1::ParameterState* find(const v1::ParameterSet& parameters, const std::st
     return nullptr;
 }
 
-/// "mutation_chance=0.05", and what it will be where that differs.
+/// "mutation_chance=0.05", followed by its pending and scheduled values.
 std::string line_of(const v1::ParameterState& state, const Registry& registry, const v1::ParameterSet& set) {
     std::string coming;
     if (state.has_pending()) {
@@ -214,19 +214,19 @@ void params(const Common& common, const std::string& name) {
 
 void add_parameter_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Parameters";
-    auto& set_command = app.add_command("set", "Change parameters: all that are given, or none").group(group);
+    auto& set_command = app.add_command("set", "Change parameters: all of them, or none").group(group);
     auto& options = set_command.keep(SetOptions{});
     set_command.add_option("NAME=VALUE", &options.words, "Parameters with their new values").required();
     set_command.add_flag("--dry-run", &options.dry_run, "Only check; change nothing");
     set_command
         .add_option("--if-revision", &options.expected_revision,
-                    "Refuse if anyone has changed a parameter since this revision")
+                    "Refuse if a parameter was changed after this revision")
         .check(whole_number);
     const auto at_generation = set_command
                                    .add_option("--at-generation", &options.at_generation,
-                                               "Not now, but from the first tick of this generation on")
+                                               "Apply at the first tick of this generation, not now")
                                    .check(whole_number);
-    set_command.add_option("--at-tick", &options.at_tick, "Not now, but right after this tick since the run began")
+    set_command.add_option("--at-tick", &options.at_tick, "Apply after this tick of the run, not now")
         .check(whole_number)
         .excludes(at_generation);
     set_command.footer("Examples:\n  evoctl set selection=tournament mutation_chance=0.05 mutate_survivors=true\n"
@@ -235,22 +235,22 @@ void add_parameter_commands(command_line::Command& app, const Common& common) {
                        "Names and ranges: evoctl params");
     set_command.action([&] { set(common, options); });
 
-    app.add_command("changes", "What is planned, and when").group(group).action([&] { changes(common); });
+    app.add_command("changes", "List planned changes").group(group).action([&] { changes(common); });
 
-    auto& cancel_command = app.add_command("cancel", "Take back a planned change").group(group);
+    auto& cancel_command = app.add_command("cancel", "Cancel a planned change").group(group);
     auto& id = cancel_command.keep(std::uint64_t{0});
-    cancel_command.add_option("ID", &id, "As evoctl changes tells it").required().check(whole_number);
+    cancel_command.add_option("ID", &id, "Number printed by evoctl changes").required().check(whole_number);
     cancel_command.action([&] { cancel(common, id); });
 
-    auto& get_command = app.add_command("get", "The values of parameters, as `set` takes them").group(group);
+    auto& get_command = app.add_command("get", "Print values of parameters in the format of `set`").group(group);
     auto& names = get_command.keep(std::vector<std::string>{});
-    get_command.add_option("NAME", &names, "Parameters; without any, all of them");
+    get_command.add_option("NAME", &names, "Parameters; default: all");
     get_command.footer("Examples:\n  evoctl get selection mutation_chance\n  evoctl get --json | jq .revision");
     get_command.action([&] { get(common, names); });
 
-    auto& params_command = app.add_command("params", "Which parameters there are").group(group);
+    auto& params_command = app.add_command("params", "List the parameters, or describe one").group(group);
     auto& name = params_command.keep(std::string{});
-    params_command.add_option("NAME", &name, "One parameter, with all that is known of it");
+    params_command.add_option("NAME", &name, "Describe this parameter in full");
     params_command.action([&] { params(common, name); });
 }
 

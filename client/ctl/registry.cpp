@@ -131,8 +131,7 @@ Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& paramete
         return value;
     }
     default:
-        return Mistakes{
-            {parameter.name() + " is of a kind that this evoctl does not know: it is older than the server"}};
+        return Mistakes{{parameter.name() + " has a kind unknown to this evoctl, which is older than the server"}};
     }
 }
 

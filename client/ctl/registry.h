@@ -1,4 +1,4 @@
-// Registry: what the server says about its parameters, and how words become values of the right kind.
+// Registry: the server's descriptions of its parameters; converts words of the command line into values.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -11,7 +11,7 @@
 
 namespace evod::ctl {
 
-/// What is wrong with each word that was given, a line each.
+/// Errors in the given words, one line each.
 struct Mistakes {
     std::vector<std::string> lines;
     void add(const Mistakes& more) { lines.insert(lines.end(), more.lines.begin(), more.lines.end()); }
@@ -33,18 +33,18 @@ class Registry {
     /// "there is no parameter 'mutation_chanse'; did you mean mutation_chance?"
     std::string unknown(std::string_view name) const;
 
-    /// Words of the form name=value. Ranges are left to the server, which tells all that is wrong with them at once.
+    /// Parses words of the form name=value. The server checks the ranges and reports all violations together.
     Checked<std::vector<v1::ParameterAssignment>> assignments(const std::vector<std::string>& words) const;
 
   private:
     std::vector<v1::ParameterDescription> parameters_;
 };
 
-/// A value of the parameter's kind from a word: numbers as usual (a count may be written 1e6), flags as true, on, yes,
-/// 1 and their opposites, choices by name.
+/// Parses a value of the parameter's kind: numbers (a count may be written 1e6), flags as true, on, yes, 1 and their
+/// opposites, choices by name.
 Checked<v1::ParameterValue> parse_value(const v1::ParameterDescription& parameter, std::string_view word);
 
-/// As it would be typed: "0.15", "true", "roulette"; "-" for none.
+/// Formats a value as a user types it: "0.15", "true", "roulette"; "-" for none.
 std::string to_text(const v1::ParameterValue& value);
 /// "0 to 1", "true or false", "roulette, tournament".
 std::string allowed(const v1::ParameterDescription& parameter);

@@ -1,4 +1,4 @@
-// What changes a world's course: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
+// Commands that control worlds: create, fork, delete, reset, seek, start, run, pause, resume, step, until, speed.
 #include "client/ctl/caller.h"
 #include "client/ctl/experiment_file.h"
 #include "client/ctl/text.h"
@@ -39,7 +39,7 @@ std::ifstream open_file(const std::string& what, const std::string& path) {
     std::error_code error;
     std::ifstream file;
     if (std::filesystem::is_directory(path, error)) {
-        errno = EISDIR; // a stream opens it, and throws when it is read
+        errno = EISDIR; // a stream would open it, and throw when it is read
     } else {
         file.open(path, std::ios::binary);
     }
@@ -68,12 +68,12 @@ void add_population(const std::string& path, v1::CreateWorld& command) {
     for (const std::vector<float>& genes : *islands) {
         command.add_population()->mutable_genes()->Assign(genes.begin(), genes.end());
     }
-    // What else is in the request takes much less than the room that is left for it here.
+    // The other fields of the request need much less than the reserve.
     constexpr std::size_t rest_bytes_max = 32 << 10;
     if (command.ByteSizeLong() + rest_bytes_max > *codec::server_limits.control_bytes_max) {
         throw Stop{ExitCode::Usage, "the population file " + path +
-                                        " holds more than a request can carry, some 43,000 organisms: begin such a "
-                                        "world with evod --population"};
+                                        " is too large for a request (about 43,000 organisms): start such a world with "
+                                        "evod --population"};
     }
 }
 
@@ -102,7 +102,7 @@ void create(const Common& common, const CreateOptions& options) {
             stop_for("nothing was created:", assignments.error());
         }
         for (const auto& assignment : *assignments) {
-            // What is typed wins over the file, in all generations; the server takes each name once.
+            // --set overrides the file, in all generations; the server accepts each name once.
             auto& schedule = *command.mutable_schedule();
             schedule.erase(std::remove_if(schedule.begin(), schedule.end(),
                                           [&](const auto& s) { return s.name() == assignment.name(); }),
@@ -167,7 +167,8 @@ void fork(const Common& common, const ForkOptions& options) {
     print(common, response, [&] {
         const bool kept = caller.welcome().durability() != v1::DURABILITY_NONE;
         return "forked " + response.world().name() + ": " + sentence(response.world()) + "\n" +
-               (kept ? "" : "it is not kept, and ends with this server: `evod fork` makes a world of a run file\n");
+               (kept ? ""
+                     : "it is not recorded, and ends with this server; `evod fork` makes a world from a run file\n");
     });
 }
 
@@ -180,7 +181,7 @@ void seek(const Common& common, const SeekOptions& options) {
     v1::Request request;
     auto& command = *request.mutable_seek();
     command.set_world(common.world);
-    command.mutable_to(); // the last moment, if nothing is said
+    command.mutable_to(); // default: the last tick
     if (options.generation) {
         command.mutable_to()->set_generation(*options.generation);
     }
@@ -200,7 +201,7 @@ void shut_down(const Common& common) {
 
 // ---- running ---------------------------------------------------------------------------------------------------
 
-/// Says on stderr how it goes: one line that is written over for people, a line per generation for files.
+/// Prints progress on stderr: one overwritten line on a terminal, one line per generation elsewhere.
 class Progress {
   public:
     ~Progress() {
@@ -221,7 +222,7 @@ class Progress {
         }
     }
 
-    /// How it stands with the disk, if that is other than before.
+    /// Prints the state of the storage if it has changed.
     void show(const v1::Storage& storage) {
         const std::string trouble = trouble_of(storage);
         if (trouble != trouble_) {
@@ -239,18 +240,18 @@ class Progress {
     std::string trouble_;
 };
 
-/// Waits until `reached(world)`, or the world stops running before, showing generations as they end.
+/// Waits until `reached(world)`, or until the world stops running. Prints generations as they end.
 ///
-/// returns  the world as it then is.
+/// returns  the final state of the world.
 template <class Reached>
 v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached& reached) {
     using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::milliseconds look_every{500}; // events may be lost; a look now and then is enough
+    constexpr std::chrono::milliseconds poll_interval{500}; // events may be lost, so the world is polled too
     catch_interrupts();
     Progress progress;
     for (auto look_at = Clock::now();;) {
         if (interrupted()) {
-            throw Stop{ExitCode::Refused, "no longer waiting; the world goes on"};
+            throw Stop{ExitCode::Refused, "stopped waiting; the world continues to run"};
         }
         if (Clock::now() >= look_at) {
             v1::WorldInfo world = caller.world(begun.name());
@@ -266,7 +267,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
                 }
                 return world;
             }
-            look_at = Clock::now() + look_every;
+            look_at = Clock::now() + poll_interval;
         }
         if (const auto event = caller.connection().wait_event(std::chrono::milliseconds{100});
             event && event->world() == begun.name()) {
@@ -279,7 +280,7 @@ v1::WorldInfo wait_for(Caller& caller, const v1::WorldInfo& begun, const Reached
     }
 }
 
-/// Ends the call with an error if the world stopped before it got where it should.
+/// Ends the call with an error if the world stopped before its goal.
 void require_reached(bool reached, const v1::WorldInfo& world) {
     if (!reached) {
         throw Stop{ExitCode::Refused, "stopped before its goal: " + sentence(world)};
@@ -301,7 +302,7 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
         const v1::WorldInfo world = wait_for(caller, response.world(), [](const v1::WorldInfo&) { return false; });
         *response.mutable_world() = world;
         print_world(common, response);
-        // One that has run its generations has no goal any more; one that someone stopped, or whose past is over, has.
+        // A world that has run its generations has no goal left; a paused world, or a replay at its end, has.
         require_reached(!generations || !world.has_run_until_generation() || world.state() == v1::RUN_STATE_TERMINATED,
                         world);
     } else {
@@ -309,7 +310,7 @@ void run(const Common& common, std::optional<std::uint64_t> generations, bool wa
     }
 }
 
-/// Pauses the world, so that it is not only lent for the step that follows.
+/// Pauses the world for good; a step alone would only lease it.
 v1::WorldInfo stand(const Common& common, Caller& caller) {
     v1::Request request;
     request.mutable_pause()->set_world(common.world);
@@ -336,7 +337,7 @@ void until(const Common& common, Caller& caller, std::uint64_t tick, bool wait) 
 
 void step(const Common& common, std::uint64_t ticks, bool wait) {
     Caller caller{common};
-    // The goal is a tick, so that a step repeated after a lost connection is not taken twice.
+    // The goal is a tick, so that a step that is resent after a lost connection is not executed twice.
     until(common, caller, stand(common, caller).tick() + ticks, wait);
 }
 
@@ -384,16 +385,16 @@ void set_speed(const Common& common, const std::string& word) {
 
 void add_world_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Worlds";
-    auto& create_command = app.add_command("create", "Make a world; it waits to be run").group(group);
+    auto& create_command = app.add_command("create", "Create a world; it waits until it is run").group(group);
     auto& options = create_command.keep(CreateOptions{});
     create_command.add_option("NAME", &options.name, "1 to 64 of a-z A-Z 0-9 _ -").required();
-    create_command.add_option("--seed", &options.seed, "Without it, and without one in the file, the server draws one")
+    create_command.add_option("--seed", &options.seed, "Default: that of the file, or drawn by the server")
         .check(whole_number);
-    create_command.add_option("--set", &options.words, "Parameters as NAME=VALUE; the others have their defaults");
+    create_command.add_option("--set", &options.words, "Parameters as NAME=VALUE; others keep their defaults");
     create_command.add_option("--experiment", &options.experiment,
-                              "Parameters, and perhaps a seed, from a JSON file; --set and --seed go before it");
+                              "JSON file of parameters and optionally a seed; --set and --seed override it");
     create_command.add_option("--population", &options.population,
-                              "CSV file of `evod export --what population` to begin with");
+                              "First population: CSV file from `evod export --what population`");
     create_command.footer("Examples:\n  evoctl create lesson --experiment experiments/classic.json --seed 7\n"
                           "  evoctl create big --set population_size=10000 scale_with_population=true");
     create_command.action([&] { create(common, options); });
@@ -404,33 +405,34 @@ void add_world_commands(command_line::Command& app, const Common& common) {
     delete_command.action([&] { remove(common, name); });
 
     auto& fork_command =
-        app.add_command("fork", "Make a second world from a generation of one, or from where it is; it waits")
+        app.add_command("fork", "Start a second world from a generation, or from the current tick; it waits")
             .group(group);
     auto& fork_options = fork_command.keep(ForkOptions{});
-    fork_command.add_option("WORLD", &fork_options.origin, "The one to begin from; without it that of --world, if any");
-    fork_command.add_option("--name", &fork_options.name, "Of the new world: 1 to 64 of a-z A-Z 0-9 _ -").required();
+    fork_command.add_option("WORLD", &fork_options.origin, "The original world; default: that of --world");
+    fork_command.add_option("--name", &fork_options.name, "Name of the new world: 1 to 64 of a-z A-Z 0-9 _ -")
+        .required();
     fork_command
-        .add_option("--at-generation", &fork_options.at_generation, "Begins with its first tick; without it, from now")
+        .add_option("--at-generation", &fork_options.at_generation,
+                    "Start at the first tick of this generation; default: the current tick")
         .check(at_least_one);
-    fork_command.footer(
-        "Example, a paired experiment with the same chance:\n  evoctl fork lesson --at-generation 20 --name calm\n"
-        "  evoctl --world calm set mutation_chance=0.01");
+    fork_command.footer("Example, a paired experiment with the same random numbers:\n  evoctl fork lesson "
+                        "--at-generation 20 --name calm\n"
+                        "  evoctl --world calm set mutation_chance=0.01");
     fork_command.action([&] { fork(common, fork_options); });
 
     auto& seek_command =
-        app.add_command("seek", "Take a world that shows the past (evod replay) to another moment; else its last")
-            .group(group);
+        app.add_command("seek", "Move a replay (evod replay) to another tick; default: its last").group(group);
     auto& seek_options = seek_command.keep(SeekOptions{});
-    seek_command.add_option("--generation", &seek_options.generation, "Its first moment, or its tick --tick")
+    seek_command.add_option("--generation", &seek_options.generation, "Generation; its first tick, or --tick")
         .check(whole_number);
-    seek_command.add_option("--tick", &seek_options.tick, "Of the generation; without one, of the run")
+    seek_command.add_option("--tick", &seek_options.tick, "Tick of the generation; without --generation, of the run")
         .check(whole_number);
     seek_command.action([&] { seek(common, seek_options); });
 
     auto& reset_command =
-        app.add_command("reset", "Begin again at generation 1, with the parameters last set").group(group);
+        app.add_command("reset", "Start again at generation 1, with the current parameters").group(group);
     auto& seed = reset_command.keep(std::optional<std::uint64_t>{});
-    reset_command.add_option("--seed", &seed, "Without it the same seed again").check(whole_number);
+    reset_command.add_option("--seed", &seed, "Default: the same seed").check(whole_number);
     reset_command.action([&] { reset(common, seed); });
 }
 
@@ -444,29 +446,29 @@ void add_run_commands(command_line::Command& app, const Common& common) {
     auto& run_command = app.add_command("run", "Run N more generations, or until paused").group(group);
     auto& generations = run_command.keep(std::optional<std::uint64_t>{});
     auto& run_wait = run_command.keep(false);
-    run_command.add_option("N", &generations, "Generations; without it until paused or a termination criterion holds")
+    run_command.add_option("N", &generations, "Generations; default: until paused or a termination criterion holds")
         .check(at_least_one);
-    run_command.add_flag("--wait", &run_wait, "Return when they have ended; Ctrl-C ends the waiting, not the run");
+    run_command.add_flag("--wait", &run_wait, "Return when they have ended; Ctrl-C stops waiting, not the run");
     run_command.footer("Examples:\n  evoctl run 100 --wait && evoctl history --csv > fitness.csv\n"
                        "  evoctl run --world lesson");
     run_command.action([&] { run(common, generations, run_wait); });
 
     app.add_command("shutdown", "End the server, as SIGTERM does").group("Worlds").action([&] { shut_down(common); });
-    app.add_command("pause", "Stop a world where it is").group(group).action([&] { pause(common); });
-    app.add_command("resume", "Go on after a pause").group(group).action([&] { resume(common); });
+    app.add_command("pause", "Pause a world").group(group).action([&] { pause(common); });
+    app.add_command("resume", "Continue after a pause").group(group).action([&] { resume(common); });
 
-    auto& step_command = app.add_command("step", "Run N ticks, then pause; returns when they are over").group(group);
+    auto& step_command = app.add_command("step", "Run N ticks, then pause; returns when they have run").group(group);
     auto& ticks = step_command.keep(std::uint64_t{1});
     auto& no_wait = step_command.keep(false);
-    step_command.add_option("N", &ticks, "Ticks; without it 1").check(at_least_one);
-    step_command.add_flag("--no-wait", &no_wait, "Return at once");
+    step_command.add_option("N", &ticks, "Ticks; default: 1").check(at_least_one);
+    step_command.add_flag("--no-wait", &no_wait, "Return immediately");
     step_command.action([&] { step(common, ticks, !no_wait); });
 
-    auto& until_command = app.add_command("until", "Run until TICK ticks of the run are over, then pause").group(group);
+    auto& until_command = app.add_command("until", "Run to tick TICK, then pause").group(group);
     auto& tick = until_command.keep(std::uint64_t{0});
     auto& until_wait = until_command.keep(false);
     until_command.add_option("TICK", &tick, "Ticks since the run began").required().check(whole_number);
-    until_command.add_flag("--wait", &until_wait, "Return when it is reached");
+    until_command.add_flag("--wait", &until_wait, "Return when the tick is reached");
     until_command.action([&] {
         Caller caller{common};
         if (const std::uint64_t now = caller.world(common.world).tick(); tick < now) {
@@ -477,7 +479,7 @@ void add_run_commands(command_line::Command& app, const Common& common) {
         until(common, caller, tick, until_wait);
     });
 
-    auto& speed_command = app.add_command("speed", "How fast a world goes").group(group);
+    auto& speed_command = app.add_command("speed", "Set the speed of a world").group(group);
     auto& word = speed_command.keep(std::string{});
     speed_command.add_option("SPEED", &word, "Simulated seconds per second, 0.001 to 10000, or max").required();
     speed_command.footer("Examples:\n  evoctl speed 2\n  evoctl speed max");

@@ -23,8 +23,8 @@ TerminalSize terminal_size() {
 void Drawing::draw(const std::string& text) {
     const TerminalSize size = terminal_size();
     const std::string clipped = clip_page(text, size.columns, size.lines);
-    // Up over the last drawing, and everything below goes. A terminal of another size may have broken its lines anew,
-    // and nobody knows where it begins.
+    // Move the cursor to the start of the last drawing and clear everything below. After a change of the terminal's size the
+    // lines may have wrapped differently, so the start is unknown.
     const bool moved = lines_ > 0 && size != size_;
     std::cout << (moved        ? "\033[H"
                   : lines_ > 0 ? "\033[" + std::to_string(lines_) + "A"
@@ -42,7 +42,7 @@ void Drawing::leave() {
     lines_ = 0;
 }
 
-void ConnectionNews::tell(const core::Connection& connection, Drawing& drawing) {
+void ConnectionNews::report(const core::Connection& connection, Drawing& drawing) {
     const auto status = connection.status();
     if (status.state == core::State::Failed) {
         drawing.leave();
@@ -51,7 +51,7 @@ void ConnectionNews::tell(const core::Connection& connection, Drawing& drawing) 
     const bool lost = status.state != core::State::Connected;
     if (lost && !lost_) {
         drawing.leave();
-        std::cerr << status.reason << "; trying again\n";
+        std::cerr << status.reason << "; reconnecting\n";
     }
     lost_ = lost;
 }

@@ -1,4 +1,4 @@
-// Screen: what is drawn again and again over itself, and news of the connection meanwhile.
+// Screen: redraws text in place on a terminal, and reports changes of the connection.
 #pragma once
 
 #include "client/core/connection.h"
@@ -9,31 +9,31 @@
 namespace evod::ctl {
 
 struct TerminalSize {
-    std::size_t columns = 80, lines = 24; // where there is no terminal to ask
+    std::size_t columns = 80, lines = 24; // used without a terminal
     bool operator==(const TerminalSize&) const = default;
 };
 TerminalSize terminal_size();
 
-/// Whole lines that take the place of those drawn before.
+/// Text of whole lines that each draw() replaces.
 class Drawing {
   public:
-    /// What does not fit on the screen as it is now is left out, at the right and below.
+    /// Replaces the previous text. Text beyond the right and lower edge of the terminal is cut.
     void draw(const std::string& text);
-    /// It stays: something else is to be written below, and the next is drawn under that.
+    /// Keeps the current text on the terminal; the next draw() starts below it.
     void leave();
     ~Drawing() { leave(); }
 
   private:
     std::ptrdiff_t lines_ = 0;
-    bool ends_line_ = true; // what was drawn last
+    bool ends_line_ = true; // whether the last drawing did
     TerminalSize size_;
 };
 
-/// Says on stderr when the connection is lost; throws Stop when it has failed for good.
+/// Reports a lost connection on stderr; throws Stop if it has failed for good.
 class ConnectionNews {
   public:
-    /// drawing  that is on the screen meanwhile, and makes way.
-    void tell(const core::Connection& connection, Drawing& drawing);
+    /// drawing  the text on the screen, which is kept above the message.
+    void report(const core::Connection& connection, Drawing& drawing);
 
   private:
     bool lost_ = false;

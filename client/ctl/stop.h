@@ -1,4 +1,4 @@
-// Stop: the end of a call of evoctl, thrown from wherever it is seen and turned into an exit code in main.
+// Stop: the exception that ends a call of evoctl; main turns it into an exit code.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -9,16 +9,16 @@ namespace evod::ctl {
 
 enum class ExitCode {
     Ok = 0,
-    Refused = 1,      // by the server; or what was waited for did not come about
-    Usage = 2,        // this call makes no sense, whether evoctl finds that or the server (INVALID_ARGUMENT)
-    NoConnection = 3, // no server, or no answer
-    TokenNeeded = 4,  // the server is there, and wants a token that it knows
+    Refused = 1,      // by the server; or the awaited event did not happen
+    Usage = 2,        // wrong usage, found by evoctl or by the server (INVALID_ARGUMENT)
+    NoConnection = 3, // no server, or no reply
+    TokenNeeded = 4,  // the server requires a valid token
 };
 
 struct Stop {
     ExitCode code;
-    std::string text;       // for stderr; empty: nothing to say
-    v1::Status status = {}; // of the server's refusal; empty: it was none
+    std::string text;       // for stderr; may be empty
+    v1::Status status = {}; // the server's refusal, if that is the reason
 };
 
 } // namespace evod::ctl

@@ -68,10 +68,10 @@ std::string fixed(double value, int decimals) {
 }
 
 std::string short_time(double seconds) {
-    const auto told = [](double value, const char* unit) { return fixed(value, value < 9.95 ? 1 : 0) + unit; };
-    return seconds < 0.9995e-3 ? told(seconds * 1e6, " µs")
-           : seconds < 0.9995  ? told(seconds * 1e3, " ms")
-                               : told(seconds, " s");
+    const auto with_unit = [](double value, const char* unit) { return fixed(value, value < 9.95 ? 1 : 0) + unit; };
+    return seconds < 0.9995e-3 ? with_unit(seconds * 1e6, " µs")
+           : seconds < 0.9995  ? with_unit(seconds * 1e3, " ms")
+                               : with_unit(seconds, " s");
 }
 
 std::string short_bytes(double bytes) {
@@ -121,11 +121,11 @@ std::string clip_lines(std::string_view utf8, std::size_t width) {
 }
 
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines) {
-    std::size_t end = 0; // of what fits, before the end of its last line
+    std::size_t end = 0; // of the text that fits, without its last line break
     for (std::size_t line = 0; line < std::max<std::size_t>(lines, 1); ++line) {
         const std::size_t line_end = utf8.find('\n', line == 0 ? 0 : end + 1);
         if (line_end == std::string_view::npos) {
-            return clip_lines(utf8, width); // the cursor takes the line that is left
+            return clip_lines(utf8, width); // one line stays free for the cursor
         }
         end = line_end;
     }
@@ -133,7 +133,7 @@ std::string clip_page(std::string_view utf8, std::size_t width, std::size_t line
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    // Damerau's distance, each piece edited once ("optimal string alignment"): three rows of the usual table.
+    // Optimal string alignment distance (Damerau, each substring edited once), with three rows of the table.
     std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
     std::iota(above.begin(), above.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
@@ -155,7 +155,7 @@ std::vector<std::string> nearest(std::string_view word, std::span<const std::str
     std::vector<std::pair<std::size_t, std::string>> ranked;
     for (const std::string& name : names) {
         const std::size_t distance = edit_distance(word, name);
-        // Someone who typed a part of the name meant it too: "mutation" for "mutation_chance".
+        // A part of a name counts as near: "mutation" for "mutation_chance".
         const bool part = word.size() >= 3 && name.find(word) != std::string::npos;
         if (distance <= std::max<std::size_t>(2, word.size() / 3) || part) {
             ranked.emplace_back(distance, name);

@@ -12,7 +12,7 @@
 
 namespace evod::ctl {
 
-/// Rows of cells in columns as wide as they need to be.
+/// A table of text whose columns are as wide as their cells.
 class Table {
   public:
     enum class Align { Left, Right };
@@ -24,7 +24,7 @@ class Table {
     explicit Table(std::vector<Column> columns) : columns_{std::move(columns)} {}
 
     void add(std::vector<std::string> cells); // as many as there are columns
-    /// Title and rows, a line each; columns are two blanks apart and no line ends in a blank.
+    /// Returns the title and the rows, one line each. Columns are separated by two blanks; no line ends in a blank.
     std::string to_text() const;
 
   private:
@@ -32,15 +32,15 @@ class Table {
     std::vector<std::vector<std::string>> rows_;
 };
 
-/// One of eight bars per value, lowest to highest; the newest `width_max` values. Empty for none. Values that are all
-/// equal are bars of middle height.
+/// One of eight bars per value, for the newest `width_max` values; empty for no values. If all values are equal, the bars
+/// have middle height.
 std::string sparkline(std::span<const double> values, std::size_t width_max);
 
-/// What a server says, for a terminal: control characters but the end of a line become '?'.
+/// Makes text from a server safe for a terminal: control characters except line breaks become '?'.
 std::string visible(std::string utf8);
 
 using core::exact;
-/// With so many decimals.
+/// Formats with a fixed number of decimals.
 std::string fixed(double value, int decimals);
 using core::duration;
 /// "12 µs", "3.4 ms", "1.2 s".
@@ -50,16 +50,16 @@ std::string short_bytes(double bytes);
 /// Characters (code points), not bytes.
 std::size_t width_of(std::string_view utf8);
 
-/// Each line cut after `width` characters, so that none takes two lines of a terminal.
+/// Cuts each line after `width` characters, so that no line wraps on a terminal.
 std::string clip_lines(std::string_view utf8, std::size_t width);
 
-/// As much of the beginning of `utf8` as a screen of so many characters and lines holds without rolling: its lines cut
-/// as above, and the last that fits without its end, behind which the cursor stays.
+/// Returns the beginning of `utf8` that a screen of this width and height shows without scrolling. Lines are cut as above; the
+/// last line has no line break, so that the cursor stays behind it.
 std::string clip_page(std::string_view utf8, std::size_t width, std::size_t lines);
 
-/// How many insertions, deletions, replacements and swaps of neighbours turn one into the other.
+/// The number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b);
-/// Those of `names` that someone may have meant by `word`, likeliest first, at most three.
+/// The names that `word` may be a misspelling of, nearest first, at most three.
 std::vector<std::string> nearest(std::string_view word, std::span<const std::string> names);
 /// "; did you mean A or B?", or nothing.
 std::string did_you_mean(std::string_view word, std::span<const std::string> names);

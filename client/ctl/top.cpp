@@ -18,7 +18,7 @@ const v1::MetricFamily* family_in(const v1::Metrics& metrics, std::string_view n
     return found == metrics.families().end() ? nullptr : &*found;
 }
 
-/// The sample with that value of its only label; that without labels for an empty one.
+/// The sample whose only label has that value; for an empty value, the sample without labels.
 const v1::MetricSample* sample_in(const v1::Metrics& metrics, std::string_view name, std::string_view label) {
     const auto* family = family_in(metrics, name);
     if (family == nullptr) {
@@ -30,14 +30,14 @@ const v1::MetricSample* sample_in(const v1::Metrics& metrics, std::string_view n
     return found == family->samples().end() ? nullptr : &*found;
 }
 
-/// Time of ticks between two looks.
+/// Distribution of tick durations between two measurements.
 struct TickTimes {
     std::vector<double> bounds;
     std::vector<std::uint64_t> counts;
     std::uint64_t count = 0;
     double sum = 0;
 
-    /// Estimated within a bucket, as if what is in it were spread evenly; `count` is not 0.
+    /// Interpolates linearly within a bucket; `count` is not 0.
     std::string quantile(double share) const {
         const double wanted = share * static_cast<double>(count);
         double so_far = 0;
@@ -55,38 +55,38 @@ struct TickTimes {
 
 class Page {
   public:
-    explicit Page(const TwoLooks& looks) : looks_{looks} {}
+    explicit Page(const Measurements& measurements) : measurements_{measurements} {}
 
     double now(std::string_view name, std::string_view label = {}) const {
-        const auto* sample = sample_in(looks_.after, name, label);
+        const auto* sample = sample_in(measurements_.after, name, label);
         return sample == nullptr ? 0 : sample->value();
     }
-    /// How much it has risen; a server that began anew meanwhile has nothing to say.
+    /// The increase of a counter; empty if the server was restarted in between.
     double risen(std::string_view name, std::string_view label = {}) const {
-        const auto* sample = sample_in(looks_.before, name, label);
+        const auto* sample = sample_in(measurements_.before, name, label);
         return std::max(0.0, now(name, label) - (sample == nullptr ? 0 : sample->value()));
     }
     std::string count(std::string_view name, std::string_view label = {}) const { return fixed(now(name, label), 0); }
     std::string per_s(std::string_view name, std::string_view label = {}) const {
-        return fixed(risen(name, label) / looks_.between_s, 0) + "/s";
+        return fixed(risen(name, label) / measurements_.between_s, 0) + "/s";
     }
     std::string bytes_per_s(std::string_view name, std::string_view label = {}) const {
-        return short_bytes(risen(name, label) / looks_.between_s) + "/s";
+        return short_bytes(risen(name, label) / measurements_.between_s) + "/s";
     }
     std::string cpu(std::string_view name, std::string_view label = {}) const {
-        return fixed(100 * risen(name, label) / looks_.between_s, 0) + " %";
+        return fixed(100 * risen(name, label) / measurements_.between_s, 0) + " %";
     }
-    bool tells(std::string_view name) const { return family_in(looks_.after, name) != nullptr; }
+    bool reports(std::string_view name) const { return family_in(measurements_.after, name) != nullptr; }
 
     TickTimes tick_times(std::string_view world) const {
-        const auto* after = sample_in(looks_.after, "evod_tick_seconds", world);
-        const auto* before = sample_in(looks_.before, "evod_tick_seconds", world);
+        const auto* after = sample_in(measurements_.after, "evod_tick_seconds", world);
+        const auto* before = sample_in(measurements_.before, "evod_tick_seconds", world);
         TickTimes times;
         if (after == nullptr) {
             return times;
         }
         const v1::MetricHistogram& last = after->histogram();
-        // Another of the same name, that has begun since, has fewer.
+        // A later world of the same name has smaller counts.
         const bool goes_on = before != nullptr && before->histogram().counts_size() == last.counts_size() &&
                              std::ranges::equal(before->histogram().counts(), last.counts(), std::less_equal{});
         times.bounds.assign(last.bounds().begin(), last.bounds().end());
@@ -100,7 +100,7 @@ class Page {
 
     std::string processor() const {
         std::string text = cpu("process_cpu_seconds_total");
-        if (const auto* threads = family_in(looks_.after, "evod_thread_cpu_seconds_total")) {
+        if (const auto* threads = family_in(measurements_.after, "evod_thread_cpu_seconds_total")) {
             for (const auto& sample : threads->samples()) {
                 const std::string& thread = sample.labels(0).value();
                 text += (&sample == &threads->samples(0) ? ": " : ", ") + thread + " " +
@@ -125,8 +125,8 @@ class Page {
     }
 
     std::string disk() const {
-        if (!tells("evod_storage_state")) {
-            return "nothing is kept";
+        if (!reports("evod_storage_state")) {
+            return "runs are not recorded";
         }
         std::string state = "keeps up";
         for (const char* other : {"behind", "failing", "stalled"}) {
@@ -134,14 +134,14 @@ class Page {
                 state = other;
             }
         }
-        return state + "; " + short_bytes(now("evod_journal_waiting_bytes")) + " wait, the oldest for " +
+        return state + "; " + short_bytes(now("evod_journal_waiting_bytes")) + " waiting, the oldest for " +
                fixed(now("evod_journal_lag_seconds"), 1) + " s";
     }
 
     /// "requests 12, sessions 3"; empty if none was reached, or the server does not count it.
     std::string limits() const {
         std::string text;
-        if (const auto* family = family_in(looks_.after, "evod_limit_reached_total")) {
+        if (const auto* family = family_in(measurements_.after, "evod_limit_reached_total")) {
             for (const auto& sample : family->samples()) {
                 if (sample.value() > 0) {
                     text += (text.empty() ? "" : ", ") + sample.labels(0).value() + " " + fixed(sample.value(), 0);
@@ -152,9 +152,9 @@ class Page {
     }
 
     std::string worlds(std::size_t lines_max) const {
-        const auto* family = family_in(looks_.after, "evod_ticks_per_second");
+        const auto* family = family_in(measurements_.after, "evod_ticks_per_second");
         if (family == nullptr || family->samples().empty()) {
-            return "there is no world\n";
+            return "no worlds\n";
         }
         std::vector<v1::MetricSample> all{family->samples().begin(), family->samples().end()};
         std::ranges::stable_sort(all, std::ranges::greater{}, &v1::MetricSample::value);
@@ -162,8 +162,8 @@ class Page {
         const std::size_t shown = all.size() <= room ? all.size() : room - 1;
         Table table{{{"world"},
                      {"ticks/s", Table::Align::Right},
-                     {"a tick takes", Table::Align::Right},
-                     {"half of them", Table::Align::Right},
+                     {"mean tick", Table::Align::Right},
+                     {"median", Table::Align::Right},
                      {"99 %", Table::Align::Right}}};
         for (std::size_t i = 0; i < shown; ++i) {
             const std::string& world = all[i].labels(0).value();
@@ -177,37 +177,38 @@ class Page {
     }
 
   private:
-    const TwoLooks& looks_;
+    const Measurements& measurements_;
 };
 
 } // namespace
 
-std::string top_text(const TwoLooks& looks, const std::string& server, double now_s, std::size_t lines_max) {
-    const Page page{looks};
-    const auto* build = family_in(looks.after, "evod_build_info");
+std::string top_text(const Measurements& measurements, const std::string& server, double now_s, std::size_t lines_max) {
+    const Page page{measurements};
+    const auto* build = family_in(measurements.after, "evod_build_info");
     const std::string version = build != nullptr && !build->samples().empty() && !build->samples(0).labels().empty()
                                     ? " " + build->samples(0).labels(0).value()
                                     : "";
     std::string text = "evod" + version + " at " + server + ", up " +
                        duration(std::max(0.0, now_s - page.now("process_start_time_seconds"))) + "\n\n";
     std::size_t lines = 2;
-    const auto line = [&](std::string_view title, const std::string& told) {
-        text += std::string{title} + std::string(11 - title.size(), ' ') + told + "\n";
+    const auto line = [&](std::string_view title, const std::string& value) {
+        text += std::string{title} + std::string(11 - title.size(), ' ') + value + "\n";
         ++lines;
     };
     line("memory", short_bytes(page.now("process_resident_memory_bytes")));
     line("processor", page.processor());
     line("clients", page.clients());
-    line("they see", page.count("evod_subscriptions", "pictures") + " streams of pictures, " +
-                         page.count("evod_subscriptions", "events") + " of events");
+    line("streams", page.count("evod_subscriptions", "snapshots") + " of snapshots, " +
+                        page.count("evod_subscriptions", "events") + " of events");
     line("logins", page.count("evod_logins_failed_total") + " failed");
     line("requests", page.per_s("evod_requests_total") + "; " + page.count("evod_mailbox_requests") + " of " +
-                         page.count("evod_mailbox_requests_max") + " wait");
+                         page.count("evod_mailbox_requests_max") + " waiting");
     line("received", page.bytes_per_s("evod_received_bytes_total"));
-    line("sent", page.bytes_per_s("evod_sent_bytes_total", "stream") + " of pictures, " +
-                     page.bytes_per_s("evod_sent_bytes_total", "control") + " of answers and events; " +
-                     short_bytes(page.now("evod_client_buffer_bytes")) + " wait");
-    line("pictures", page.per_s("evod_pictures_sent_total") + ", dropped " + page.per_s("evod_pictures_dropped_total"));
+    line("sent", page.bytes_per_s("evod_sent_bytes_total", "stream") + " of snapshots, " +
+                     page.bytes_per_s("evod_sent_bytes_total", "control") + " of replies and events; " +
+                     short_bytes(page.now("evod_client_buffer_bytes")) + " waiting");
+    line("snapshots",
+         page.per_s("evod_snapshots_sent_total") + ", dropped " + page.per_s("evod_snapshots_dropped_total"));
     line("events", page.count("evod_events_dropped_total") + " dropped");
     line("disk", page.disk());
     if (const std::string limits = page.limits(); !limits.empty()) {

@@ -1,4 +1,4 @@
-// Top: what a server tells of itself, as a page to be read at a glance.
+// Top: the metrics of a server as one page of text.
 #pragma once
 
 #include "evod/v1/commands.pb.h"
@@ -8,18 +8,18 @@
 
 namespace evod::ctl {
 
-/// Two looks at the metrics of a server.
-struct TwoLooks {
+/// Two measurements of a server's metrics.
+struct Measurements {
     const v1::Metrics& before;
     const v1::Metrics& after;
     double between_s; // > 0
 };
 
-/// What holds now, and what has happened between the two looks, per second. At most `lines_max` lines, of which none is
-/// longer than 80 characters as long as names are not: of the worlds those that tick the fastest are there.
+/// Formats the current values, and the rates between the two measurements. At most `lines_max` lines of at most 80 characters
+/// (longer only for long names). If not all worlds fit, the fastest ones are listed.
 ///
-/// server   as it was called: "localhost".
+/// server   the server's address as the user wrote it: "localhost".
 /// now_s    seconds since 1970.
-std::string top_text(const TwoLooks& looks, const std::string& server, double now_s, std::size_t lines_max);
+std::string top_text(const Measurements& measurements, const std::string& server, double now_s, std::size_t lines_max);
 
 } // namespace evod::ctl

@@ -1,4 +1,4 @@
-// What a server tells of itself: top.
+// evoctl top: the server's metrics, live.
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
 #include "client/ctl/top.h"
@@ -39,7 +39,7 @@ class Top {
         while (!interrupted()) {
             wait();
             if (!interrupted() && look()) {
-                tell();
+                print();
                 if (options_.once) {
                     return;
                 }
@@ -53,7 +53,7 @@ class Top {
         Clock::time_point at;
     };
 
-    /// Whether there was an answer; none is no error while the connection is being made again.
+    /// Whether the server answered; no answer is not an error during a reconnection.
     bool look() {
         v1::Request request;
         request.mutable_get_metrics();
@@ -62,7 +62,7 @@ class Top {
             return true;
         }
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
-        news_.tell(caller_.connection(), drawing_);
+        news_.report(caller_.connection(), drawing_);
         if (!response) {
             return false;
         }
@@ -78,31 +78,31 @@ class Top {
     void wait() {
         const auto until = Clock::now() + std::chrono::duration<double>{options_.interval_s};
         while (!interrupted() && Clock::now() < until) {
-            // Ctrl-C is minded within a tenth of a second.
+            // Ctrl-C is noticed within a tenth of a second.
             const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
             caller_.connection().wait_event(
                 std::clamp(left, std::chrono::milliseconds{0}, std::chrono::milliseconds{100}));
-            news_.tell(caller_.connection(), drawing_);
+            news_.report(caller_.connection(), drawing_);
         }
     }
 
-    void tell() {
+    void print() {
         if (common_.json) {
             std::cout << to_json(last_->metrics, false) << std::flush;
             return;
         }
         const std::chrono::duration<double> between = last_->at - before_->at;
         const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-        const std::string farewell = redraw_ ? "\nCtrl-C ends the looking, not the server\n" : "";
+        const std::string farewell = redraw_ ? "\nCtrl-C ends evoctl, not the server\n" : "";
         const std::size_t lines = redraw_ ? terminal_size().lines : all_lines;
         const std::string text =
             top_text({before_->metrics, last_->metrics, std::max(between.count(), 1e-3)}, common_.server, now.count(),
-                     lines - std::min<std::size_t>(lines, 3)) + // the farewell, and where the cursor waits
+                     lines - std::min<std::size_t>(lines, 3)) + // the last line, and the line of the cursor
             farewell;
         if (redraw_) {
             drawing_.draw(text);
         } else {
-            std::cout << (std::exchange(told_, true) ? "\n" : "") << text << std::flush;
+            std::cout << (std::exchange(printed_, true) ? "\n" : "") << text << std::flush;
         }
     }
 
@@ -115,22 +115,22 @@ class Top {
     std::optional<Look> before_, last_;
     Drawing drawing_;
     ConnectionNews news_;
-    bool told_ = false;
+    bool printed_ = false;
 };
 
 } // namespace
 
 void add_top_command(command_line::Command& app, const Common& common) {
-    auto& top = app.add_command("top", "What the server counts and measures: ticks, clients, bytes, disk, memory")
-                    .group("Follow");
+    auto& top = app.add_command("top", "Metrics of the server: ticks, clients, bytes, disk, memory").group("Follow");
     auto& options = top.keep(Options{});
-    top.add_option("--interval", &options.interval_s, "Seconds between two looks")
+    top.add_option("--interval", &options.interval_s, "Seconds between two measurements")
         .check(command_line::RealNumber{0.1, 3600})
         .show_default();
-    top.add_flag("--once", &options.once, "Look twice, print that as one page, and end");
-    top.footer("Rates are those since the look before. With --json every look is a line; with --once as well, the\n"
-               "first look is printed at once.\n\n"
-               "Examples:\n  evoctl top\n  evoctl top --once\n  evoctl --json top --interval 60 >> metrics.jsonl");
+    top.add_flag("--once", &options.once, "Measure twice, print one page, and end");
+    top.footer(
+        "Rates are averages since the previous measurement. With --json every measurement is one line; with --once\n"
+        "too, the first one is printed immediately.\n\n"
+        "Examples:\n  evoctl top\n  evoctl top --once\n  evoctl --json top --interval 60 >> metrics.jsonl");
     top.action([&] { Top{common, options}.run(); });
 }
 

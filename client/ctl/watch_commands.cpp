@@ -1,4 +1,4 @@
-// What follows a world: watch, events.
+// Commands that follow a world: watch, events.
 #include "client/core/actor.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/screen.h"
@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a generation came to over all islands.
+/// Statistics of one generation over all islands.
 struct GenerationLine {
     std::uint64_t generation = 0;
     double fitness_best = 0, fitness_mean = 0, diversity = 0;
@@ -49,13 +49,13 @@ std::string text_of(const GenerationLine& line) {
 
 // ---- watch -----------------------------------------------------------------------------------------------------
 
-class Watch {
+class WatchDisplay {
   public:
-    Watch(const Common& common, std::optional<std::uint64_t> generations)
+    WatchDisplay(const Common& common, std::optional<std::uint64_t> generations)
         : common_{common}
         , generations_{generations}
         , caller_{common}
-        , redraw_{on_terminal() && !common.json && !generations} {} // each that was asked for has its line
+        , redraw_{on_terminal() && !common.json && !generations} {} // with --generations, one line each
 
     void run() {
         catch_interrupts();
@@ -80,19 +80,19 @@ class Watch {
             if (const auto event = caller_.connection().wait_event(std::chrono::milliseconds{100})) {
                 take(*event);
             }
-            news_.tell(caller_.connection(), drawing_);
+            news_.report(caller_.connection(), drawing_);
         }
         if (redraw_ && !ended_) {
             draw();
         }
         if (ended_ && generations_ && seen_ < *generations_) {
-            throw Stop{ExitCode::Refused, "only " + std::to_string(seen_) + " of " + std::to_string(*generations_) +
-                                              " generations were seen"};
+            throw Stop{ExitCode::Refused,
+                       "only " + std::to_string(seen_) + " of " + std::to_string(*generations_) + " generations ended"};
         }
     }
 
   private:
-    /// The line of fitness does not begin empty where generations have ended before.
+    /// Loads earlier generations, so that the sparkline does not start empty.
     void load_past() {
         if (world_.generation() < 2) {
             return;
@@ -103,7 +103,7 @@ class Watch {
         history.set_first_generation(world_.generation() > width + 1 ? world_.generation() - width : 1);
         const auto response = caller_.connection().request(std::move(request), caller_.timeout());
         if (!response || !core::accepted(*response)) {
-            return; // only the picture of the past is missing
+            return; // only the earlier generations are missing
         }
         const auto& generations = response->history().generations();
         for (int first = 0; first < generations.size();) {
@@ -116,7 +116,7 @@ class Watch {
         }
     }
 
-    /// Lines are for programs; how it stands with the disk is for whoever wonders why none comes.
+    /// Lines on stdout are for programs; the state of the storage goes to stderr and explains why no line comes.
     void say(const v1::Storage& storage) {
         const std::string trouble = trouble_of(storage);
         if (!redraw_ && trouble != trouble_) {
@@ -201,7 +201,7 @@ class Watch {
                 best.push_back(line.fitness_best);
                 mean.push_back(line.fitness_mean);
             }
-            // The figure behind a line of fitness is worth more than the oldest of its generations.
+            // Keep room for the number after the sparkline; drop its oldest generations instead.
             constexpr std::size_t figures = 18;
             const std::size_t columns = terminal_size().columns;
             const std::size_t shown = std::min(width, columns > figures ? columns - figures : 1);
@@ -229,7 +229,7 @@ class Watch {
         return table.to_text();
     }
 
-    static constexpr std::size_t width = 60; // generations in a line of fitness
+    static constexpr std::size_t width = 60; // generations in a sparkline
 
     const Common& common_;
     const std::optional<std::uint64_t> generations_;
@@ -241,7 +241,7 @@ class Watch {
     std::uint64_t seen_ = 0;           // generations that ended while watching
     Drawing drawing_;
     ConnectionNews news_;
-    std::string trouble_; // of the disk, as it was last said
+    std::string trouble_; // of the storage, as last printed
     Clock::time_point draw_at_{};
     bool ended_ = false;
 };
@@ -285,7 +285,7 @@ std::string text_of(const v1::Event& event) {
     }
     case v1::Event::kChangeDropped: {
         const auto& dropped = event.change_dropped();
-        std::string text = where + "left out what " + core::to_text(dropped.by()) + " planned:";
+        std::string text = where + "dropped a change planned by " + core::to_text(dropped.by()) + ":";
         for (const auto& name : dropped.name()) {
             text += " " + name;
         }
@@ -309,8 +309,8 @@ std::string text_of(const v1::Event& event) {
                std::to_string(event.migration().generation());
     }
     case v1::Event::kExtinction:
-        return where + "everyone on island " + std::to_string(event.extinction().island()) + " is dead, generation " +
-               std::to_string(event.extinction().generation());
+        return where + "all organisms on island " + std::to_string(event.extinction().island()) +
+               " are dead, generation " + std::to_string(event.extinction().generation());
     case v1::Event::kRunTerminated:
         return where + outcome_of(event.run_terminated().outcome());
     case v1::Event::kWorldCreated:
@@ -328,9 +328,9 @@ std::string text_of(const v1::Event& event) {
         return trouble.empty() ? "run files can be written again" : trouble;
     }
     case v1::Event::kEventsDropped:
-        return std::to_string(event.events_dropped().dropped_count()) + " events were lost: too many at once";
+        return std::to_string(event.events_dropped().dropped_count()) + " events were dropped: too many at once";
     default:
-        return where + "an event that this evoctl does not know: it is older than the server";
+        return where + "an event unknown to this evoctl, which is older than the server";
     }
 }
 
@@ -350,7 +350,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
         throw Stop{ExitCode::Refused, core::to_text(answer->status())};
     }
     if (const std::string trouble = trouble_of(caller.storage()); !trouble.empty()) {
-        std::cerr << trouble << '\n'; // began before
+        std::cerr << trouble << '\n'; // it started earlier
     }
     ConnectionNews news;
     Drawing none;
@@ -359,7 +359,7 @@ void follow_events(const Common& common, std::optional<std::uint64_t> count) {
             std::cout << (common.json ? to_json(*event, false) : visible(text_of(*event)) + "\n") << std::flush;
             ++seen;
         }
-        news.tell(caller.connection(), none);
+        news.report(caller.connection(), none);
     }
 }
 
@@ -369,14 +369,16 @@ void add_watch_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Follow";
     auto& watch = app.add_command("watch", "Live statistics; a line per generation when piped").group(group);
     auto& generations = watch.keep(std::optional<std::uint64_t>{});
-    watch.add_option("--generations", &generations, "A line for each of so many, then end; without it Ctrl-C ends")
+    watch
+        .add_option("--generations", &generations,
+                    "Print one line for each of this many generations, then end; default: until Ctrl-C")
         .check(at_least_one);
     watch.footer("Examples:\n  evoctl watch\n  evoctl watch --generations 100 > fitness.txt");
-    watch.action([&] { Watch{common, generations}.run(); });
+    watch.action([&] { WatchDisplay{common, generations}.run(); });
 
-    auto& events = app.add_command("events", "Everything that happens, a line each, of one world or all").group(group);
+    auto& events = app.add_command("events", "Print every event of one world or of all, one per line").group(group);
     auto& count = events.keep(std::optional<std::uint64_t>{});
-    events.add_option("--count", &count, "End after so many; without it Ctrl-C ends").check(at_least_one);
+    events.add_option("--count", &count, "End after this many events; default: until Ctrl-C").check(at_least_one);
     events.footer("Examples:\n  evoctl events --world lesson\n  evoctl events --json | jq .parameters_changed");
     events.action([&] { follow_events(common, count); });
 }

@@ -361,7 +361,7 @@ class Replay(Case):
         done = run("run", "1", "--wait")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("last moment", done.stdout)
-        end = "tick 421 .*, the last moment that its run file tells of: evoctl seek takes it to another"
+        end = "tick 421 .*, the last tick in its run file: evoctl seek moves it to another"
         done = run("run", "--wait")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, end)

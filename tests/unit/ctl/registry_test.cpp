@@ -62,7 +62,7 @@ TEST(Assignments, SayWhatIsWrongAndWhatWouldBeRight) {
               "selection: got 'turnament', allowed roulette, tournament; did you mean tournament?");
 }
 
-TEST(Assignments, TellEveryMistakeAtOnce) {
+TEST(Assignments, ReportEveryMistakeTogether) {
     const auto assignments = small_registry().assignments({"respawn=maybe", "selection=roulette", "zebra=1"});
     ASSERT_FALSE(assignments);
     EXPECT_EQ(assignments.error().lines.size(), 2U);

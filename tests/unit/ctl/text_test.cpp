@@ -55,7 +55,7 @@ TEST(Numbers, AreShortAndReadBack) {
     EXPECT_EQ(fixed(2.345, 1), "2.3");
 }
 
-TEST(Durations, AreToldInTheirUnit) {
+TEST(Durations, HaveTheirUnit) {
     EXPECT_EQ(duration(0), "0.0 s");
     EXPECT_EQ(duration(59.96), "60.0 s");
     EXPECT_EQ(duration(245), "4:05 min");

@@ -15,14 +15,14 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class Told {
+class Metrics {
   public:
-    Told& add(const std::string& name, double value, const std::string& label = {}) {
+    Metrics& add(const std::string& name, double value, const std::string& label = {}) {
         v1::MetricSample& sample = of(name, label);
         sample.set_value(value);
         return *this;
     }
-    Told& add_ticks(const std::string& world, std::vector<std::uint64_t> counts, double sum) {
+    Metrics& add_ticks(const std::string& world, std::vector<std::uint64_t> counts, double sum) {
         auto& histogram = *of("evod_tick_seconds", world).mutable_histogram();
         for (const double bound : {0.001, 0.002, 0.005}) {
             histogram.add_bounds(bound);
@@ -58,21 +58,21 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-std::string top(const Told& before, const Told& after, std::size_t lines_max = 24) {
+std::string top(const Metrics& before, const Metrics& after, std::size_t lines_max = 24) {
     return top_text({before.metrics, after.metrics, 2}, "lab", 1000, lines_max);
 }
 
 TEST(Top, RatesAreWhatHasRisenInASecond) {
-    Told before, after;
-    before.add("evod_pictures_sent_total", 100).add("evod_sent_bytes_total", 1024, "stream");
-    after.add("evod_pictures_sent_total", 220).add("evod_sent_bytes_total", 5120, "stream");
+    Metrics before, after;
+    before.add("evod_snapshots_sent_total", 100).add("evod_sent_bytes_total", 1024, "stream");
+    after.add("evod_snapshots_sent_total", 220).add("evod_sent_bytes_total", 5120, "stream");
     const std::string text = top(before, after);
-    EXPECT_THAT(text, HasSubstr("pictures   60/s, dropped 0/s"));
-    EXPECT_THAT(text, HasSubstr("2.0 KiB/s of pictures, 0 B/s of answers"));
+    EXPECT_THAT(text, HasSubstr("snapshots  60/s, dropped 0/s"));
+    EXPECT_THAT(text, HasSubstr("2.0 KiB/s of snapshots, 0 B/s of replies"));
 }
 
-TEST(Top, AServerThatBeganAnewHasNoRatesBelowZero) {
-    Told before, after;
+TEST(Top, ARestartedServerHasNoNegativeRates) {
+    Metrics before, after;
     before.add("evod_requests_total", 100)
         .add_ticks("default", {5, 0, 0, 0}, 1)
         .add("evod_ticks_per_second", 1, "default");
@@ -85,7 +85,7 @@ TEST(Top, AServerThatBeganAnewHasNoRatesBelowZero) {
 }
 
 TEST(Top, TickTimesAreThoseBetweenTheLooks) {
-    Told before, after;
+    Metrics before, after;
     before.add_ticks("default", {1000, 0, 0, 0}, 0.5);
     after.add_ticks("default", {1000, 98, 1, 1}, 0.7).add("evod_ticks_per_second", 50, "default");
     const std::string text = top(before, after);
@@ -93,13 +93,13 @@ TEST(Top, TickTimesAreThoseBetweenTheLooks) {
 }
 
 TEST(Top, TicksBeyondTheLastBoundAreSaidToBe) {
-    Told before, after;
+    Metrics before, after;
     after.add_ticks("default", {0, 0, 0, 4}, 4).add("evod_ticks_per_second", 4, "default");
     EXPECT_THAT(top(before, after), HasSubstr("> 5.0 ms"));
 }
 
 TEST(Top, FitsTheTerminalAndShowsTheFastestWorlds) {
-    Told before, after;
+    Metrics before, after;
     for (int i = 0; i < 64; ++i) {
         after.add("evod_ticks_per_second", i, "world-" + std::to_string(i));
     }
@@ -119,19 +119,19 @@ TEST(Top, FitsTheTerminalAndShowsTheFastestWorlds) {
     EXPECT_THAT(text, HasSubstr("world-63"));
     EXPECT_EQ(text.find("world-10 "), std::string::npos);
     EXPECT_THAT(lines.back(), ::testing::MatchesRegex("and [0-9]+ more"));
-    EXPECT_THAT(text, HasSubstr("disk       failing; 4.8 MiB wait"));
+    EXPECT_THAT(text, HasSubstr("disk       failing; 4.8 MiB waiting"));
 }
 
-TEST(Top, TellsOfLimitsThatWereReached) {
-    Told before, after;
+TEST(Top, ListsTheLimitsThatWereReached) {
+    Metrics before, after;
     EXPECT_EQ(top(before, after).find("limits"), std::string::npos);
     after.add("evod_limit_reached_total", 0, "requests").add("evod_limit_reached_total", 3, "sessions");
     EXPECT_THAT(top(before, after), HasSubstr("limits     sessions 3\n"));
 }
 
 TEST(Top, AServerThatKeepsNothingSaysSo) {
-    EXPECT_THAT(top({}, {}), HasSubstr("disk       nothing is kept\n"));
-    EXPECT_THAT(top({}, {}), HasSubstr("there is no world\n"));
+    EXPECT_THAT(top({}, {}), HasSubstr("disk       runs are not recorded\n"));
+    EXPECT_THAT(top({}, {}), HasSubstr("no worlds\n"));
 }
 
 } // namespace

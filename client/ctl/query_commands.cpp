@@ -1,4 +1,4 @@
-// What only reads: status, worlds, stats, history, organism, describe.
+// Commands that only read: status, worlds, stats, history, organism, describe.
 #include "client/core/history_csv.h"
 #include "client/ctl/caller.h"
 #include "client/ctl/text.h"
@@ -25,7 +25,7 @@ void status(const Common& common) {
     v1::WorldList worlds = worlds_of(caller);
     if (!common.world.empty()) {
         v1::WorldList one;
-        *one.add_worlds() = caller.world(common.world); // the server says if there is none of that name
+        *one.add_worlds() = caller.world(common.world); // refused if there is no world of that name
         worlds = std::move(one);
     }
     print(common, worlds, [&] {
@@ -48,7 +48,7 @@ void status(const Common& common) {
         for (const std::string& line : {durability_of(caller.welcome()), trouble_of(caller.welcome().storage())}) {
             text += line.empty() ? "" : line + "\n";
         }
-        return text + (worlds.worlds().empty() ? "no worlds: make one with `evoctl create NAME`\n" : table.to_text());
+        return text + (worlds.worlds().empty() ? "no worlds: create one with `evoctl create NAME`\n" : table.to_text());
     });
 }
 
@@ -106,38 +106,39 @@ void add_generation(Table& table, const v1::GenerationStatistics& g) {
                std::to_string(g.starved_count()), std::to_string(g.poisoned_count()), duration(g.simulated_s())});
 }
 
-/// A moment of a world's past; now, if nothing is said.
+/// A generation and tick of a world's run; without both, the current one.
 struct MomentOptions {
     std::optional<std::uint64_t> generation, tick;
-    bool is_past() const { return generation || tick; }
+    bool is_replay() const { return generation || tick; }
 };
 
 void add_options(command_line::Command& command, MomentOptions& options) {
-    command.add_option("--at-generation", &options.generation, "As it was at its beginning, or at its tick --at-tick")
+    command
+        .add_option("--at-generation", &options.generation, "Show an earlier generation, at its start or at --at-tick")
         .check(at_least_one);
-    command.add_option("--at-tick", &options.tick, "As it was after this tick of the generation, or else of the run")
+    command.add_option("--at-tick", &options.tick, "Show the state after this tick of --at-generation, or of the run")
         .check(whole_number);
 }
 
-/// The name of the world that is meant; or of one that shows that moment of it, as long as this call lasts.
+/// The name of the world; for an earlier moment, the name of a replay of it, which ends with this call.
 std::string world_at(Caller& caller, const Common& common, const MomentOptions& options) {
-    if (!options.is_past()) {
+    if (!options.is_replay()) {
         return common.world;
     }
     v1::Request request;
-    auto& past = *request.mutable_open_replay();
-    past.set_world(common.world);
+    auto& replay = *request.mutable_open_replay();
+    replay.set_world(common.world);
     if (options.generation) {
-        past.mutable_at()->set_generation(*options.generation);
+        replay.mutable_at()->set_generation(*options.generation);
     }
     if (options.tick) {
-        past.mutable_at()->set_tick(*options.tick);
+        replay.mutable_at()->set_tick(*options.tick);
     }
     return caller.call(std::move(request)).world().name();
 }
 
 /// "default as it was: generation 4, tick 9000 (2:30 min)".
-std::string past_sentence(const v1::WorldInfo& world) {
+std::string replay_sentence(const v1::WorldInfo& world) {
     return world.replay().replay_of() + " as it was: generation " + std::to_string(world.generation()) + ", tick " +
            std::to_string(world.tick()) + " (" + duration(world.simulated_s()) + ")";
 }
@@ -148,7 +149,7 @@ void statistics(const Common& common, const MomentOptions& moment) {
     request.mutable_get_statistics()->set_world(world_at(caller, common, moment));
     const v1::Statistics statistics = caller.call(std::move(request)).statistics();
     print(common, statistics, [&] {
-        std::string text = (moment.is_past() ? past_sentence : sentence)(statistics.world()) + "\n";
+        std::string text = (moment.is_replay() ? replay_sentence : sentence)(statistics.world()) + "\n";
         if (const std::string trouble = trouble_of(statistics.world().storage()); !trouble.empty()) {
             text += trouble + "\n";
         }
@@ -167,14 +168,15 @@ void statistics(const Common& common, const MomentOptions& moment) {
                           std::to_string(island.poisoned_count()), std::to_string(island.food_eaten()),
                           std::to_string(island.poison_eaten())});
             }
-            text += (moment.is_past() ? "\nthen\n" : "\nnow\n") + live.to_text();
+            text += (moment.is_replay() ? "\nthen\n" : "\nnow\n") + live.to_text();
         }
         if (statistics.last_size() > 0) {
             Table last = generation_table();
             for (const auto& island : statistics.last()) {
                 add_generation(last, island);
             }
-            text += (moment.is_past() ? "\nthe last generation before\n" : "\nthe last generation\n") + last.to_text();
+            text +=
+                (moment.is_replay() ? "\nthe last generation before\n" : "\nthe last generation\n") + last.to_text();
             for (const auto& island : statistics.last()) {
                 text += "\ngenes of its island " + std::to_string(island.island()) + "\n" +
                         gene_text(island.genes(), statistics.world());
@@ -214,7 +216,7 @@ v1::History history_of(Caller& caller, const Common& common, const HistoryOption
         next = history.has_next_generation() ? std::optional{history.next_generation()} : std::nullopt;
         if (next && before && *next <= *before) {
             throw Stop{ExitCode::Refused,
-                       "the server's history does not go on after generation " + std::to_string(*before)};
+                       "the server's history does not continue after generation " + std::to_string(*before)};
         }
         all.mutable_generations()->MergeFrom(history.generations());
     } while (next);
@@ -244,7 +246,7 @@ void history(const Common& common, const HistoryOptions& options) {
         for (const auto& generation : all.generations()) {
             add_generation(table, generation);
         }
-        return all.generations().empty() ? std::string{"no such generation has ended, or it is kept no longer\n"}
+        return all.generations().empty() ? std::string{"no such generation has ended, or its statistics were purged\n"}
                                          : table.to_text();
     });
 }
@@ -266,7 +268,7 @@ void organism(const Common& common, const OrganismOptions& options) {
     const v1::OrganismInfo info = caller.call(std::move(request)).organism();
     print(common, info, [&] {
         const v1::WorldInfo world = caller.world(name);
-        std::string text = (options.moment.is_past() ? past_sentence(world) + "\n" : "") + "organism " +
+        std::string text = (options.moment.is_replay() ? replay_sentence(world) + "\n" : "") + "organism " +
                            std::to_string(info.id()) + " of island " + std::to_string(info.island()) + ", generation " +
                            std::to_string(info.generation()) + ": ";
         if (info.alive()) {
@@ -327,27 +329,27 @@ void describe(const Common& common) {
 
 } // namespace
 
-void add_look_commands(command_line::Command& app, const Common& common) {
+void add_query_commands(command_line::Command& app, const Common& common) {
     const char* const group = "Look";
-    app.add_command("status", "The server and its worlds at a glance").group(group).action([&] { status(common); });
+    app.add_command("status", "The server and its worlds in short").group(group).action([&] { status(common); });
     app.add_command("worlds", "The names of all worlds, a line each").group(group).action([&] { list_worlds(common); });
 
-    auto& stats =
-        app.add_command("stats", "How a world is doing: now, and in the last generation; or did once").group(group);
+    auto& stats = app.add_command("stats", "Statistics of a world: current, and of the last generation").group(group);
     auto& moment = stats.keep(MomentOptions{});
     add_options(stats, moment);
     stats.footer("Examples:\n  evoctl stats\n  evoctl stats --at-generation 12 --at-tick 600");
     stats.action([&] { statistics(common, moment); });
 
-    auto& past = app.add_command("history", "The statistics of ended generations").group(group);
+    auto& history_command = app.add_command("history", "The statistics of ended generations").group(group);
     auto& options = past.keep(HistoryOptions{});
-    past.add_flag("--csv", &options.csv, "Comma-separated, with every column and the genes");
-    past.add_option("--from", &options.from, "First generation; without it the oldest that is kept")
+    history_command.add_flag("--csv", &options.csv, "Comma-separated values, with every column and the genes");
+    history_command.add_option("--from", &options.from, "First generation; default: the oldest one available")
         .check(whole_number);
-    past.add_option("--to", &options.to, "Last generation; without it the last that has ended").check(whole_number);
-    past.add_option("--island", &options.island, "One island only, from 0").check(index_number);
-    past.footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
-    past.action([&] { history(common, options); });
+    history_command.add_option("--to", &options.to, "Last generation; default: the last one that has ended")
+        .check(whole_number);
+    history_command.add_option("--island", &options.island, "One island only, from 0").check(index_number);
+    history_command.footer("Examples:\n  evoctl history --from 10 --to 20\n  evoctl history --csv > fitness.csv");
+    history_command.action([&] { history(common, options); });
 
     auto& one = app.add_command("organism", "One organism, its genes, life and parents").group(group);
     auto& wanted = one.keep(OrganismOptions{});
