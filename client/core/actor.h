@@ -1,4 +1,4 @@
-// Who caused something, as people read it.
+// Actor: formats the actor of a command or event for people.
 #pragma once
 
 #include "evod/v1/world.pb.h"
@@ -7,8 +7,8 @@
 
 namespace evod::core {
 
-/// "karl: evoctl 127.0.0.1:5000", "evoctl 127.0.0.1:5000" of a client without a user, "karl" as viewers are told,
-/// "a local client" as they are told of one without a user; "the schedule", "a goal", "evod".
+/// "karl: evoctl 127.0.0.1:5000"; "evoctl 127.0.0.1:5000" for a client without a user. The server sends viewers the user only:
+/// "karl", or "a local client" without a user. Also "the schedule", "a goal", "evod".
 std::string to_text(const v1::Actor& actor);
 
 } // namespace evod::core

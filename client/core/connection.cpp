@@ -58,7 +58,7 @@ std::string to_text(const evod::v1::Status& status) {
 
 namespace {
 
-/// 32 hexadecimal digits that nobody else has.
+/// Returns 32 random hexadecimal digits.
 std::string random_key() {
     std::random_device device;
     std::string key;
@@ -150,7 +150,7 @@ class Connection::Io {
     std::deque<evod::v1::Event> events_;
     std::uint64_t events_dropped_ = 0;
     std::map<SubscriptionHandle, evod::v1::Response> answers_;
-    std::map<SubscriptionHandle, std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>> pictures_;
+    std::map<SubscriptionHandle, std::map<std::uint32_t, std::shared_ptr<const codec::DecodedSnapshot>>> snapshots_;
 
     /// Takes the oldest event, a note about lost ones first. The mutex is held.
     std::optional<evod::v1::Event> pop_event() {
@@ -167,15 +167,15 @@ class Connection::Io {
     }
 
   private:
-    /// What becomes of a request that is unanswered when the session ends.
+    /// What happens to a request that is unanswered when the session ends.
     enum class Loss {
         SentAgain, // with the same number
-        Renewed,   // a subscription: forgotten if it was sent, for every new session asks for all of them anyway
-        Forgotten, // it meant nothing outside its session
+        Renewed,   // a subscription: dropped if it was sent, because every new session requests all of them
+        Forgotten, // it has no meaning outside its session
     };
     enum class Order { InTurn, First };
 
-    /// A request that has no answer yet.
+    /// A request that has no reply yet.
     struct Pending {
         std::string frame;
         Handler handler;
@@ -188,7 +188,7 @@ class Connection::Io {
     struct ActiveSubscription {
         evod::v1::Request request;
         bool asked = false;                     // a request for it is pending
-        bool view_changed = false;              // since that, or since the server was told
+        bool view_changed = false;              // since that, or since the last SetView
         std::optional<std::uint32_t> server_id; // in this session, once accepted
     };
 
@@ -209,10 +209,11 @@ class Connection::Io {
         share([&] { status_.state = State::Connecting; });
         session_ = std::make_shared<Session>(
             context_, options_,
-            Session::Handlers{.welcomed = [this](evod::v1::Welcome welcome) { on_welcome(std::move(welcome)); },
-                              .received = [this](evod::v1::ServerMessage message) { on_message(std::move(message)); },
-                              .pictured = [this](evod::v1::SnapshotFrame frame) { on_picture(std::move(frame)); },
-                              .ended = [this](Session::Ending ending) { on_end(std::move(ending)); }});
+            Session::Handlers{
+                .welcomed = [this](evod::v1::Welcome welcome) { on_welcome(std::move(welcome)); },
+                .received = [this](evod::v1::ServerMessage message) { on_message(std::move(message)); },
+                .snapshot_received = [this](evod::v1::SnapshotFrame frame) { on_snapshot(std::move(frame)); },
+                .ended = [this](Session::Ending ending) { on_end(std::move(ending)); }});
         session_->start();
     }
 
@@ -226,7 +227,7 @@ class Connection::Io {
             status_.welcome = std::move(welcome);
             ++status_.connected_count;
         });
-        // What was subscribed before comes first, so that nobody misses what the requests bring about.
+        // Subscriptions come first, so that the caller receives the events of its requests.
         for (const auto& [handle, subscription] : subscriptions_) {
             if (!subscription.asked) {
                 ask_for_subscription(handle, Order::First);
@@ -242,7 +243,7 @@ class Connection::Io {
         in_flight_count_ = 0;
         late_.clear();
         handle_of_server_id_.clear();
-        sights_.clear();
+        streams_.clear();
         for (auto& [handle, subscription] : subscriptions_) {
             subscription.server_id.reset();
         }
@@ -272,7 +273,7 @@ class Connection::Io {
             handler(Error{.kind = Error::Kind::NoConnection, .what = ending.reason});
         }
         if (again) {
-            // Many clients of one server should not come back in the same instant.
+            // Jitter: the clients of one server should not all reconnect at the same moment.
             const auto spread = std::uniform_real_distribution{0.5, 1.0}(jitter_);
             retry_.expires_after(std::chrono::duration_cast<std::chrono::milliseconds>(backoff_ * spread));
             backoff_ = std::min(2 * backoff_, options_.backoff_max);
@@ -297,7 +298,7 @@ class Connection::Io {
         guard_.reset();
     }
 
-    static Error closed() { return {.kind = Error::Kind::Closed, .what = "the connection was closed here"}; }
+    static Error closed() { return {.kind = Error::Kind::Closed, .what = "the connection was closed by this program"}; }
 
     // ---- requests ----------------------------------------------------------------------------------------------
 
@@ -320,8 +321,8 @@ class Connection::Io {
                                                                           : *codec::server_limits.control_bytes_max;
         if (message.ByteSizeLong() > limit) {
             handler(Error{.kind = Error::Kind::Usage,
-                          .what = "the request is " + std::to_string(message.ByteSizeLong()) +
-                                  " bytes long; the server takes " + std::to_string(limit)});
+                          .what = "the request is " + std::to_string(message.ByteSizeLong()) + " bytes long, allowed " +
+                                  std::to_string(limit)});
             return;
         }
         const auto entry = pending_
@@ -340,7 +341,7 @@ class Connection::Io {
         send_waiting();
     }
 
-    /// Sends what has not been sent, as far as the server's limit on unanswered requests goes.
+    /// Sends the waiting requests, up to the server's limit on unanswered requests.
     void send_waiting() {
         if (!connected()) {
             return;
@@ -365,14 +366,14 @@ class Connection::Io {
         if (entry == pending_.end()) {
             return;
         }
-        // A request that was sent still counts for the server; its late answer finds nobody, and frees its place.
+        // A request that was sent still counts for the server's limit; its late reply is dropped and frees its place.
         if (entry->second.sent) {
             late_.insert(id);
         }
         const Handler handler = std::move(entry->second.handler);
         pending_.erase(entry);
         const auto status = this->status();
-        std::string what = "no answer within " + std::to_string(timeout.count()) + " ms";
+        std::string what = "no reply within " + std::to_string(timeout.count()) + " ms";
         if (status.state != State::Connected && !status.reason.empty()) {
             what += ": " + status.reason;
         }
@@ -392,7 +393,7 @@ class Connection::Io {
         send_waiting();
     }
 
-    // ---- subscriptions, events, pictures -----------------------------------------------------------------------
+    // ---- subscriptions, events, snapshots ----------------------------------------------------------------------
 
     void ask_for_subscription(SubscriptionHandle handle, Order order) {
         auto& subscription = subscriptions_[handle];
@@ -404,7 +405,7 @@ class Connection::Io {
                 entry->second.asked = false;
             }
             if (!response) {
-                return; // the session has ended; the next one asks again
+                return; // the session has ended; the next one subscribes again
             }
             const std::uint32_t server_id = response->subscription().subscription_id();
             if (entry == subscriptions_.end()) {
@@ -421,7 +422,7 @@ class Connection::Io {
         add_request(subscription.request, answered, std::chrono::hours{24 * 365}, Loss::Renewed, order);
     }
 
-    /// Tells the server of a view that is another one than the subscription was asked for with.
+    /// Sends the view if it differs from that of the subscription request.
     void send_view(ActiveSubscription& subscription) {
         if (!subscription.view_changed || !subscription.server_id || !connected()) {
             return;
@@ -443,7 +444,7 @@ class Connection::Io {
         subscriptions_.erase(entry);
         share([&] {
             answers_.erase(handle);
-            pictures_.erase(handle);
+            snapshots_.erase(handle);
         });
         if (server_id) {
             unsubscribe_from(*server_id);
@@ -453,7 +454,7 @@ class Connection::Io {
     void unsubscribe_from(std::uint32_t server_id) {
         if (connected() && server_id > 0) {
             handle_of_server_id_.erase(server_id);
-            sights_.erase(server_id);
+            streams_.erase(server_id);
             evod::v1::Request request;
             request.mutable_unsubscribe()->set_subscription_id(server_id);
             add_request(
@@ -475,47 +476,47 @@ class Connection::Io {
         }
     }
 
-    void on_picture(evod::v1::SnapshotFrame frame) {
+    void on_snapshot(evod::v1::SnapshotFrame frame) {
         const std::uint32_t server_id = frame.subscription_id();
         const auto known = handle_of_server_id_.find(server_id);
         if (known == handle_of_server_id_.end()) {
-            return; // unsubscribed while it was on its way
+            return; // unsubscribed meanwhile
         }
         const SubscriptionHandle handle = known->second;
         if (subscriptions_.at(handle).request.subscribe_snapshots().has_unacknowledged_max()) {
             acknowledge(frame);
         }
-        Sight& sight = sights_[server_id][frame.island()];
+        IslandStream& stream = streams_[server_id][frame.island()];
         const bool chained = frame.codec() == evod::v1::CODEC_DELTA;
-        if (chained && !codec::is_keyframe(frame) && sight.decoder.needs_keyframe() && sight.keyframe_requests > 0) {
-            return; // it was on its way before the keyframe that has been asked for
+        if (chained && !codec::is_keyframe(frame) && stream.decoder.needs_keyframe() && stream.keyframe_requests > 0) {
+            return; // sent before the requested keyframe
         }
-        auto decoded = sight.decoder.decode(std::move(frame));
+        auto decoded = stream.decoder.decode(std::move(frame));
         if (!decoded) {
-            // A server whose keyframes are damaged too is not asked again and again.
-            const bool ask = chained && sight.keyframe_requests < keyframe_requests_max;
+            // If keyframes are damaged too, requesting more does not help.
+            const bool ask = chained && stream.keyframe_requests < keyframe_requests_max;
             share([&] {
                 ++status_.damaged_snapshot_count;
                 status_.last_damage = decoded.error().what;
                 status_.keyframe_request_count += ask ? 1 : 0;
             });
             if (ask) {
-                ++sight.keyframe_requests;
+                ++stream.keyframe_requests;
                 request_keyframe(server_id);
             }
             return;
         }
-        sight.keyframe_requests = 0;
-        // As WorldInfo and Event have them, so that they can be compared.
+        stream.keyframe_requests = 0;
+        // In the format of WorldInfo and Event, so that they can be compared.
         decoded->about.set_run_id(hexadecimal(decoded->about.run_id()));
         decoded->about.set_state_hash(hexadecimal(decoded->about.state_hash()));
         share([&] {
             const std::uint32_t island = decoded->about.island();
-            pictures_[handle][island] = std::make_shared<const codec::DecodedSnapshot>(*std::move(decoded));
+            snapshots_[handle][island] = std::make_shared<const codec::DecodedSnapshot>(*std::move(decoded));
         });
     }
 
-    /// Servers that do not know acknowledgements do not number their pictures.
+    /// Servers without acknowledgements do not number their snapshots.
     void acknowledge(const evod::v1::SnapshotFrame& frame) {
         if (frame.sequence() == 0) {
             return;
@@ -535,10 +536,10 @@ class Connection::Io {
             std::move(request), [](const auto&) {}, default_timeout, Loss::Forgotten, Order::First);
     }
 
-    /// What is seen of one island for one subscription of this session.
-    struct Sight {
+    /// The stream of one island for one subscription of this session.
+    struct IslandStream {
         codec::SnapshotDecoder decoder;
-        int keyframe_requests = 0; // since a picture could be decoded
+        int keyframe_requests = 0; // since the last decoded snapshot
     };
     static constexpr int keyframe_requests_max = 3;
 
@@ -552,17 +553,17 @@ class Connection::Io {
     asio::steady_timer retry_{context_};
     std::shared_ptr<Session> session_;
     bool welcomed_ = false, closing_ = false;
-    std::optional<std::string> failed_; // why there will be no other session
+    std::optional<std::string> failed_; // why there will be no further session
     evod::v1::Limits limits_;
     std::chrono::milliseconds backoff_ = options_.backoff_min;
     std::minstd_rand jitter_{std::random_device{}()};
     std::uint64_t last_request_id_ = 0;
     std::map<std::uint64_t, Pending> pending_; // by request_id
     std::size_t in_flight_count_ = 0;          // sent in this session and not answered
-    std::set<std::uint64_t> late_;             // of those: nobody waits for the answer any more
+    std::set<std::uint64_t> late_;             // of those: the caller no longer waits for the reply
     std::map<SubscriptionHandle, ActiveSubscription> subscriptions_;
     std::map<std::uint32_t, SubscriptionHandle> handle_of_server_id_;
-    std::map<std::uint32_t, std::map<std::uint32_t, Sight>> sights_; // by server_id and island
+    std::map<std::uint32_t, std::map<std::uint32_t, IslandStream>> streams_; // by server_id and island
 
     std::thread thread_; // last: it uses all of the above
 };
@@ -592,7 +593,7 @@ Result<evod::v1::Welcome> Connection::wait_connected(std::chrono::milliseconds t
 
 Result<evod::v1::Response> Connection::request(evod::v1::Request request, std::chrono::milliseconds timeout) {
     if (io_->on_own_thread()) {
-        return Error{.kind = Error::Kind::Usage, .what = "a handler may not wait for a request: use send()"};
+        return Error{.kind = Error::Kind::Usage, .what = "a handler must not wait for a request: use send()"};
     }
     return send(std::move(request), timeout).get();
 }
@@ -613,7 +614,7 @@ std::future<Result<evod::v1::Response>> Connection::send(evod::v1::Request reque
 SubscriptionHandle Connection::subscribe(evod::v1::SubscribeSnapshots subscription) {
     evod::v1::Request request;
     if (subscription.codec() == evod::v1::CODEC_UNSPECIFIED) {
-        // A server that does not know these fields overlooks them, and sends columns.
+        // A server that does not know these fields ignores them and sends its default codec.
         subscription.set_codec(evod::v1::CODEC_DELTA);
         subscription.set_compression(evod::v1::COMPRESSION_ZSTD);
         subscription.set_unacknowledged_max(unacknowledged_snapshots_max);
@@ -652,14 +653,14 @@ Result<evod::v1::Response> Connection::wait_subscribed(SubscriptionHandle handle
         return Error{.kind = Error::Kind::NoConnection, .what = status.reason};
     }
     return Error{.kind = Error::Kind::Timeout,
-                 .what = "no answer to the subscription within " + std::to_string(timeout.count()) + " ms"};
+                 .what = "no reply to the subscription within " + std::to_string(timeout.count()) + " ms"};
 }
 
 std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(SubscriptionHandle handle,
                                                                         std::uint32_t island) {
     const std::lock_guard lock{io_->mutex_};
-    const auto islands = io_->pictures_.find(handle);
-    if (islands == io_->pictures_.end()) {
+    const auto islands = io_->snapshots_.find(handle);
+    if (islands == io_->snapshots_.end()) {
         return nullptr;
     }
     const auto newest = islands->second.find(island);
@@ -669,9 +670,9 @@ std::shared_ptr<const codec::DecodedSnapshot> Connection::take_snapshot(Subscrip
 std::vector<std::shared_ptr<const codec::DecodedSnapshot>> Connection::take_snapshots(SubscriptionHandle handle) {
     std::vector<std::shared_ptr<const codec::DecodedSnapshot>> taken;
     const std::lock_guard lock{io_->mutex_};
-    if (const auto islands = io_->pictures_.find(handle); islands != io_->pictures_.end()) {
-        for (auto& [island, picture] : std::exchange(islands->second, {})) {
-            taken.push_back(std::move(picture));
+    if (const auto islands = io_->snapshots_.find(handle); islands != io_->snapshots_.end()) {
+        for (auto& [island, snapshot] : std::exchange(islands->second, {})) {
+            taken.push_back(std::move(snapshot));
         }
     }
     return taken;

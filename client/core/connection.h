@@ -1,22 +1,22 @@
-// Connection: a client's line to a server. It connects, says hello, sends requests, receives events and pictures, and
-// when the line breaks it connects again and carries on.
+// Connection: a client's connection to a server. It connects, sends requests, receives events and snapshots, and reconnects
+// after a loss.
 //
 //     core::Connection connection{{.server = *core::parse_endpoint("localhost"), .client_name = "my program"}};
 //     if (const auto welcome = connection.wait_connected(); !welcome) … welcome.error().what …
 //     evod::v1::Request request;
 //     request.mutable_run()->set_generations(3);
 //     const auto response = connection.request(request);   // blocks; or send(), which does not
-//     if (!response)                    … nothing was heard: response.error().what …
-//     else if (!core::accepted(*response)) … the server said no: core::to_text(response->status()) …
+//     if (!response)                    … no reply: response.error().what …
+//     else if (!core::accepted(*response)) … refused: core::to_text(response->status()) …
 //
-// Safe to repeat: requests carry a number that rises and a key drawn for this connection, so a request that was under
-// way when the line broke is sent again, with the same number, and a command happens once.
+// Idempotent: each request carries an increasing number and the random key of this connection. A request that was unanswered
+// when the connection broke is sent again with the same number, and the server executes it once.
 //
-// Owner        whoever makes it; its destructor closes the line and ends its thread.
-// Threads      one of its own does all input and output. Every function may be called from any thread.
-// Bounded      requests beyond the server's limit wait here for their turn; of events the newest
-//              Options::events_kept are kept and the loss is told in an EventsDropped; of pictures the newest of each
-//              subscription and island, and what the next delta is told from.
+// Owner        its creator; the destructor closes the connection and ends its thread.
+// Threads      its own thread does all input and output. Every function may be called from any thread.
+// Bounded      requests beyond the server's limit on unanswered requests wait here. The newest Options::events_kept events are
+//              kept; an EventsDropped reports the others. Of snapshots, the newest of each subscription and island is
+//              kept, and the baseline of the next delta.
 #pragma once
 
 #include "evod/v1/session.pb.h"
@@ -39,10 +39,10 @@ namespace evod::core {
 
 struct Error {
     enum class Kind {
-        Usage,        // what was asked cannot be sent: a malformed address, a request over the server's limit
-        NoConnection, // no server there, or it does not speak with us
-        TokenNeeded,  // it does, with whoever has a token it knows
-        Timeout,      // no answer in time; a command may have been done all the same
+        Usage,        // the request cannot be sent: malformed address, longer than the server's limit
+        NoConnection, // no server, or it refuses this client
+        TokenNeeded,  // the server requires a valid token
+        Timeout,      // no reply in time; a command may have been executed
         Closed,       // this Connection was destroyed
     };
     Kind kind = Kind::NoConnection;
@@ -54,7 +54,7 @@ struct Error {
 template <class T>
 using Result = boost::system::result<T, Error>;
 
-// ---- where -----------------------------------------------------------------------------------------------------
+// ---- address ---------------------------------------------------------------------------------------------------
 
 struct Endpoint {
     std::string host = "localhost"; // without brackets
@@ -68,13 +68,13 @@ Result<Endpoint> parse_endpoint(std::string_view text);
 /// HOST:PORT, with brackets where they are needed.
 std::string to_text(const Endpoint& endpoint);
 
-// ---- answers ---------------------------------------------------------------------------------------------------
+// ---- replies ---------------------------------------------------------------------------------------------------
 
 inline bool accepted(const evod::v1::Response& response) {
     return response.status().code() == evod::v1::CODE_UNSPECIFIED;
 }
 
-/// Whether worlds that live wait for the server's disk.
+/// Whether the worlds wait for the server's disk.
 inline bool worlds_wait(const evod::v1::Storage& storage) {
     return storage.state() == evod::v1::STORAGE_STATE_STALLED || storage.state() == evod::v1::STORAGE_STATE_BEHIND;
 }
@@ -88,15 +88,15 @@ struct Options {
     Endpoint server{};
     std::string token = ""; // empty: none
     struct Tls {
-        std::string ca = "";          // PEM file of who vouches for the server; empty: those that the system trusts
-        std::string certificate = ""; // PEM file of our own, for servers that ask for one
+        std::string ca = "";          // PEM file of the server's certificate authority; empty: those of the system
+        std::string certificate = ""; // PEM file of the client's certificate, for servers that require one
         std::string key = "";         // PEM file
     };
-    std::optional<Tls> tls = {};             // nullopt: in the clear
+    std::optional<Tls> tls = {};             // nullopt: without TLS
     std::string client_name = "evod client"; // at most 64 bytes
     std::string client_version = "";
     bool reconnect = true;
-    std::chrono::milliseconds connect_timeout{5000}; // for connecting, and again for the welcome
+    std::chrono::milliseconds connect_timeout{5000}; // for the connection, and again for the Welcome
     std::chrono::milliseconds backoff_min{100};      // wait before the first new attempt; doubles each time
     std::chrono::milliseconds backoff_max{5000};
     std::size_t events_kept = 10'000;
@@ -105,8 +105,8 @@ struct Options {
 enum class State {
     Connecting,
     Connected,
-    Lost,   // broken or not there; will try again
-    Failed, // will not try again: the server does not want us, or reconnect is off
+    Lost,   // no connection; will reconnect
+    Failed, // will not reconnect: the server refuses this client, or reconnect is false
 };
 
 /// "connecting", "connected", …
@@ -114,14 +114,14 @@ const char* to_text(State state);
 
 struct ConnectionStatus {
     State state = State::Connecting;
-    std::string reason;                       // Lost, Failed and Connecting after a loss: why, one sentence; else empty
-    bool token_needed = false;                // Failed: the server wants a token, or another one
-    std::optional<evod::v1::Status> refusal;  // what the server said, where that is the reason
-    std::optional<evod::v1::Welcome> welcome; // of the last server we were connected with
-    std::uint64_t connected_count = 0;        // times that Connected was reached
-    std::uint64_t damaged_snapshot_count = 0; // pictures thrown away because they could not be decoded
-    std::string last_damage;                  // what was wrong with the last of them
-    std::uint64_t keyframe_request_count = 0; // keyframes asked for because of that
+    std::string reason;                       // one sentence in Lost, Failed and Connecting after a loss; else empty
+    bool token_needed = false;                // Failed: the server requires a (different) token
+    std::optional<evod::v1::Status> refusal;  // the server's refusal, if that is the reason
+    std::optional<evod::v1::Welcome> welcome; // of the last session
+    std::uint64_t connected_count = 0;        // how often the state became Connected
+    std::uint64_t damaged_snapshot_count = 0; // snapshots dropped because they could not be decoded
+    std::string last_damage;                  // the error of the last one
+    std::uint64_t keyframe_request_count = 0; // keyframes requested after damage
 };
 
 /// Names a subscription for as long as the Connection lives, across reconnections.
@@ -135,11 +135,11 @@ class Connection {
   public:
     using Handler = std::function<void(Result<evod::v1::Response>)>;
     static constexpr std::chrono::milliseconds default_timeout{10'000};
-    /// A server sends so many pictures of an island ahead of their acknowledgement: enough for 30 a second over a line
-    /// with a quarter of a second there and back, and a backlog of no more than that.
+    /// Snapshots of an island that the server may send before the first is acknowledged: enough for 30 per second at a round
+    /// trip of 0.25 s, which also bounds the backlog.
     static constexpr std::uint32_t unacknowledged_snapshots_max = 8;
 
-    /// Begins to connect, and returns at once.
+    /// Starts to connect and returns immediately.
     explicit Connection(Options options);
     ~Connection();
     Connection(const Connection&) = delete;
@@ -147,44 +147,43 @@ class Connection {
 
     ConnectionStatus status() const;
 
-    /// Waits until connected, and gives the server's welcome; or until an attempt to connect has failed.
+    /// Waits until connected and returns the server's Welcome, or until an attempt to connect has failed.
     Result<evod::v1::Welcome> wait_connected(std::chrono::milliseconds timeout = default_timeout);
 
-    /// Sends a request, whose request_id and client_key are set here, and waits for its answer. While there is no
-    /// connection it waits for one.
+    /// Sends a request and waits for its reply; sets request_id and client_key. Without a connection, waits for one.
     Result<evod::v1::Response> request(evod::v1::Request request, std::chrono::milliseconds timeout = default_timeout);
 
-    /// The same without waiting. Requests are sent in the order of these calls. The handler is called exactly once, on
-    /// the connection's thread (or in the destructor, with Closed), and must not block.
+    /// Sends a request without waiting. Requests are sent in the order of the calls. The handler is called exactly once, on the
+    /// connection's thread (or in the destructor, with Closed), and must not block.
     void send(evod::v1::Request request, Handler handler, std::chrono::milliseconds timeout = default_timeout);
 
-    /// The same, for who would rather look now and then than be called.
+    /// Sends a request without waiting; the caller polls the future.
     std::future<Result<evod::v1::Response>> send(evod::v1::Request request,
                                                  std::chrono::milliseconds timeout = default_timeout);
 
-    /// Subscribes now or when connected, and again after each reconnection, until unsubscribe(). Pictures for which no
-    /// codec is chosen come in the fewest bytes that the server has, and are acknowledged as they are decoded.
+    /// Subscribes now or when connected, and again after each reconnection, until unsubscribe(). If no codec is set, the
+    /// snapshots use the most compact codec of the server, and are acknowledged when they are decoded.
     SubscriptionHandle subscribe(evod::v1::SubscribeSnapshots subscription);
     SubscriptionHandle subscribe(evod::v1::SubscribeEvents subscription);
-    /// Another view for a subscription to pictures that was made with one, now and after each reconnection. A server
-    /// without the feature "view" sends whole pictures as before.
+    /// Changes the view of a subscription that was made with one, now and after each reconnection. A server without the feature
+    /// "view" continues to send whole snapshots.
     void set_view(SubscriptionHandle handle, evod::v1::View view);
     void unsubscribe(SubscriptionHandle handle);
 
-    /// The server's last answer to a subscription (it may be a refusal); nullopt: none has come yet in this session.
+    /// The server's last reply to a subscription (may be a refusal); nullopt: none yet in this session.
     std::optional<evod::v1::Response> subscription_answer(SubscriptionHandle handle) const;
     Result<evod::v1::Response> wait_subscribed(SubscriptionHandle handle,
                                                std::chrono::milliseconds timeout = default_timeout);
 
-    /// The newest picture of an island that was not taken yet; null if there is none. Its run_id and state_hash are
-    /// hexadecimal digits, as those of a WorldInfo.
+    /// Returns the newest snapshot of an island that was not taken yet; null if there is none. Its run_id and state_hash are
+    /// hexadecimal digits, as in a WorldInfo.
     std::shared_ptr<const codec::DecodedSnapshot> take_snapshot(SubscriptionHandle handle, std::uint32_t island = 0);
-    /// The newest of every island that has one, islands rising.
+    /// Returns the newest snapshot of every island that has one, in ascending order of islands.
     std::vector<std::shared_ptr<const codec::DecodedSnapshot>> take_snapshots(SubscriptionHandle handle);
 
-    /// All events since the last call, oldest first.
+    /// Returns all events since the last call, oldest first.
     std::vector<evod::v1::Event> take_events();
-    /// The next event; nullopt after `timeout`, or at once when the state is Failed and none is left.
+    /// Returns the next event; nullopt after `timeout`, or immediately if the state is Failed and none is left.
     std::optional<evod::v1::Event> wait_event(std::chrono::milliseconds timeout);
 
   private:

@@ -13,21 +13,20 @@ namespace evod::core {
 
 void add_options(command_line::Command& app, Credentials& credentials) {
     app.add_option("--token-file", &credentials.token_file,
-                   "File with the token to come in with; without it the environment's EVOD_TOKEN");
+                   "File with the token; default: the environment variable EVOD_TOKEN");
     app.add_option("--ca", &credentials.files.ca,
-                   "TLS; PEM file of who vouches for the server: its own evod.crt, perhaps")
+                   "TLS; PEM file of the server's certificate authority, or the server's own evod.crt")
         .environment("EVOD_CA");
     app.add_flag("--tls", &credentials.tls, "TLS with a server whose certificate this system trusts");
     app.add_option("--cert", &credentials.files.certificate,
-                   "PEM file of a certificate of ours, if the server wants one");
-    app.add_option("--key", &credentials.files.key, "PEM file with its key, if that is not in the same file");
+                   "PEM file of the client's certificate, if the server requires one");
+    app.add_option("--key", &credentials.files.key, "PEM file of the key of --cert, if it is not in the same file");
 }
 
 Result<void> apply(const Credentials& credentials, Options& options) {
     if (!credentials.files.key.empty() && credentials.files.certificate.empty()) {
         return Error{.kind = Error::Kind::Usage,
-                     .what =
-                         "--key: " + credentials.files.key + " is of no use without its certificate: give --cert, too"};
+                     .what = "--key: " + credentials.files.key + " needs its certificate: give --cert too"};
     }
     if (credentials.tls || !credentials.files.ca.empty() || !credentials.files.certificate.empty()) {
         options.tls = credentials.files;
@@ -47,11 +46,11 @@ Result<void> apply(const Credentials& credentials, Options& options) {
         return refused(std::strerror(errno));
     }
     if ((about.st_mode & 077) != 0) {
-        return refused("others can read it: chmod 600 it");
+        return refused("other users can read it: chmod 600 it");
     }
     file >> options.token;
     if (options.token.empty()) {
-        return refused("there is no token in it");
+        return refused("it contains no token");
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// How long something lasted, as every program of ours tells it.
+// Duration: formats a duration, the same in every program.
 #pragma once
 
 #include <string>

@@ -9,8 +9,7 @@ namespace {
 
 Error malformed(std::string_view text, const std::string& why) {
     return {.kind = Error::Kind::Usage,
-            .what =
-                "'" + std::string{text} + "' is not a server's address: " + why + " (HOST, HOST:PORT or [IPV6]:PORT)"};
+            .what = "server: got '" + std::string{text} + "', allowed HOST, HOST:PORT or [IPV6]:PORT: " + why};
 }
 
 } // namespace
@@ -26,7 +25,7 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
         host = text.substr(1, close - 1);
         const auto rest = text.substr(close + 1);
         if (!rest.empty() && rest.front() != ':') {
-            return malformed(text, "after ']' comes ':' and a port");
+            return malformed(text, "']' must be followed by ':' and a port");
         }
         has_port = !rest.empty();
         port = rest.substr(has_port ? 1 : 0);
@@ -36,7 +35,7 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
         port = text.substr(text.find(':') + 1);
     }
     if (host.empty()) {
-        return malformed(text, "there is no host");
+        return malformed(text, "the host is missing");
     }
     Endpoint endpoint{.host = std::string{host}};
     if (has_port) {

@@ -1,11 +1,11 @@
-// A number as text from which nothing is lost.
+// Exact: formats a number without loss.
 #pragma once
 
 #include <string>
 
 namespace evod::core {
 
-/// Shortest text that reads back as the same number, without an exponent where that is not long: "0.15", "500000".
+/// Returns the shortest text that parses to the same number, without an exponent unless it would be long: "0.15", "500000".
 std::string exact(double value);
 
 } // namespace evod::core

@@ -12,7 +12,7 @@ namespace evod::core {
 
 namespace {
 
-/// Calls visit(name, number) for every column that is not a gene's.
+/// Calls visit(name, number) for every column that does not belong to a gene.
 template <class Visit>
 void for_each_number(const evod::v1::GenerationStatistics& s, Visit visit) {
     visit("generation", s.generation());
@@ -42,7 +42,7 @@ constexpr std::string_view account_parts[] = {"_selection", "_transmission", "_m
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Cells of a line, without the quotation marks that some programs put round them.
+/// Returns the cells of a line without the quotation marks that some programs write.
 std::vector<std::string_view> cells_of(std::string_view line) {
     std::vector<std::string_view> cells;
     while (true) {
@@ -59,7 +59,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     }
 }
 
-/// The text up to the end of the line, which is taken off with it.
+/// Removes and returns the first line of the text.
 std::string_view take_line(std::string_view& text) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
@@ -140,7 +140,7 @@ Result<HistoryCsv> read_history_csv(std::string_view text) {
     }
     const std::vector<std::string> columns = history_columns(read.gene_names);
     const std::size_t account_begin = columns.size() - read.gene_names.size() * std::size(account_parts);
-    std::vector<std::size_t> places; // past the end: an older file, without
+    std::vector<std::size_t> places; // past the end: an older file, without the column
     for (const std::string& column : columns) {
         const auto found = std::find(heading.begin(), heading.end(), column);
         if (found == heading.end() && places.size() < account_begin) {

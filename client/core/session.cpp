@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t read_bytes = 256 << 10;
 
-/// Lets the machine find out that the other end is gone without a word: a cable, a suspended laptop.
+/// Enables TCP keepalive, which detects a peer that disappeared silently: a pulled cable, a suspended laptop.
 void notice_silence(asio::ip::tcp::socket& socket) {
     error_code ignored; // a socket without these options still works
     socket.set_option(asio::ip::tcp::no_delay{true}, ignored);
@@ -37,30 +37,30 @@ void notice_silence(asio::ip::tcp::socket& socket) {
     ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
 }
 
-/// What an error of TLS comes from and what to do; empty where that is not known.
+/// The cause of a TLS error and its remedy; empty if unknown.
 std::string tls_reason_of(const error_code& error) {
     if (error == asio::ssl::error::stream_truncated || error == asio::error::eof ||
         error == asio::error::connection_reset) {
-        return "it closed the connection: it may not speak TLS, which --ca, --tls, --cert and EVOD_CA ask for";
+        return "it closed the connection: it may not use TLS, which --ca, --tls, --cert and EVOD_CA require";
     }
     if (error.category() != asio::error::get_ssl_category()) {
         return {};
     }
     switch (ERR_GET_REASON(static_cast<unsigned long>(error.value()))) {
     case SSL_R_WRONG_VERSION_NUMBER:
-        return "it does not speak TLS: leave out --ca, --tls and --cert, and EVOD_CA";
+        return "it does not use TLS: leave out --ca, --tls, --cert and EVOD_CA";
     case SSL_R_UNSUPPORTED_PROTOCOL:
     case SSL_R_TLSV1_ALERT_PROTOCOL_VERSION:
-        return "there is no version of TLS that both speak: it takes 1.2 or newer";
+        return "no common TLS version: the server requires 1.2 or newer";
     case SSL_R_TLSV13_ALERT_CERTIFICATE_REQUIRED:
     case SSL_R_SSLV3_ALERT_HANDSHAKE_FAILURE:
-        return "it wants a certificate of ours: give one with --cert and --key";
+        return "it requires a client certificate: give one with --cert and --key";
     case SSL_R_TLSV1_ALERT_UNKNOWN_CA:
     case SSL_R_SSLV3_ALERT_BAD_CERTIFICATE:
     case SSL_R_SSLV3_ALERT_CERTIFICATE_UNKNOWN:
-        return "it does not believe the certificate of --cert: whoever runs it says with --tls-client-ca which it does";
+        return "it does not trust the certificate of --cert: the server's --tls-client-ca determines which it trusts";
     case SSL_R_SSLV3_ALERT_CERTIFICATE_EXPIRED:
-        return "the certificate of --cert has expired: make another";
+        return "the certificate of --cert has expired: create another";
     default:
         return {};
     }
@@ -76,7 +76,7 @@ std::string text_of(const ASN1_TIME* time) {
     return {text, static_cast<std::size_t>(length)};
 }
 
-/// "localhost, 127.0.0.1". What would steer a terminal becomes '?'.
+/// "localhost, 127.0.0.1". Control characters become '?'.
 std::string names_of(const X509* certificate) {
     const std::unique_ptr<GENERAL_NAMES, decltype(&GENERAL_NAMES_free)> names{
         static_cast<GENERAL_NAMES*>(X509_get_ext_d2i(certificate, NID_subject_alt_name, nullptr, nullptr)),
@@ -106,10 +106,10 @@ std::string names_of(const X509* certificate) {
     return text.empty() ? "no name" : text;
 }
 
-/// Why a certificate of a server is not believed, and what to do.
+/// Why a server's certificate is not trusted, and the remedy.
 ///
-/// certificate  the one that it is about; nullptr: none.
-std::string disbelief_of(int verdict, const X509* certificate, const Options::Tls& files) {
+/// certificate  the certificate in question; nullptr: none.
+std::string distrust_of(int verdict, const X509* certificate, const Options::Tls& files) {
     const std::string why = X509_verify_cert_error_string(verdict);
     if (certificate == nullptr) {
         return why;
@@ -118,11 +118,11 @@ std::string disbelief_of(int verdict, const X509* certificate, const Options::Tl
     case X509_V_ERR_HOSTNAME_MISMATCH:
         return "it is for other names (" + names_of(certificate) + "): reach the server by one of them";
     case X509_V_ERR_CERT_HAS_EXPIRED:
-        return "it was good until " + text_of(X509_get0_notAfter(certificate)) +
-               ": whoever runs the server makes another, with evod certificate perhaps; and is this machine's clock "
+        return "it expired on " + text_of(X509_get0_notAfter(certificate)) +
+               ": the server needs a new one, for example from evod certificate; or is this machine's clock "
                "right?";
     case X509_V_ERR_CERT_NOT_YET_VALID:
-        return "it is good from " + text_of(X509_get0_notBefore(certificate)) + " on: is this machine's clock right?";
+        return "it is valid from " + text_of(X509_get0_notBefore(certificate)) + " on: is this machine's clock right?";
     case X509_V_ERR_DEPTH_ZERO_SELF_SIGNED_CERT:
     case X509_V_ERR_SELF_SIGNED_CERT_IN_CHAIN:
     case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT:
@@ -130,8 +130,8 @@ std::string disbelief_of(int verdict, const X509* certificate, const Options::Tl
     case X509_V_ERR_UNABLE_TO_VERIFY_LEAF_SIGNATURE:
     case X509_V_ERR_CERT_SIGNATURE_FAILURE:
         return why + (files.ca.empty()
-                          ? ": this system knows nobody who vouches for it; give the server's evod.crt with --ca"
-                          : ": " + files.ca + " does not vouch for it; is it the evod.crt that the server has now?");
+                          ? ": no authority of this system has signed it; give the server's evod.crt with --ca"
+                          : ": " + files.ca + " has not signed it; is it the server's current evod.crt?");
     default:
         return why;
     }
@@ -143,7 +143,7 @@ std::string reason_of(const error_code& error, const Endpoint& server) {
     }
     if (error == asio::error::host_not_found || error == asio::error::host_not_found_try_again ||
         error == asio::error::no_data) {
-        return "the host " + server.host + " is not known: check its name";
+        return "the host " + server.host + " is unknown: check its name";
     }
     if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe ||
         error == asio::ssl::error::stream_truncated) {
@@ -159,15 +159,14 @@ Session::Session(asio::io_context& io, const Options& options, Handlers handlers
     : io_{io}, options_{options}, handlers_{std::move(handlers)}, socket_{io}, deadline_{io}, received_(read_bytes) {}
 
 void Session::start() {
-    expect_within(options_.connect_timeout, "no connection with");
+    start_deadline(options_.connect_timeout, "no connection with");
     look_up();
 }
 
-/// A look-up on a thread of its own, which owns nothing else: the system's getaddrinfo() cannot be stopped, and may
-/// take half a minute.
+/// A name look-up on its own thread, which owns nothing else: getaddrinfo() cannot be cancelled and may take half a minute.
 struct Session::LookUp {
     std::mutex mutex;     // guards what follows
-    asio::io_context* io; // nullptr: the caller has given up waiting
+    asio::io_context* io; // nullptr: cancelled by the caller
     std::weak_ptr<Session> of;
 };
 
@@ -211,7 +210,7 @@ void Session::looked_up(const error_code& error, const asio::ip::tcp::resolver::
     }
 }
 
-void Session::give_up_look_up() {
+void Session::cancel_look_up() {
     if (look_up_) {
         const std::lock_guard lock{look_up_->mutex};
         look_up_->io = nullptr;
@@ -230,14 +229,14 @@ void Session::connect(const asio::ip::tcp::resolver::results_type& addresses) {
                             }
                             notice_silence(self->socket_);
                             if (self->options_.tls) {
-                                self->shake_hands();
+                                self->perform_handshake();
                             } else {
                                 self->begin();
                             }
                         });
 }
 
-void Session::shake_hands() {
+void Session::perform_handshake() {
     namespace ssl = asio::ssl;
     const Options::Tls& files = *options_.tls;
     tls_context_.emplace(ssl::context::tls_client);
@@ -256,7 +255,7 @@ void Session::shake_hands() {
     } else {
         tls_context_->load_verify_file(files.ca, error);
     }
-    if (files.ca.empty() ? fails("--tls", "what this system trusts") : fails("--ca", files.ca)) {
+    if (files.ca.empty() ? fails("--tls", "the certificates of this system") : fails("--ca", files.ca)) {
         return;
     }
     if (!files.certificate.empty()) {
@@ -265,8 +264,9 @@ void Session::shake_hands() {
             return;
         }
         tls_context_->use_private_key_file(files.key.empty() ? files.certificate : files.key, ssl::context::pem, error);
-        if (files.key.empty() ? fails("--cert", files.certificate, ": if its key is not in it, give that with --key")
-                              : fails("--key", files.key)) {
+        if (files.key.empty()
+                ? fails("--cert", files.certificate, ": if it does not contain the key, give the key with --key")
+                : fails("--key", files.key)) {
             return;
         }
     }
@@ -280,8 +280,8 @@ void Session::shake_hands() {
                 X509_STORE_CTX_set_error(store, X509_V_ERR_HOSTNAME_MISMATCH);
             }
             if (!believed) {
-                disbelief_ = disbelief_of(X509_STORE_CTX_get_error(store), X509_STORE_CTX_get_current_cert(store),
-                                          *options_.tls);
+                distrust_ =
+                    distrust_of(X509_STORE_CTX_get_error(store), X509_STORE_CTX_get_current_cert(store), *options_.tls);
             }
             return believed;
         });
@@ -296,11 +296,11 @@ void Session::shake_hands() {
         if (failed) {
             const std::string known = tls_reason_of(failed);
             const bool by_tls = failed.category() == asio::error::get_ssl_category();
-            const std::string why = !self->disbelief_.empty() ? "its certificate is not believed: " + self->disbelief_
-                                    : known.empty()           ? failed.message()
-                                                              : known;
+            const std::string why = !self->distrust_.empty() ? "its certificate is not trusted: " + self->distrust_
+                                    : known.empty()          ? failed.message()
+                                                             : known;
             self->end({.reason = "no TLS with " + to_text(self->options_.server) + ": " + why,
-                       .final = !self->disbelief_.empty() || (by_tls && !known.empty())});
+                       .final = !self->distrust_.empty() || (by_tls && !known.empty())});
             return;
         }
         self->begin();
@@ -308,11 +308,11 @@ void Session::shake_hands() {
 }
 
 void Session::begin() {
-    say_hello();
+    send_hello();
     read();
 }
 
-void Session::say_hello() {
+void Session::send_hello() {
     evod::v1::ClientMessage message;
     auto& hello = *message.mutable_hello();
     hello.set_protocol_version(codec::protocol_version);
@@ -322,7 +322,7 @@ void Session::say_hello() {
     hello.set_frame_bytes_max(static_cast<std::uint32_t>(*codec::client_limits.control_bytes_max));
     to_send_.push_back(codec::encode_frame(codec::Channel::Control, message));
     write();
-    expect_within(options_.connect_timeout, "no welcome from");
+    start_deadline(options_.connect_timeout, "no Welcome from");
 }
 
 void Session::read() {
@@ -335,7 +335,7 @@ void Session::read() {
             return;
         }
         self->reader_.feed(std::span{self->received_}.first(length));
-        self->take_frames();
+        self->handle_frames();
         if (!self->ended_) {
             self->read();
         }
@@ -347,11 +347,11 @@ void Session::read() {
     }
 }
 
-void Session::take_frames() {
+void Session::handle_frames() {
     while (!ended_) {
         const auto frame = reader_.next();
         if (!frame) {
-            // Whoever has never said anything sensible is no server of ours; a server may be well again later.
+            // A peer that never sent a valid message is not an evod server; a known server may recover.
             end({.reason = to_text(options_.server) +
                            (welcomed_ ? " sent damaged data: " : " is not an evod server: ") + frame.error().what,
                  .final = !welcomed_});
@@ -361,24 +361,24 @@ void Session::take_frames() {
             return;
         }
         if ((*frame)->channel == codec::Channel::Control) {
-            take_control((*frame)->body);
+            handle_control((*frame)->body);
         } else if (!welcomed_) {
-            end({.reason = to_text(options_.server) + " is not an evod server: it began with a picture",
+            end({.reason = to_text(options_.server) + " is not an evod server: its first message is a snapshot",
                  .final = true});
-        } else if (auto picture = codec::parse_body<evod::v1::SnapshotFrame>((*frame)->body)) {
-            handlers_.pictured(*std::move(picture));
+        } else if (auto snapshot = codec::parse_body<evod::v1::SnapshotFrame>((*frame)->body)) {
+            handlers_.snapshot_received(*std::move(snapshot));
         } else {
-            end({.reason = to_text(options_.server) + " sent damaged data: " + picture.error().what});
+            end({.reason = to_text(options_.server) + " sent damaged data: " + snapshot.error().what});
         }
     }
 }
 
-void Session::take_control(std::span<const std::byte> body) {
+void Session::handle_control(std::span<const std::byte> body) {
     auto message = codec::parse_body<evod::v1::ServerMessage>(body);
     if (!message) {
         end({.reason = to_text(options_.server) + " sent damaged data: " + message.error().what});
     } else if (!welcomed_) {
-        take_first(*message);
+        handle_first_message(*message);
     } else {
         if (message->has_goodbye()) {
             goodbye_ = message->goodbye().status();
@@ -388,16 +388,16 @@ void Session::take_control(std::span<const std::byte> body) {
     }
 }
 
-void Session::take_first(const evod::v1::ServerMessage& message) {
+void Session::handle_first_message(const evod::v1::ServerMessage& message) {
     if (message.has_goodbye()) {
         const auto code = message.goodbye().status().code();
         const bool later = code == evod::v1::CODE_RESOURCE_EXHAUSTED || code == evod::v1::CODE_UNAVAILABLE;
         end(refused(message.goodbye().status(), "refused us", !later));
     } else if (!message.has_welcome()) {
-        end({.reason = to_text(options_.server) + " is not an evod server: it did not begin with a welcome",
+        end({.reason = to_text(options_.server) + " is not an evod server: its first message is not a Welcome",
              .final = true});
     } else if (message.welcome().protocol_version() != codec::protocol_version) {
-        end({.reason = "the server at " + to_text(options_.server) + " speaks protocol version " +
+        end({.reason = "the server at " + to_text(options_.server) + " uses protocol version " +
                        std::to_string(message.welcome().protocol_version()) + ", this program version " +
                        std::to_string(codec::protocol_version) + ": use a program of the server's version",
              .final = true});
@@ -412,15 +412,15 @@ Session::Ending Session::lost(const error_code& error) const {
     if (goodbye_) { // a token that was revoked is not accepted the next time either
         return refused(*goodbye_, "ended the session", goodbye_->code() == evod::v1::CODE_UNAUTHENTICATED);
     }
-    // Of TLS 1.3 a client is told only now that its certificate is not taken, and will not be the next time.
+    // With TLS 1.3 a client learns only now that its certificate was rejected; the next attempt would fail too.
     const bool not_taken =
         !welcomed_ && error.category() == asio::error::get_ssl_category() && !tls_reason_of(error).empty();
-    // What it says of that may be lost with the connection.
-    const bool without_a_word = tls_ && !welcomed_ && error.category() != asio::error::get_ssl_category();
+    // The server's message about it may be lost with the connection.
+    const bool without_message = tls_ && !welcomed_ && error.category() != asio::error::get_ssl_category();
     return {.reason = going_away_
                           ? "the server at " + to_text(options_.server) + " was shut down"
                           : reason_of(error, options_.server) +
-                                (without_a_word ? ": perhaps it wants another certificate of ours, see --cert" : ""),
+                                (without_message ? ": it may require another client certificate, see --cert" : ""),
             .final = not_taken};
 }
 
@@ -440,7 +440,7 @@ void Session::send(std::string frame) {
 
 void Session::write() {
     auto done = [self = shared_from_this()](const error_code& error, std::size_t) {
-        // After an error: what the server said before it closed may still be on its way, and read() ends the session.
+        // After an error, the server's last message may still arrive, and read() ends the session.
         if (self->ended_ || error) {
             return;
         }
@@ -456,20 +456,19 @@ void Session::write() {
     }
 }
 
-void Session::expect_within(std::chrono::milliseconds timeout, std::string what) {
+void Session::start_deadline(std::chrono::milliseconds timeout, std::string what) {
     deadline_.expires_after(timeout);
     deadline_.async_wait([self = shared_from_this(), timeout, what = std::move(what)](const error_code& error) {
         if (!error && !self->ended_ && !self->welcomed_) {
             self->end({.reason = what + " " + to_text(self->options_.server) + " within " +
-                                 std::to_string(timeout.count()) +
-                                 " ms: check the address, and what lies between here and there"});
+                                 std::to_string(timeout.count()) + " ms: check the address and the network"});
         }
     });
 }
 
 void Session::close() {
     ended_ = true;
-    give_up_look_up();
+    cancel_look_up();
     deadline_.cancel();
     error_code ignored;
     socket_.close(ignored);

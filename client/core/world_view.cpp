@@ -8,7 +8,7 @@ namespace evod::core {
 
 namespace {
 
-constexpr std::size_t nobody = static_cast<std::size_t>(-1);
+constexpr std::size_t no_match = static_cast<std::size_t>(-1);
 
 bool follows(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame& before) {
     return next.run_id() == before.run_id() && next.world() == before.world() && next.island() == before.island() &&
@@ -16,9 +16,9 @@ bool follows(const evod::v1::SnapshotFrame& next, const evod::v1::SnapshotFrame&
            next.simulated_s() - before.simulated_s() <= WorldView::blended_s_max;
 }
 
-/// For each of the rising `ids`, its index in the rising `among`.
+/// For each of the ascending `ids`, its index in the ascending `among`.
 std::vector<std::size_t> match(const std::vector<std::uint32_t>& ids, const std::vector<std::uint32_t>& among) {
-    std::vector<std::size_t> indices(ids.size(), nobody);
+    std::vector<std::size_t> indices(ids.size(), no_match);
     for (std::size_t i = 0, j = 0; i < ids.size(); ++i) {
         while (j < among.size() && among[j] < ids[i]) {
             ++j;
@@ -36,22 +36,22 @@ float between(float from, float to, double blend) {
 
 } // namespace
 
-void WorldView::add(std::shared_ptr<const codec::DecodedSnapshot> picture, Clock::time_point arrived) {
-    if (previous_ && picture->about.tick() == latest_->about.tick() && follows(picture->about, latest_->about)) {
-        match_ = match(picture->organisms.id, previous_->organisms.id);
-        crate_match_ = match(picture->crates.id, previous_->crates.id);
-        latest_ = std::move(picture);
+void WorldView::add(std::shared_ptr<const codec::DecodedSnapshot> snapshot, Clock::time_point arrived) {
+    if (previous_ && snapshot->about.tick() == latest_->about.tick() && follows(snapshot->about, latest_->about)) {
+        match_ = match(snapshot->organisms.id, previous_->organisms.id);
+        crate_match_ = match(snapshot->crates.id, previous_->crates.id);
+        latest_ = std::move(snapshot);
         return;
     }
-    if (latest_ && follows(picture->about, latest_->about)) {
+    if (latest_ && follows(snapshot->about, latest_->about)) {
         glide_ = std::min(std::chrono::duration<double>{arrived - latest_arrived_}, glide_max);
-        match_ = match(picture->organisms.id, latest_->organisms.id);
-        crate_match_ = match(picture->crates.id, latest_->crates.id);
+        match_ = match(snapshot->organisms.id, latest_->organisms.id);
+        crate_match_ = match(snapshot->crates.id, latest_->crates.id);
         previous_ = std::move(latest_);
     } else {
         previous_ = nullptr;
     }
-    latest_ = std::move(picture);
+    latest_ = std::move(snapshot);
     latest_arrived_ = arrived;
 }
 
@@ -74,7 +74,7 @@ const WorldView::Positions& WorldView::organisms_at(double blend) {
         organisms_.x_px = to.x_px;
         organisms_.y_px = to.y_px;
         for (std::size_t i = 0; previous_ && i < to.id.size(); ++i) {
-            if (const std::size_t j = match_[i]; j != nobody) {
+            if (const std::size_t j = match_[i]; j != no_match) {
                 organisms_.x_px[i] = between(previous_->organisms.x_px[j], to.x_px[i], blend);
                 organisms_.y_px[i] = between(previous_->organisms.y_px[j], to.y_px[i], blend);
             }
@@ -91,7 +91,7 @@ const WorldView::Positions& WorldView::crates_at(double blend) {
         crates_.x_px = to.x_px;
         crates_.y_px = to.y_px;
         for (std::size_t i = 0; previous_ && i < to.id.size(); ++i) {
-            if (const std::size_t j = crate_match_[i]; j != nobody) {
+            if (const std::size_t j = crate_match_[i]; j != no_match) {
                 crates_.x_px[i] = between(previous_->crates.x_px[j], to.x_px[i], blend);
                 crates_.y_px[i] = between(previous_->crates.y_px[j], to.y_px[i], blend);
             }

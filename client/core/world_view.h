@@ -1,9 +1,9 @@
-// WorldView: the latest two pictures of an island, and where everyone stands between them.
+// WorldView: the latest two snapshots of an island, and positions interpolated between them.
 //
-// Pictures come 20 or 30 times a second, a screen is drawn 60 times. What is drawn lies one picture behind: while the
-// newest picture is on its way in, organisms move from where the one before showed them to where it shows them.
+// Snapshots arrive 20 or 30 times a second, and the screen is drawn 60 times. The drawn state is one snapshot behind: organisms
+// move from their position in the previous snapshot to that in the latest.
 //
-// Owner        a viewer, one for each island it shows.
+// Owner        a viewer, one for each visible island.
 // Threads      none; used by the thread that draws.
 #pragma once
 
@@ -19,42 +19,42 @@ class WorldView {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// Centres, index by index those of latest()->organisms or ->crates.
+    /// Centres, in the order of latest()->organisms or ->crates.
     struct Positions {
         std::vector<float> x_px, y_px;
     };
 
-    /// Pictures more simulated seconds apart than this are not blended: the straight way between them means nothing.
-    /// 60 times as fast as real time, at 30 pictures a second.
+    /// Snapshots further apart in simulated time are not interpolated: a straight line between them means nothing. 2 s is 60
+    /// times real time at 30 snapshots per second.
     static constexpr double blended_s_max = 2;
-    /// The way from one picture to the next takes as long as lay between their arrivals, and no longer than this: a
-    /// world that was paused shows its next tick now.
+    /// The interpolation takes as long as the interval between the arrivals of both snapshots, at most this long: a world that
+    /// was paused shows its next tick soon.
     static constexpr std::chrono::duration<double> glide_max{0.25};
 
-    /// A picture of another run, generation or time back stands alone: nobody glides from one life to the next. One of
-    /// the same tick, in which more or something else is seen, takes the place of the latest.
-    void add(std::shared_ptr<const codec::DecodedSnapshot> picture, Clock::time_point arrived);
+    /// Adds a snapshot. One of another run or generation, or of an earlier tick, is not interpolated with the previous one. One of
+    /// the same tick, with another region or level of detail, replaces the latest.
+    void add(std::shared_ptr<const codec::DecodedSnapshot> snapshot, Clock::time_point arrived);
 
-    /// Forgets everything: another world or island is shown.
+    /// Drops both snapshots, for another world or island.
     void clear();
 
-    /// Null before the first.
+    /// Null before the first snapshot.
     const std::shared_ptr<const codec::DecodedSnapshot>& latest() const { return latest_; }
-    /// Null if the latest stands alone.
+    /// Null if the latest is not interpolated.
     const std::shared_ptr<const codec::DecodedSnapshot>& previous() const { return previous_; }
 
-    /// How far between previous() and latest() the moment `now` lies, 0 to 1; 1 if the latest stands alone.
+    /// The position of `now` between previous() and latest(), 0 to 1; 1 without interpolation.
     double blend_at(Clock::time_point now) const;
 
-    /// Where the organisms and crates of latest() are drawn at a blend. One that previous() does not have
-    /// stands where latest() shows it. Valid until the next call of this object.
+    /// The drawn positions of the organisms and crates of latest() at a blend. An entity that previous() does not contain is at its
+    /// latest position. Valid until the next call of this object.
     const Positions& organisms_at(double blend);
     const Positions& crates_at(double blend);
 
   private:
     std::shared_ptr<const codec::DecodedSnapshot> latest_, previous_;
     Clock::time_point latest_arrived_{};
-    std::chrono::duration<double> glide_{0}; // how long the way from one to the other takes
+    std::chrono::duration<double> glide_{0}; // duration of the interpolation
     // By index in latest_: index in previous_, or npos.
     std::vector<std::size_t> match_, crate_match_;
     Positions organisms_, crates_;

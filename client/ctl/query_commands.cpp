@@ -341,7 +341,7 @@ void add_query_commands(command_line::Command& app, const Common& common) {
     stats.action([&] { statistics(common, moment); });
 
     auto& history_command = app.add_command("history", "The statistics of ended generations").group(group);
-    auto& options = past.keep(HistoryOptions{});
+    auto& options = history_command.keep(HistoryOptions{});
     history_command.add_flag("--csv", &options.csv, "Comma-separated values, with every column and the genes");
     history_command.add_option("--from", &options.from, "First generation; default: the oldest one available")
         .check(whole_number);

@@ -527,13 +527,13 @@ class Tls(Access):
             self.come(server, tls=context)
         trusting = ["--ca", f"{self.folder}/certificates/evod.crt"]
         # The server's word may be lost with the connection.
-        lost = "closed the connection: perhaps it wants another certificate of ours, see --cert"
+        lost = "closed the connection: it may require another client certificate, see --cert"
         self.assertRegex(self.evoctl(*trusting, "worlds", server=server, status=3),
-                         f"it wants a certificate of ours: give one with --cert and --key|{lost}")
+                         f"it requires a client certificate: give one with --cert and --key|{lost}")
         other = self.pair("others", "client")
         self.assertRegex(self.evoctl(*trusting, "--cert", str(other / "evod.crt"), "--key", str(other / "evod.key"),
                                      "worlds", server=server, status=3),
-                         f"it does not believe the certificate of --cert|{lost}")
+                         f"it does not trust the certificate of --cert|{lost}")
         context.load_cert_chain(clients / "evod.crt", clients / "evod.key")
         self.assertIsNotNone(self.come(server, tls=context).welcome)
         self.assertIn("default", self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "--cert",

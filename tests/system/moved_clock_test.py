@@ -54,8 +54,8 @@ class MovedClock(unittest.TestCase):
         certificate = f"{self.data}/evod.crt"
         server = Server("--data", f"{self.data}/tls", "--log-level", "debug", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
         self.servers.append(server)
-        for seconds, words in ((ten_years_s, r"it was good until \w+ +\d+ .* GMT: whoever runs the server makes another"),
-                               (-ten_years_s, r"it is good from \w+ +\d+ .* GMT on: is this machine's clock right\?")):
+        for seconds, words in ((ten_years_s, r"it expired on \w+ +\d+ .* GMT: the server needs a new one"),
+                               (-ten_years_s, r"it is valid from \w+ +\d+ .* GMT on: is this machine's clock right\?")):
             self.moved_s[:8] = struct.pack("<q", seconds)
             done = waiting.run([os.environ["EVOCTL"], "--server", f"localhost:{server.port}", "--ca", certificate, "worlds"],
                                capture_output=True, text=True, env=self.environment)

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
     for (int generations = 0; generations < 3;) {
         const auto event = connection.wait_event(std::chrono::minutes{5});
         if (!event) {
-            std::cerr << "nothing heard: " << connection.status().reason << '\n';
+            std::cerr << "no reply: " << connection.status().reason << '\n';
             return 3;
         }
         if (event->world() == response->world().name() && event->has_generation_finished()) {

@@ -101,7 +101,7 @@ TEST(Connection, GivesUpWaitingForAWelcome) {
     Connection connection{options};
     FakeSession session = server.accept();
     EXPECT_FALSE(connection.wait_connected(hang));
-    EXPECT_TRUE(wait_until([&] { return connection.status().reason.find("no welcome from") != std::string::npos; }))
+    EXPECT_TRUE(wait_until([&] { return connection.status().reason.find("no Welcome from") != std::string::npos; }))
         << connection.status().reason;
 }
 
@@ -175,7 +175,7 @@ TEST(Requests, TimeOutAndALateAnswerIsIgnored) {
     const auto response = connection.request(run_request(1), 20ms);
     ASSERT_FALSE(response);
     EXPECT_EQ(response.error().kind, Error::Kind::Timeout);
-    EXPECT_EQ(response.error().what, "no answer within 20 ms");
+    EXPECT_EQ(response.error().what, "no reply within 20 ms");
     session.answer(session.read_request());
     auto next = connection.send(run_request(2));
     session.answer(session.read_request(), 2);

@@ -89,7 +89,7 @@ TEST(Top, TickTimesAreThoseBetweenTheLooks) {
     before.add_ticks("default", {1000, 0, 0, 0}, 0.5);
     after.add_ticks("default", {1000, 98, 1, 1}, 0.7).add("evod_ticks_per_second", 50, "default");
     const std::string text = top(before, after);
-    EXPECT_THAT(text, HasSubstr("default       50        2.0 ms        1.5 ms  5.0 ms")) << text;
+    EXPECT_THAT(text, HasSubstr("default       50     2.0 ms  1.5 ms  5.0 ms")) << text;
 }
 
 TEST(Top, TicksBeyondTheLastBoundAreSaidToBe) {
