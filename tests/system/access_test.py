@@ -503,21 +503,21 @@ class Tls(Access):
         certificates, strangers = (f"{self.folder}/{name}/evod.crt" for name in ("certificates", "strangers"))
         self.assertIn("default", self.evoctl("--ca", certificates, "worlds", server=server))
         self.assertIn("default", self.evoctl("worlds", server=server, environment={"EVOD_CA": certificates}))
-        for words, options in ((f"not believed: .*{strangers} does not vouch for it", ["--ca", strangers]),
-                               ("not believed: .*give the server's evod.crt with --ca", ["--tls"]),
+        for words, options in ((f"not trusted: .*{strangers} has not signed it", ["--ca", strangers]),
+                               ("not trusted: .*give the server's evod.crt with --ca", ["--tls"]),
                                ("^evoctl: --ca: /nowhere cannot be used for TLS: No such file", ["--ca", "/nowhere"]),
                                (f"^evoctl: --cert: {__file__} cannot be used", ["--ca", certificates, "--cert", __file__]),
-                               ("^evoctl: --cert: .*give that with --key", ["--ca", certificates, "--cert", certificates])):
+                               ("^evoctl: --cert: .*give the key with --key", ["--ca", certificates, "--cert", certificates])):
             self.assertRegex(self.evoctl(*options, "worlds", server=server, status=3), words)
         server.end()
         elsewhere = self.pair("elsewhere", "elsewhere.example")
-        self.assertIn("not believed: it is for other names (elsewhere.example): reach the server by one of them",
+        self.assertIn("not trusted: it is for other names (elsewhere.example): reach the server by one of them",
                       self.evoctl("--ca", str(elsewhere / "evod.crt"), "worlds", status=3,
                                   server=self.serve(*self.files("elsewhere"))))
 
     def test_evoctl_says_that_a_server_does_not_speak_tls(self):
         told = self.evoctl("--ca", f"{self.folder}/certificates/evod.crt", "worlds", server=self.serve(), status=3)
-        self.assertRegex(told, "no TLS with localhost:[0-9]+: it does not speak TLS: leave out --ca")
+        self.assertRegex(told, "no TLS with localhost:[0-9]+: it does not use TLS: leave out --ca")
 
     def test_clients_may_have_to_show_a_certificate(self):
         clients = self.pair("clients", "client")

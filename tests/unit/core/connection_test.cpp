@@ -63,7 +63,7 @@ TEST(Connection, AnotherProtocolVersionIsFinal) {
     session.send(message);
     const auto welcome = connection.wait_connected(hang);
     ASSERT_FALSE(welcome);
-    EXPECT_THAT(welcome.error().what, HasSubstr("speaks protocol version 2, this program version 1"));
+    EXPECT_THAT(welcome.error().what, HasSubstr("uses protocol version 2, this program version 1"));
     EXPECT_EQ(connection.status().state, State::Failed);
     EXPECT_FALSE(connection.request(run_request(1))) << "and what is asked afterwards fails at once";
 }
