@@ -6,10 +6,11 @@ Threads      any number of threads may use one Link. Only the connection thread 
 from __future__ import annotations
 
 import asyncio
+import concurrent.futures
 import ssl
 import threading
 import weakref
-from typing import Any, Callable, Coroutine, ParamSpec, TypeVar
+from typing import Any, Callable, Coroutine, Generic, ParamSpec, TypeVar
 
 from evod.aio import link as aio_link
 from evod.core import Core
@@ -66,16 +67,48 @@ class Link:
             self._end()
 
     def _run(self, coroutine: Coroutine[Any, Any, T]) -> T:
-        with self._lock:
-            if not self._end.alive:
-                coroutine.close()
-                raise NoConnection("the connection was closed here")
-            future = asyncio.run_coroutine_threadsafe(coroutine, self._loop)
+        call = _Call(coroutine)
         try:
-            return future.result()
+            with self._lock:
+                if not self._end.alive:
+                    coroutine.close()
+                    raise NoConnection("the connection was closed here")
+                self._loop.call_soon_threadsafe(call.start)
+            return call.result.result()
         except BaseException:
-            future.cancel()
+            if self._end.alive and not call.result.done():
+                self._loop.call_soon_threadsafe(call.cancel)
             raise
+
+
+class _Call(Generic[T]):
+    """A coroutine that the connection thread runs for another thread. start() and cancel() run on the connection thread.
+
+    An interrupt may reach the calling thread at any moment, also before it knows whether start() was scheduled.
+    """
+
+    def __init__(self, coroutine: Coroutine[Any, Any, T]) -> None:
+        self.result: concurrent.futures.Future[T] = concurrent.futures.Future()
+        self._coroutine = coroutine
+        self._task: asyncio.Task[T] | None = None
+
+    def start(self) -> None:
+        self._task = asyncio.get_running_loop().create_task(self._coroutine)
+        self._task.add_done_callback(self._finish)
+
+    def cancel(self) -> None:
+        if self._task is None:
+            self._coroutine.close()
+        else:
+            self._task.cancel()
+
+    def _finish(self, task: asyncio.Task[T]) -> None:
+        if task.cancelled():
+            self.result.cancel()
+        elif (error := task.exception()) is not None:
+            self.result.set_exception(error)
+        else:
+            self.result.set_result(task.result())
 
 
 def _serve(loop: asyncio.AbstractEventLoop) -> None:
