@@ -4,7 +4,7 @@
 
 One world of N organisms runs at real time, and another of 4,096 small islands, too. In each of several runs the viewer does
 one thing all the time, in a process of its own: it keeps 30 requests of a kind unanswered, sends the longest frames,
-holds 32 subscriptions, or subscribes and unsubscribes. Meanwhile another client sends a command every 10 ms. Told are
+holds 32 subscriptions, or subscribes and unsubscribes. Meanwhile another client sends a command every 10 ms. It prints
 the world's ticks per second and how long the commands took, beside the same without the viewer.
 """
 import argparse

@@ -83,36 +83,36 @@ class Breeding(export_test.Runs):
                 best = min(pick.contestants, key=lambda contestant: bred.contenders[contestant].rank)
                 self.assertEqual(best, pick.organism)
 
-    def test_every_generation_of_every_island_is_as_the_tables_say(self):
+    def test_every_generation_agrees_with_the_tables(self):
         server, client = self.serve()
         self.run_world(client, 5, mutate_survivors=True, elite_count=1, rearranging="swap", rearrange_chance=0.5,
                        bit_flip_chance=0.02, crossover_chance=0.7)
-        told = {(generation, island): self.breeding(client, generation=generation, island=island)
+        reported = {(generation, island): self.breeding(client, generation=generation, island=island)
                 for generation in range(1, 5) for island in range(2)}
         table = self.organisms()
-        for bred in told.values():
+        for bred in reported.values():
             self.check(bred, table)
-        migrants = {key for key, bred in told.items() for contender in bred.contenders if contender.HasField("migrant")}
+        migrants = {key for key, bred in reported.items() for contender in bred.contenders if contender.HasField("migrant")}
         self.assertEqual(migrants, {(generation, island) for generation in (2, 4) for island in range(2)})
-        self.assertEqual(self.breeding(client, island=1), told[4, 1])
+        self.assertEqual(self.breeding(client, island=1), reported[4, 1])
 
         # The same of the past, where the last is the one before what is shown; and of a file that is served again.
         look = client.call(open_replay=c.OpenReplay(world="w", at=c.RunMoment(generation=3))).world.name
-        self.assertEqual(self.breeding(client, world=look), told[2, 0])
-        self.assertEqual(self.breeding(client, world=look, generation=4), told[4, 0])
+        self.assertEqual(self.breeding(client, world=replay), reported[2, 0])
+        self.assertEqual(self.breeding(client, world=look, generation=4), reported[4, 0])
         server.end()
         replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
-        self.assertEqual(self.breeding(replayed, generation=1, island=1), told[1, 1])
+        self.assertEqual(self.breeding(replayed, generation=1, island=1), reported[1, 1])
 
-    def test_of_a_shuffled_fitness_is_told_what_the_selection_saw_and_the_run_can_be_made_again(self):
+    def test_shuffled_fitness_is_what_the_selection_used(self):
         server, client = self.serve()
         self.run_world(client, 5, shuffle_fitness=True, elite_count=2)
-        told = {(generation, island): self.breeding(client, generation=generation, island=island)
+        reported = {(generation, island): self.breeding(client, generation=generation, island=island)
                 for generation in range(1, 5) for island in range(2)}
         table = self.organisms()
-        for (generation, island), bred in told.items():
+        for (generation, island), bred in reported.items():
             self.check(bred, table)
-            if generation % 2:  # nobody migrates: it is the island's own fitness, dealt out anew
+            if generation % 2:  # no migration: the island's own fitness, permuted
                 self.assertEqual(sorted(contender.fitness for contender in bred.contenders),
                                  sorted(contender.own_fitness for contender in bred.contenders))
             self.assertNotEqual([contender.fitness for contender in bred.contenders],
@@ -135,7 +135,7 @@ class Breeding(export_test.Runs):
             done = waiting.run([EVOD, "verify", f"{self.folder}/{name}.evod"], capture_output=True, text=True)
             self.assertIn("all agrees", done.stdout, done.stderr)
 
-    def test_every_method_of_selection_tells_its_picks(self):
+    def test_every_selection_method_reports_its_picks(self):
         _, client = self.serve()
         methods = {"roulette": ["turns"], "stochastic_universal": ["turns"], "tournament": ["tournament"], "random": [],
                    "truncation": []}
@@ -152,7 +152,7 @@ class Breeding(export_test.Runs):
                 self.assertEqual([name for name in ("turns", "tournament") if pick.HasField(name)], fields)
                 self.assertEqual(len(pick.contestants), 3 if method == "tournament" else 0)
 
-    def test_the_parameters_are_those_that_held_at_the_breeding(self):
+    def test_parameters_are_those_of_the_breeding(self):
         _, client = self.serve()
         self.recorded(client)  # changes them at tick 250, in the third generation, which ends with tick 360
         table = None
@@ -162,7 +162,7 @@ class Breeding(export_test.Runs):
             self.assertEqual((bred.descendant_count, self.parameters(bred)["mutation_chance"]), expected)
             self.check(bred, table)
 
-    def test_a_world_that_runs_tells_of_what_has_only_just_been_bred(self):
+    def test_a_running_world_reports_the_latest_breeding(self):
         _, client = self.serve()
         self.run_world(client, 2)
         client.call(run=c.Run(world="w"))
@@ -172,12 +172,12 @@ class Breeding(export_test.Runs):
         client.call(pause=c.Pause(world="w"))
         self.assertEqual(self.breeding(client).generation, client.world("w").generation - 1)
 
-    def test_what_was_not_kept_is_simulated_again(self):
+    def test_purged_generations_are_simulated_again(self):
         _, client = self.serve("--keep-every", "10")
         self.run_world(client, 24, fitness="gene_sum")
-        told = [self.breeding(client, generation=generation, island=1) for generation in (1, 9, 10, 14, 23)]
-        table = self.organisms()  # after what was told, which waits for the file
-        for bred in told:
+        reported = [self.breeding(client, generation=generation, island=1) for generation in (1, 9, 10, 14, 23)]
+        table = self.organisms()  # after what was reported, which waits for the file
+        for bred in reported:
             self.check(bred, table)
 
     def test_many_rows_come_in_parts(self):
@@ -195,7 +195,7 @@ class Breeding(export_test.Runs):
         self.assertEqual((len(beyond.contenders), len(beyond.picks), len(beyond.descendants)), (0, 0, 0))
         self.assertEqual(client.welcome.limits.breeding_rows_max, 1000)
 
-    def test_all_that_are_asked_at_once_are_answered(self):
+    def test_simultaneous_queries_are_all_answered(self):
         server, client = self.serve()
         self.run_world(client, 4)
         expected = self.breeding(client)
@@ -210,24 +210,24 @@ class Breeding(export_test.Runs):
                 other.step()
             self.assertEqual(other.responses[request_id].breeding, expected)
 
-    def test_what_is_wrong_is_named(self):
+    def test_invalid_requests_name_the_field(self):
         _, client = self.serve()
         client.call(create_world=c.CreateWorld(name="w", seed=5, parameters=plain.assignments(**CREATE)))
         client.call(FAILED_PRECONDITION, get_breeding=ask())
         client.call(FAILED_PRECONDITION, get_breeding=ask(generation=1))
         client.run_to(250, "w")
         for field, allowed, wanted in (("generation", "1 to 2", {"generation": 0}), ("generation", "1 to 2", {"generation": 3}),
-                                       ("island", "0 to 1", {"island": 2}), ("world", None, {"world": "nobody"})):
+                                       ("island", "0 to 1", {"island": 2}), ("world", None, {"world": "nowhere"})):
             status = client.call(NOT_FOUND, get_breeding=ask(**wanted)).status
             self.assertEqual([violation.field for violation in status.violations], ["get_breeding." + field])
             self.assertIn(allowed, (None, status.violations[0].allowed))
 
-    def test_a_server_that_keeps_no_runs_says_so(self):
+    def test_a_server_without_recording_refuses(self):
         client = self.client(self.server("--keep-nothing"))
         status = client.call(FAILED_PRECONDITION, get_breeding=c.GetBreeding()).status
         self.assertIn("--keep-nothing", status.message)
 
-    def test_evoctl_prints_it_for_people_and_for_programs(self):
+    def test_evoctl_prints_text_and_json(self):
         server, client = self.serve()
         self.run_world(client, 3, selection="tournament")
 
@@ -248,9 +248,9 @@ class Breeding(export_test.Runs):
             self.assertRegex(text, rf"\n *{child.id}  child +{child.first_parent}, {child.second_parent} ")
         self.assertEqual(evoctl("breeding", "--rows", "4", "--from", "3").count("more: --from 7"), 2)  # not of 6 picks
         self.assertNotIn("OWN FITNESS", text)
-        told = json.loads(evoctl("--json", "breeding", "--generation", "1"))
-        self.assertEqual(len(told["descendants"]), 12)
-        self.assertEqual(told["descendants"][7]["first_parent"],
+        reported = json.loads(evoctl("--json", "breeding", "--generation", "1"))
+        self.assertEqual(len(reported["descendants"]), 12)
+        self.assertEqual(reported["descendants"][7]["first_parent"],
                          self.breeding(client, generation=1).descendants[7].first_parent)
         self.assertIn("allowed 1 to 2", evoctl("breeding", "--generation", "9", status=1))
         self.assertIn("--rows", evoctl("breeding", "--rows", "0", status=2))

@@ -55,15 +55,15 @@ class WithServer(unittest.TestCase):
 class Durability(WithServer):
     options = [*WithServer.options, "--durability", "relaxed"]
 
-    def test_it_is_told_where_the_machine_may_lose_what_was_answered(self):
+    def test_relaxed_durability_is_shown(self):
         self.assertIn("\ndurability relaxed: ", self.evoctl("status"))
 
 
 class Commands(WithServer):
-    def test_a_server_that_has_all_on_the_disk_says_nothing_of_it(self):
+    def test_full_durability_is_not_mentioned(self):
         self.assertNotIn("durability", self.evoctl("status"))
 
-    def test_generations_are_run_and_told(self):
+    def test_generations_are_run_and_printed(self):
         self.evoctl("run", "3", "--wait")
         rows = list(csv.DictReader(io.StringIO(self.evoctl("history", "--csv"))))
         self.assertEqual([row["generation"] for row in rows], ["1", "2", "3"])
@@ -72,7 +72,7 @@ class Commands(WithServer):
         self.assertIn("food_radius", self.evoctl("organism", "3"))
         self.assertIn("organism", self.evoctl("organism", "5000", status=1))
 
-    def test_a_tick_that_is_over_is_refused_and_nothing_changes(self):
+    def test_an_earlier_tick_is_refused(self):
         self.evoctl("step", "60")
         self.evoctl("run")
         self.assertIn("until: the run is at tick ", self.evoctl("until", "5", status=1))
@@ -113,15 +113,15 @@ class Commands(WithServer):
         self.evoctl("speed", "0", status=2)
         self.evoctl("speed", "fast", status=2)
 
-    def test_a_world_that_cannot_keep_its_pace_is_said_to_be_slower(self):
+    def test_a_world_behind_its_pace_is_marked_slower(self):
         self.evoctl("speed", "10000")
         self.evoctl("run")
         waiting.until(lambda: "10000x (slower)" in self.evoctl("status"), "it is measured")
 
     def test_parameters_are_set_all_or_none(self):
         self.evoctl("set", "selection=tournament", "mutation_chance=0.05", "mutate_survivors=true", "tournament_size=4")
-        told = self.evoctl("get", "selection", "mutation_chance", "mutate_survivors", "tournament_size")
-        self.assertEqual(told.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
+        reported = self.evoctl("get", "selection", "mutation_chance", "mutate_survivors", "tournament_size")
+        self.assertEqual(reported.split(), ["selection=tournament", "mutation_chance=0.05", "mutate_survivors=true",
                                         "tournament_size=4"])
         wrong = self.evoctl("set", "mutation_chance=2", "survivors=0.25", "restitution=-1", status=2)
         self.assertIn("mutation_chance: got 2, allowed 0 to 1", wrong)
@@ -137,7 +137,7 @@ class Commands(WithServer):
         self.assertLessEqual({"population_size", "mutation_chance", "flee_rule", "migration"}, registry)
         self.assertIn("tournament", self.evoctl("params", "selection"))
 
-    def test_worlds_are_made_named_and_deleted(self):
+    def test_worlds_are_created_named_and_deleted(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "small.json"
             path.write_text('{"population_size": 7, "seed": 5, "description": "A few."}')
@@ -155,7 +155,7 @@ class Commands(WithServer):
         self.assertIn("NOT_FOUND", self.evoctl("--world", "other", "pause", status=1))
         self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
 
-    def test_a_world_is_forked_by_name_at_a_generation_or_from_now(self):
+    def test_forks_start_at_a_generation_or_now(self):
         self.evoctl("run", "3", "--wait")
         self.evoctl("fork", "default", "--at-generation", "2", "--name", "then")
         self.evoctl("fork", "then", "--name", "later")
@@ -163,11 +163,11 @@ class Commands(WithServer):
         self.assertEqual([self.answer("--world", name, "stats")["world"]["generation"] for name in
                           ("then", "later", "now")], [2, 2, 3])
         self.assertIn("--name is required", self.evoctl("fork", "other", status=2))
-        self.assertIn("NOT_FOUND", self.evoctl("fork", "nobody", "--name", "x", status=1))
+        self.assertIn("NOT_FOUND", self.evoctl("fork", "nowhere", "--name", "x", status=1))
         self.assertIn("at_generation: got 9, allowed 1 to 3",
                       self.evoctl("fork", "default", "--at-generation", "9", "--name", "x", status=1))
 
-    def test_the_past_is_looked_at_without_a_window(self):
+    def test_earlier_generations_are_shown(self):
         self.evoctl("create", "small", "--seed", "3", "--set", "generation_s=2")
         self.evoctl("--world", "small", "speed", "max")
         self.evoctl("--world", "small", "run", "3", "--wait")
@@ -180,16 +180,16 @@ class Commands(WithServer):
         then = small("stats", "--at-generation", "3", "--at-tick", "60")
         self.assertEqual((then["world"]["generation"], then["world"]["tick"]), (3, 300))
         self.assertEqual(then["last"][0]["generation"], 2)
-        told = self.evoctl("--world", "small", "stats", "--at-generation", "3", "--at-tick", "60")
-        self.assertIn("small as it was: generation 3, tick 300", told)
-        self.assertIn("\nthen\n", told)
+        reported = self.evoctl("--world", "small", "stats", "--at-generation", "3", "--at-tick", "60")
+        self.assertIn("small as it was: generation 3, tick 300", reported)
+        self.assertIn("\nthen\n", reported)
         self.assertIn("small as it was: generation 2, tick 120",
                       self.evoctl("--world", "small", "organism", "3", "--at-generation", "2"))
         self.assertIn("generation: got 9, allowed 1 to 3",
                       self.evoctl("--world", "small", "stats", "--at-generation", "9", status=1))
         self.assertEqual(self.evoctl("worlds").split(), ["default", "small"])
 
-    def test_a_drawing_fits_on_a_small_screen(self):
+    def test_live_output_fits_a_small_terminal(self):
         self.evoctl("run", "2", "--wait")
         for command in ["watch"], ["top", "--interval", "0.1"]:
             for lines, columns in ((24, 80), (6, 30), (2, 10), (1, 1)):
@@ -215,7 +215,7 @@ class Commands(WithServer):
                         self.assertLessEqual(max(map(len, drawn)), columns)
                         self.assertTrue(drawn[0])
 
-    def test_files_that_cannot_be_read_and_output_that_cannot_be_written_are_said(self):
+    def test_unreadable_files_and_full_output_are_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             for option, what in ("--experiment", "experiment"), ("--population", "population"):
                 for path, why in (folder, "Is a directory"), (folder + "/none", "No such file or directory"):
@@ -255,25 +255,25 @@ class Commands(WithServer):
 
 
 class WithoutServer(unittest.TestCase):
-    def test_it_says_that_no_server_runs_and_how_to_start_one(self):
+    def test_without_a_server_it_says_how_to_start_one(self):
         done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", "status"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 3)
         self.assertIn("127.0.0.1:1", done.stderr)
         self.assertIn("evod", done.stderr)
 
-    def test_wrong_usage_is_said_before_any_connection(self):
+    def test_wrong_usage_is_reported_before_connecting(self):
         for words in (["dance"], ["run", "-1"], ["step", "many"], ["create"], []):
             done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, words)
 
-    def test_a_token_on_the_command_line_is_refused_and_not_repeated(self):
+    def test_a_token_on_the_command_line_is_refused(self):
         for words in (["--token", "evod_secret", "worlds"], ["--token=evod_secret", "worlds"]):
             done = waiting.run([EVOCTL, "--server", "127.0.0.1:1", *words], capture_output=True, text=True)
             self.assertEqual(done.returncode, 2, words)
             self.assertIn("EVOD_TOKEN", done.stderr)
             self.assertNotIn("secret", done.stderr)
 
-    def test_a_number_that_cannot_be_is_told_with_what_is_allowed(self):
+    def test_invalid_numbers_show_the_allowed_range(self):
         most, index = 2**64 - 1, 2**32 - 1
         for words, name, least, greatest in (
                 (["run"], "N", 1, most), (["step"], "N", 1, most), (["until"], "TICK", 0, most),

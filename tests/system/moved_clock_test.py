@@ -1,4 +1,4 @@
-"""Real servers while somebody puts the clock on the wall ten years forward and back: nothing changes.
+"""Real servers while the wall clock is set ten years forward and back: nothing changes.
 
     EVOD=… EVOCTL=… MESSAGES=… MOVED_CLOCK_LIBRARY=… moved_clock_test.py
 """
@@ -49,7 +49,7 @@ class MovedClock(unittest.TestCase):
             return re.findall(r"^\S\S\S\S", server.output(), re.M)[-1] == str(year)
         until(sees_it, f"the year {year} in the log")
 
-    def test_a_certificate_that_is_not_good_now_is_told_with_its_time(self):
+    def test_an_expired_certificate_shows_its_time(self):
         waiting.run([os.environ["EVOD"], "certificate", "localhost", "--folder", self.data], check=True)
         certificate = f"{self.data}/evod.crt"
         server = Server("--data", f"{self.data}/tls", "--log-level", "debug", "--tls-cert", certificate, "--tls-key", f"{self.data}/evod.key")
@@ -83,7 +83,7 @@ class MovedClock(unittest.TestCase):
         server.end()
         return last.tick, last.state_hash
 
-    def test_runs_recovery_and_retries_are_the_same(self):
+    def test_runs_recovery_and_replies_are_the_same(self):
         still = self.run_in_stretches("still", [0, 0, 0, 0])
         self.assertEqual(still[0], 2000)
         self.assertEqual(self.run_in_stretches("moved", [ten_years_s, -ten_years_s, 0, ten_years_s]), still)

@@ -47,7 +47,7 @@ class Names(past.Case):
                 done = waiting.run([EVOD, "verify", f"{self.folder}/runs/{name}"], capture_output=True, text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_a_fork_that_is_reset_before_it_is_written(self):
+    def test_a_fork_can_be_reset_before_it_is_written(self):
         server = self.serve()
         client = self.client(server)
         for i in range(20):
@@ -59,7 +59,7 @@ class Names(past.Case):
         self.assertEqual(waiting.ended(server.process), 0)
         self.verify_all()
 
-    def test_a_name_that_is_used_again_at_once(self):
+    def test_a_name_can_be_reused_immediately(self):
         server = self.serve()
         client = self.client(server)
         for _ in range(20):
@@ -72,7 +72,7 @@ class Names(past.Case):
         self.assertEqual(waiting.ended(server.process), 0)
         self.verify_all()
 
-    def test_any_sequence_with_kills_in_between(self):
+    def test_random_sequences_survive_kills(self):
         chance = random.Random(SEED)
         server = self.serve()
         for turn in range(ROUNDS):
@@ -106,7 +106,7 @@ class Names(past.Case):
 
 
 class Signals(past.Case):
-    def test_sessions_are_told_first_and_a_second_signal_ends_at_once(self):
+    def test_goodbye_precedes_the_end_and_is_cut_by_a_signal(self):
         server = self.server("--data", f"{self.folder}/runs")
         client = self.client(server)
         client.ask(create_world=c.CreateWorld(name="large", parameters=plain.assignments(
@@ -122,7 +122,7 @@ class Signals(past.Case):
         server = self.server("--data", f"{self.folder}/runs")
         self.client(server).call(list_worlds=c.ListWorlds())
 
-    def test_a_hang_up_ends_nothing(self):
+    def test_sighup_does_not_end_the_server(self):
         server = self.server("--keep-nothing")
         client = self.client(server)
         server.process.send_signal(1)
@@ -131,7 +131,7 @@ class Signals(past.Case):
         server.process.terminate()
         self.assertEqual(waiting.ended(server.process), 0)
 
-    def test_what_cannot_be_written_shows_in_the_status(self):
+    def test_unwritten_data_shows_in_the_exit_status(self):
         server = self.server("--data", f"{self.folder}/runs", "--speed", "max")
         client = self.client(server)
         client.call(create_world=c.CreateWorld(name="other"))

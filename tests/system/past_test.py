@@ -40,7 +40,7 @@ class Server(plain.Server):
 
 class Client(plain.Client):
     def world(self, name=""):
-        """Of those that show the past too, which no list tells of."""
+        """Also a replay, which ListWorlds does not contain."""
         return self.call(get_statistics=c.GetStatistics(world=name)).statistics.world
 
 
@@ -82,7 +82,7 @@ class OpenReplay(Case):
         self.live = self.client(self.served)
         self.hashes = self.recorded(self.live)
 
-    def test_every_moment_is_as_it_was_and_the_living_world_is_not_touched(self):
+    def test_replays_are_exact_and_change_nothing(self):
         viewer = self.client(self.served)
         before = self.live.world("w")
         past = viewer.call(open_replay=c.OpenReplay(world="w")).world
@@ -114,7 +114,7 @@ class OpenReplay(Case):
             self.assertEqual(refused.status.violations[0].allowed, allowed)
         self.assertEqual(viewer.world(past.name).tick, 421)
 
-    def test_it_plays_to_the_end_of_what_is_known_and_on_as_the_run_does(self):
+    def test_a_replay_follows_the_running_world(self):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=100))).world.name
         viewer.call(set_speed=c.SetSpeed(world=past, speed=w.Speed(max=True)))
@@ -129,7 +129,7 @@ class OpenReplay(Case):
         self.assertNotEqual(back.state, w.RUN_STATE_PAUSED)
         viewer.wait_world(lambda world: world.tick == 600, past)
 
-    def test_it_is_watched_stepped_and_asked_as_any_world(self):
+    def test_a_replay_can_be_streamed_stepped_and_queried(self):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=249))).world.name
         viewer.call(subscribe_snapshots=c.SubscribeSnapshots(world=past, rate_hz=60))
@@ -142,20 +142,20 @@ class OpenReplay(Case):
         self.assertEqual({row.generation for row in statistics.last}, {1})
         self.assertEqual(len(viewer.call(get_history=c.GetHistory(world=past)).history.generations), 2)
         viewer.call(get_organism=c.GetOrganism(world=past, organism=3))
-        told = viewer.call(get_population=c.GetPopulation(world=past)).population
-        self.assertEqual((told.generation, told.generation_tick, len(told.parents)), (2, 1, 8 * told.organism_count))
+        reported = viewer.call(get_population=c.GetPopulation(world=past)).population
+        self.assertEqual((reported.generation, reported.generation_tick, len(reported.parents)), (2, 1, 8 * reported.organism_count))
         viewer.call(seek=c.Seek(world=past, to=at(tick=421)))  # where the run is
         for name, request in (("population", {"get_population": c.GetPopulation}), ("motion", {"get_motion": c.GetMotion})):
             then, now = (getattr(viewer.call(**{key: kind(world=world) for key, kind in request.items()}), name)
                          for world in (past, "w"))
             if name == "population":
-                self.assertEqual(len(then.founders), 4 * now.organism_count, "families are told apart in the past too")
+                self.assertEqual(len(then.founders), 4 * now.organism_count, "families are reported apart in the past too")
             else:  # as high as it was when contacts were last looked for afresh
                 then.ClearField("cell_px")
                 now.ClearField("cell_px")
             self.assertEqual(then, now, "to the last bit")
 
-    def test_what_has_been_cannot_be_changed(self):
+    def test_a_replay_cannot_be_changed(self):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w")).world.name
         for request in ({"set_parameters": plain.set_parameters(past, food_health=3.0)},
@@ -174,7 +174,7 @@ class OpenReplay(Case):
         self.assertEqual(count(), entries + 1)
         journal.close()
 
-    def test_looks_belong_to_their_session(self):
+    def test_replays_belong_to_their_session(self):
         with Client(self.served) as viewer:
             names = [viewer.call(open_replay=c.OpenReplay(world="w")).world.name for _ in range(4)]
             self.assertEqual(len(set(names)), 4)
@@ -190,7 +190,7 @@ class OpenReplay(Case):
         gone = lambda: asked().status.code == c.CODE_NOT_FOUND
         plain.until(gone, "the session's looks are closed")
 
-    def test_the_run_may_end_meanwhile(self):
+    def test_the_run_may_end_during_a_replay(self):
         viewer = self.client(self.served)
         past = viewer.call(open_replay=c.OpenReplay(world="w", at=at(tick=10))).world
         self.live.call(reset_world=c.ResetWorld(world="w", seed=99))
@@ -199,7 +199,7 @@ class OpenReplay(Case):
         self.live.call(delete_world=c.DeleteWorld(world="w"))
         self.assertEqual(viewer.call(seek=c.Seek(world=past.name, to=at(tick=120))).world.state_hash, self.hashes[120])
 
-    def test_a_server_that_keeps_nothing_says_so(self):
+    def test_a_server_without_recording_refuses(self):
         viewer = self.client(self.server("--keep-nothing"))
         refused = viewer.call(c.CODE_FAILED_PRECONDITION, open_replay=c.OpenReplay())
         self.assertIn("keeps no runs", refused.status.message)
@@ -218,7 +218,7 @@ class Fork(Case):
         for tick in (tick for tick in ticks if tick >= begun):
             self.assertEqual(client.run_to(tick, name).state_hash, self.hashes[tick], tick)
 
-    def test_a_fork_lives_as_its_origin_until_something_is_changed(self):
+    def test_a_fork_equals_its_origin_until_a_change(self):
         forked = self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=2)).world
         self.assertEqual((forked.name, forked.generation, forked.tick, forked.state), ("f", 2, 120, w.RUN_STATE_WAITING))
         self.assertEqual(forked.seed, 3)
@@ -227,11 +227,11 @@ class Fork(Case):
         self.assertNotEqual(self.live.run_to(421, "f").state_hash, self.hashes[421])
         self.assertEqual(self.live.world("w").state_hash, self.hashes[421])
 
-    def test_of_the_generation_that_runs(self):
+    def test_a_fork_of_the_current_generation(self):
         self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=4))
         self.lives_as_its_origin(self.live, "f")
 
-    def test_a_fork_is_kept_and_needs_no_other_file(self):
+    def test_a_fork_is_recorded_in_a_file_of_its_own(self):
         self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=3))
         tick = self.live.run_to(400, "f")
         known = lambda client: (client.call(get_history=c.GetHistory(world="f", first_generation=1)).history,
@@ -253,7 +253,7 @@ class Fork(Case):
         verified = waiting.run([EVOD, "verify", f"{self.folder}/f.evod"], capture_output=True, text=True)
         self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
-    def test_from_now(self):
+    def test_a_fork_from_the_current_tick(self):
         """In the middle of a generation, where one is over, and before the first tick."""
         self.live.call(create_world=c.CreateWorld(name="x", seed=5, parameters=plain.assignments(**CREATE)))
         self.live.call(set_speed=c.SetSpeed(world="x", speed=w.Speed(max=True)))
@@ -280,7 +280,7 @@ class Fork(Case):
             verified = waiting.run([EVOD, "verify", f"{self.folder}/now-{tick}.evod"], capture_output=True, text=True)
             self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
 
-    def test_everybody_is_told_of_a_new_world(self):
+    def test_all_clients_learn_of_a_new_world(self):
         watcher = self.client(self.served)
         watcher.call(subscribe_events=c.SubscribeEvents())
         self.live.call(fork_world=c.ForkWorld(world="w", name="f", at_generation=2))
@@ -288,7 +288,7 @@ class Fork(Case):
         self.assertEqual((event.world, event.tick, event.world_created.world.generation), ("f", 120, 2))
         self.assertEqual(event.world_created.by.client, "plain")
 
-    def test_a_repeated_fork_is_made_once(self):
+    def test_a_repeated_fork_is_executed_once(self):
         request = {"request_id": 1000, "client_key": "key",
                    "fork_world": c.ForkWorld(world="w", name="f", at_generation=2)}
         first = self.live.call(**request)
@@ -305,7 +305,7 @@ class Fork(Case):
         self.assertEqual((missing.field, missing.allowed), ("fork_world.at_generation", "1 to 4"))
         refused(c.CODE_NOT_FOUND, world="nowhere", name="f")
 
-    def test_a_past_can_be_forked(self):
+    def test_a_replay_can_be_forked(self):
         past = self.live.call(open_replay=c.OpenReplay(world="w", at=at(generation=3))).world.name
         self.live.call(fork_world=c.ForkWorld(world=past, name="f", at_generation=3))
         self.lives_as_its_origin(self.live, "f", [250])
@@ -344,7 +344,7 @@ class Replay(Case):
         served.end()
         self.assertEqual(pathlib.Path(self.run_file).read_bytes(), before)
 
-    def test_evoctl_takes_it_to_another_moment(self):
+    def test_evoctl_seeks(self):
         served = self.server("replay", self.run_file)
         run = lambda *words: waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, *words],
                                          capture_output=True, text=True)
@@ -353,7 +353,7 @@ class Replay(Case):
         self.assertEqual(self.client(served).world().state_hash, self.hashes[250])
         self.assertNotEqual(run("seek", "--tick", "422").returncode, 0)
 
-    def test_evoctl_waits_no_longer_than_there_is_something_to_see(self):
+    def test_evoctl_waits_until_the_end_of_the_replay(self):
         served = self.server("replay", self.run_file, "--generation", "2")
         run = lambda *words: waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, *words],
                                          capture_output=True, text=True)
@@ -372,7 +372,7 @@ class Replay(Case):
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, "stopped before its goal: .*" + end)
 
-    def test_evoctl_says_that_its_forks_are_not_kept(self):
+    def test_evoctl_says_that_forks_are_not_recorded(self):
         served = self.server("replay", self.run_file)
         done = waiting.run([EVOCTL, "--server", f"127.0.0.1:{served.port}", *waiting.PATIENT, "fork", "w",
                             "--at-generation", "2", "--name", "mine"], capture_output=True, text=True)
@@ -381,7 +381,7 @@ class Replay(Case):
         self.assertIn("it is not kept", done.stdout)
         self.assertIn("`evod fork`", done.stdout)
 
-    def test_what_is_no_run_file_is_named(self):
+    def test_other_files_are_refused(self):
         for path, words in ((f"{self.folder}/nothing.evod", "no such file"), (__file__, "not"), (self.folder, "folder")):
             done = waiting.run([EVOD, "replay", path], capture_output=True, text=True)
             self.assertEqual(done.returncode, 1)

@@ -42,7 +42,7 @@ class Schedules(access.Access):
     def parameters(self, client, world):
         return client.call(get_parameters=c.GetParameters(world=world)).parameters
 
-    def test_a_run_without_a_network_is_that_of_a_server_which_is_killed_in_between(self):
+    def test_evod_run_equals_a_server_killed_in_between(self):
         alone = state_of(evod("run", self.file, "--generations", "7"))
         self.assertNotEqual(alone, state_of(evod("run", self.file, "--generations", "7", "--set", "mutation_chance=0.5")))
         self.assertEqual(alone, state_of(evod("run", self.file, "--generations", "7", "--threads", "3")))
@@ -81,7 +81,7 @@ class Schedules(access.Access):
         self.assertEqual(refused.returncode, 1)
         self.assertIn("other schedule of parameters", refused.stdout + refused.stderr)
 
-    def test_evoctl_creates_worlds_with_it_and_what_is_typed_takes_its_place(self):
+    def test_evoctl_create_set_overrides_the_schedule(self):
         server = self.serve("--speed", "max")
         self.evoctl("create", "first", "--experiment", self.file, server=server)
         self.evoctl("create", "second", "--experiment", self.file, "--set", "food_health=9", server=server)
@@ -94,7 +94,7 @@ class Schedules(access.Access):
         alone = evod("run", self.file, "--generations", "6", "--set", "food_health=9")
         self.assertEqual(self.ended(client, "second", 6).state_hash, state_of(alone))
 
-    def test_what_no_longer_fits_is_told_and_left_out(self):
+    def test_a_change_that_no_longer_fits_is_dropped(self):
         server = self.serve("--speed", "max")
         client = self.come(server)
         real = lambda name, value, generation: plain.w.ScheduledValue(name=name, generation=generation,
@@ -119,7 +119,7 @@ class Schedules(access.Access):
         values = {x.name: x.value.real for x in self.parameters(client, "w").parameters}
         self.assertEqual(values["mutation_chance"], 0.15)
 
-    def test_files_that_cannot_be_are_refused_with_generation_and_line(self):
+    def test_invalid_files_name_generation_and_line(self):
         wrong = pathlib.Path(self.folder) / "wrong.json"
         wrong.write_text('{\n"impulse_max": {\n  "7": 90},\n"impulse_min": 95\n}')
         self.assertIn("impulse_max at generation 7 (line 3): got 90, allowed at least impulse_min (95)",
@@ -145,7 +145,7 @@ class Planned(access.Access):
         parameters = client.call(get_parameters=c.GetParameters(world="default")).parameters.parameters
         return next(x.value.real for x in parameters if x.name == name)
 
-    def test_what_was_answered_is_made_after_a_kill_too(self):
+    def test_acknowledged_changes_survive_a_kill(self):
         server = self.serve("--seed", "3", "--speed", "max")
         client = self.come(server)
         self.assertIn("planned_changes", client.welcome.features)
@@ -185,7 +185,7 @@ class Planned(access.Access):
         self.assertEqual(waiting.ended(server.process), 0)
         evod("verify", f"{self.folder}/default.evod")
 
-    def test_wrong_moments_and_ids_are_named(self):
+    def test_wrong_ticks_and_ids_are_named(self):
         client = self.come(self.serve("--seed", "3"))
         for at, field, allowed in (({"at_tick": 0}, "at_tick", "at least 1"), ({"at_generation": 1}, "at_generation", "at least 2"),
                                    ({"at_generation": 0}, "at_generation", "at least 2"),
@@ -200,14 +200,14 @@ class Planned(access.Access):
             self.plan(client, at_tick=7)
         self.plan(client, 8, at_tick=7)
 
-    def test_evoctl_plans_tells_and_cancels(self):
+    def test_evoctl_plans_lists_and_cancels(self):
         server = self.serve("--seed", "3")
         self.assertEqual(self.evoctl("changes", server=server), "nothing is planned\n")
         self.assertRegex(self.evoctl("set", "--at-generation", "30", "mutation_chance=0.01", server=server),
                          r"^planned: change 1, from generation 30: mutation_chance=0.01, by evoctl .*\n$")
         self.evoctl("set", "--at-tick", "9", "food_health=3", "food_count=1", server=server)
-        told = self.evoctl("changes", server=server)
-        self.assertRegex(told, r"^change 1, from .*\nchange 2, after tick 9: food_health=3 food_count=1, by .*\n$")
+        reported = self.evoctl("changes", server=server)
+        self.assertRegex(reported, r"^change 1, from .*\nchange 2, after tick 9: food_health=3 food_count=1, by .*\n$")
         self.assertIn("cancelled: change 1,", self.evoctl("cancel", "1", server=server))
         self.assertIn("no change waits", self.evoctl("cancel", "1", server=server, status=1))
         self.assertIn("at least 2", self.evoctl("set", "--at-generation", "1", "food_health=3", server=server, status=2))

@@ -24,7 +24,7 @@ bool is_connected(const Connection& connection) {
     return connection.status().state == State::Connected;
 }
 
-TEST(Connection, SaysHelloAndShowsTheWelcome) {
+TEST(Connection, SendsHelloAndShowsTheWelcome) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession session = server.accept();
@@ -41,7 +41,7 @@ TEST(Connection, SaysHelloAndShowsTheWelcome) {
     EXPECT_EQ(connection.status().state, State::Connected);
 }
 
-TEST(Connection, SaysWhatToDoWhereThereIsNoServer) {
+TEST(Connection, WithoutAServerSaysHowToStartOne) {
     FakeServer server;
     const Options options = server.options();
     server.stop_listening();
@@ -68,7 +68,7 @@ TEST(Connection, AnotherProtocolVersionIsFinal) {
     EXPECT_FALSE(connection.request(run_request(1))) << "and what is asked afterwards fails at once";
 }
 
-TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsOnlyFull) {
+TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsFull) {
     FakeServer server;
     Connection connection{server.options()};
     {
@@ -84,7 +84,7 @@ TEST(Connection, ARefusedHelloIsFinalUnlessTheServerIsOnlyFull) {
     EXPECT_THAT(connection.status().reason, HasSubstr("INVALID_ARGUMENT: the client name is too long"));
 }
 
-TEST(Connection, SomethingElseThanAServerIsNamed) {
+TEST(Connection, APeerThatIsNoServerIsReported) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession session = server.accept();
@@ -94,7 +94,7 @@ TEST(Connection, SomethingElseThanAServerIsNamed) {
     EXPECT_THAT(welcome.error().what, HasSubstr("is not an evod server"));
 }
 
-TEST(Connection, GivesUpWaitingForAWelcome) {
+TEST(Connection, AWelcomeThatDoesNotComeTimesOut) {
     FakeServer server;
     Options options = server.options();
     options.connect_timeout = 20ms;
@@ -123,7 +123,7 @@ TEST(Requests, AreNumberedInOrderUnderOneKey) {
     }
 }
 
-TEST(Requests, FindTheirAnswersInAnyOrder) {
+TEST(Requests, AreMatchedWithRepliesInAnyOrder) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession session = server.accept_and_welcome();
@@ -158,7 +158,7 @@ TEST(Requests, AreSentAgainWithTheSameNumberAfterALoss) {
     EXPECT_EQ(connection.status().connected_count, 2U);
 }
 
-TEST(Requests, MadeWithoutAConnectionWaitForOne) {
+TEST(Requests, WaitForAConnection) {
     FakeServer server;
     Connection connection{server.options()};
     auto response = connection.send(run_request(7));
@@ -167,7 +167,7 @@ TEST(Requests, MadeWithoutAConnectionWaitForOne) {
     EXPECT_EQ(response.get()->applied_tick(), 7U);
 }
 
-TEST(Requests, TimeOutAndALateAnswerIsIgnored) {
+TEST(Requests, TimeOutAndALateReplyIsIgnored) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession session = server.accept_and_welcome(1); // one request at a time
@@ -182,7 +182,7 @@ TEST(Requests, TimeOutAndALateAnswerIsIgnored) {
     EXPECT_EQ(next.get()->applied_tick(), 2U) << "the late answer has made room";
 }
 
-TEST(Requests, KeepToTheServersLimitOfUnansweredOnes) {
+TEST(Requests, StayWithinTheServersLimitOfUnanswered) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession session = server.accept_and_welcome(2);
@@ -209,7 +209,7 @@ TEST(Requests, KeepToTheServersLimitOfUnansweredOnes) {
     }
 }
 
-TEST(Requests, TooLongForTheServerAreNotSent) {
+TEST(Requests, ThatAreTooLongAreNotSent) {
     FakeServer server;
     Connection connection{server.options()};
     v1::Request request;
@@ -229,7 +229,7 @@ TEST(Requests, AreAllAnsweredWhenTheConnectionIsDestroyed) {
     EXPECT_EQ(response.get().error().kind, Error::Kind::Closed);
 }
 
-TEST(Requests, EndWithTheConnectionWhereReconnectingIsOff) {
+TEST(Requests, EndWithTheConnectionWithoutReconnect) {
     FakeServer server;
     Options options = server.options();
     options.reconnect = false;
@@ -257,7 +257,7 @@ TEST(Reconnection, FollowsDamagedFrames) {
     EXPECT_TRUE(wait_until([&] { return is_connected(connection); }));
 }
 
-TEST(Reconnection, FollowsAMessageThatIsNoMessage) {
+TEST(Reconnection, FollowsAnInvalidMessage) {
     FakeServer server;
     Connection connection{server.options()};
     FakeSession first = server.accept_and_welcome();
@@ -266,7 +266,7 @@ TEST(Reconnection, FollowsAMessageThatIsNoMessage) {
     EXPECT_TRUE(wait_until([&] { return connection.status().connected_count == 2; }));
 }
 
-TEST(Reconnection, TellsTheServersLastWord) {
+TEST(Reconnection, ShowsTheServersLastRefusal) {
     FakeServer server;
     Connection connection{server.options()};
     {
@@ -303,7 +303,7 @@ TEST(Reconnection, DoesNotFollowARevokedToken) {
     EXPECT_EQ(status.refusal->message(), "the token has been revoked");
 }
 
-TEST(Subscriptions, AreAskedForInTurnAtFirstAndAheadOfTheRestAfterALoss) {
+TEST(Subscriptions, PrecedeOtherRequestsAfterALoss) {
     FakeServer server;
     Connection connection{server.options()};
     v1::Request create;
@@ -334,10 +334,10 @@ TEST(Subscriptions, AreAskedForInTurnAtFirstAndAheadOfTheRestAfterALoss) {
     EXPECT_TRUE(session.read_request().has_subscribe_events());
     session.answer(session.read_request(), 5);
     EXPECT_EQ(ran.get()->applied_tick(), 5U);
-    session.send_picture(8, 0, 99);
-    std::shared_ptr<const codec::DecodedSnapshot> picture;
-    EXPECT_TRUE(wait_until([&] { return (picture = connection.take_snapshot(handle)) != nullptr; }));
-    EXPECT_EQ(picture->about.tick(), 99U) << "the handle outlives the session";
+    session.send_snapshot(8, 0, 99);
+    std::shared_ptr<const codec::DecodedSnapshot> snapshot;
+    EXPECT_TRUE(wait_until([&] { return (snapshot = connection.take_snapshot(handle)) != nullptr; }));
+    EXPECT_EQ(snapshot->about.tick(), 99U) << "the handle outlives the session";
 }
 
 TEST(Subscriptions, ARefusalIsShown) {
@@ -352,7 +352,7 @@ TEST(Subscriptions, ARefusalIsShown) {
     EXPECT_EQ(to_text(answer->status()), "NOT_FOUND: there is no world 'x'");
 }
 
-TEST(Subscriptions, OneThatWasLetGoBeforeItsAnswerIsUndone) {
+TEST(Subscriptions, CancelledBeforeTheReplyIsUnsubscribed) {
     FakeServer server;
     Connection connection{server.options()};
     const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
@@ -366,28 +366,28 @@ TEST(Subscriptions, OneThatWasLetGoBeforeItsAnswerIsUndone) {
     EXPECT_EQ(session.read_request().unsubscribe().subscription_id(), 3U);
 }
 
-TEST(Pictures, OnlyTheNewestOfEachIslandIsKept) {
+TEST(Snapshots, OnlyTheNewestOfEachIslandIsKept) {
     FakeServer server;
     Connection connection{server.options()};
     const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
     for (const std::uint64_t tick : {10, 20, 30}) {
-        session.send_picture(1, 0, tick);
-        session.send_picture(1, 2, tick + 1);
+        session.send_snapshot(1, 0, tick);
+        session.send_snapshot(1, 2, tick + 1);
     }
-    session.send_picture(77, 0, 40); // of a subscription that nobody made
-    session.send_event(1);           // comes after all of them
+    session.send_snapshot(77, 0, 40); // of a subscription that does not exist
+    session.send_event(1);            // comes after all of them
     ASSERT_TRUE(connection.wait_event(hang));
-    const auto pictures = connection.take_snapshots(handle);
-    ASSERT_EQ(pictures.size(), 2U);
-    EXPECT_EQ(pictures[0]->about.tick(), 30U);
-    EXPECT_EQ(pictures[1]->about.tick(), 31U);
-    EXPECT_EQ(pictures[1]->about.island(), 2U);
+    const auto snapshots = connection.take_snapshots(handle);
+    ASSERT_EQ(snapshots.size(), 2U);
+    EXPECT_EQ(snapshots[0]->about.tick(), 30U);
+    EXPECT_EQ(snapshots[1]->about.tick(), 31U);
+    EXPECT_EQ(snapshots[1]->about.island(), 2U);
     EXPECT_FALSE(connection.take_snapshot(handle, 0)) << "taken is taken";
 }
 
-TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
+TEST(Snapshots, ADamagedOneIsCountedAndDropped) {
     FakeServer server;
     Connection connection{server.options()};
     const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
@@ -410,7 +410,7 @@ TEST(Pictures, ADamagedOneIsCountedAndThrownAway) {
 }
 
 /// A server's end of a chain of deltas: one organism that goes to the right.
-class WalkingPictures {
+class MovingSnapshots {
   public:
     v1::SnapshotFrame keyframe() { return next(false); }
     v1::SnapshotFrame delta() { return next(true); }
@@ -447,19 +447,19 @@ class WalkingPictures {
     std::uint64_t sequence_ = 0;
 };
 
-std::shared_ptr<const codec::DecodedSnapshot> picture_of_tick(Connection& connection, SubscriptionHandle handle,
-                                                              std::uint64_t tick) {
-    std::shared_ptr<const codec::DecodedSnapshot> picture;
+std::shared_ptr<const codec::DecodedSnapshot> snapshot_of_tick(Connection& connection, SubscriptionHandle handle,
+                                                               std::uint64_t tick) {
+    std::shared_ptr<const codec::DecodedSnapshot> snapshot;
     EXPECT_TRUE(wait_until([&] {
         if (auto newest = connection.take_snapshot(handle)) {
-            picture = std::move(newest);
+            snapshot = std::move(newest);
         }
-        return picture && picture->about.tick() == tick;
+        return snapshot && snapshot->about.tick() == tick;
     }));
-    return picture;
+    return snapshot;
 }
 
-TEST(Pictures, AreAskedForInTheFewestBytesUnlessACodecIsChosen) {
+TEST(Snapshots, UseTheMostCompactCodecByDefault) {
     FakeServer server;
     Connection connection{server.options()};
     connection.subscribe(v1::SubscribeSnapshots{});
@@ -476,64 +476,64 @@ TEST(Pictures, AreAskedForInTheFewestBytesUnlessACodecIsChosen) {
     EXPECT_FALSE(second.has_unacknowledged_max());
 }
 
-TEST(Pictures, DeltasAreDecodedAndAcknowledged) {
+TEST(Snapshots, DeltasAreDecodedAndAcknowledged) {
     FakeServer server;
     Connection connection{server.options()};
     const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
-    WalkingPictures pictures;
+    MovingSnapshots snapshots;
     for (std::uint64_t sequence = 1; sequence <= 3; ++sequence) {
-        session.send(sequence == 1 ? pictures.keyframe() : pictures.delta());
+        session.send(sequence == 1 ? snapshots.keyframe() : snapshots.delta());
         const auto message = session.read();
         EXPECT_EQ(message.acknowledge_snapshot().subscription_id(), 1U);
         EXPECT_EQ(message.acknowledge_snapshot().sequence(), sequence);
-        const auto picture = picture_of_tick(connection, handle, sequence);
-        ASSERT_TRUE(picture);
-        EXPECT_EQ(picture->organisms.x_px, std::vector<float>{static_cast<float>(sequence - 1)});
-        EXPECT_EQ(picture->about.width_px(), 100) << "of the keyframe";
+        const auto snapshot = snapshot_of_tick(connection, handle, sequence);
+        ASSERT_TRUE(snapshot);
+        EXPECT_EQ(snapshot->organisms.x_px, std::vector<float>{static_cast<float>(sequence - 1)});
+        EXPECT_EQ(snapshot->about.width_px(), 100) << "of the keyframe";
     }
 }
 
-TEST(Pictures, ADamagedDeltaIsMendedByAKeyframeThatIsAskedFor) {
+TEST(Snapshots, ADamagedDeltaRequestsAKeyframe) {
     FakeServer server;
     Connection connection{server.options()};
     const SubscriptionHandle handle = connection.subscribe(v1::SubscribeSnapshots{});
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
-    WalkingPictures pictures;
-    session.send(pictures.keyframe());
+    MovingSnapshots snapshots;
+    session.send(snapshots.keyframe());
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    auto damaged = pictures.delta();
+    auto damaged = snapshots.delta();
     damaged.mutable_body()->back() ^= 1;
     session.send(damaged);
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
     const v1::Request request = session.read_request();
     EXPECT_EQ(request.request_keyframe().subscription_id(), 1U);
-    session.send(pictures.delta()); // on its way before the request came
+    session.send(snapshots.delta()); // on its way before the request came
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
     session.answer(request);
-    session.send(pictures.keyframe());
+    session.send(snapshots.keyframe());
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    session.send(pictures.delta());
-    const auto picture = picture_of_tick(connection, handle, 5);
-    ASSERT_TRUE(picture);
-    EXPECT_EQ(picture->organisms.x_px, std::vector<float>{4.F});
+    session.send(snapshots.delta());
+    const auto snapshot = snapshot_of_tick(connection, handle, 5);
+    ASSERT_TRUE(snapshot);
+    EXPECT_EQ(snapshot->organisms.x_px, std::vector<float>{4.F});
     const ConnectionStatus status = connection.status();
     EXPECT_EQ(status.damaged_snapshot_count, 1U);
     EXPECT_THAT(status.last_damage, HasSubstr("checksum"));
     EXPECT_EQ(status.keyframe_request_count, 1U);
 }
 
-TEST(Pictures, AServerWhoseKeyframesAreDamagedIsNotAskedForEver) {
+TEST(Snapshots, DamagedKeyframesEndTheKeyframeRequests) {
     FakeServer server;
     Connection connection{server.options()};
     connection.subscribe(v1::SubscribeSnapshots{});
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
-    WalkingPictures pictures;
+    MovingSnapshots snapshots;
     for (int i = 0; i < 20; ++i) {
-        auto damaged = pictures.keyframe();
+        auto damaged = snapshots.keyframe();
         damaged.mutable_body()->back() ^= 1;
         session.send(damaged);
     }
@@ -549,7 +549,7 @@ v1::View view_of(double left_px) {
     return view;
 }
 
-TEST(Views, AreAskedForChangedAndAskedForAgain) {
+TEST(Views, AreRequestedChangedAndRenewed) {
     FakeServer server;
     Connection connection{server.options()};
     v1::SubscribeSnapshots subscribe;
@@ -575,8 +575,8 @@ TEST(Views, AreAskedForChangedAndAskedForAgain) {
     EXPECT_EQ(again.read_request().subscribe_snapshots().view().region().left_px(), 3);
 }
 
-/// A picture of one tile, with two organisms in it.
-v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequence) {
+/// A snapshot of one tile, with two organisms in it.
+v1::SnapshotFrame tile_snapshot(std::uint64_t sequence, std::uint64_t base_sequence) {
     const auto scene = std::make_shared<const codec::QuantisedSnapshot>(codec::QuantisedSnapshot{
         .organisms = {.id = {5, 6}, .x = {16, 16}, .y = {16, 16}, .width = {16, 16}, .height = {16, 16}}});
     v1::SnapshotFrame frame;
@@ -599,12 +599,13 @@ v1::SnapshotFrame tile_picture(std::uint64_t sequence, std::uint64_t base_sequen
     standing.snapshot = tiled.full(0);
     const std::vector<std::uint32_t> still(2);
     standing.organisms = {still, still};
-    tile.set_body(base_sequence ? codec::encode_delta(standing, standing.snapshot, 1) : codec::encode_keyframe(standing));
+    tile.set_body(base_sequence ? codec::encode_delta(standing, standing.snapshot, 1)
+                                : codec::encode_keyframe(standing));
     tile.set_checksum(codec::checksum_of(frame.tile_px(), frame.position_bytes(), tile, tile.body()));
     return frame;
 }
 
-TEST(Views, ADamagedTileIsMendedByAKeyframeThatIsAskedFor) {
+TEST(Views, ADamagedTileRequestsAKeyframe) {
     FakeServer server;
     Connection connection{server.options()};
     v1::SubscribeSnapshots subscribe;
@@ -612,28 +613,28 @@ TEST(Views, ADamagedTileIsMendedByAKeyframeThatIsAskedFor) {
     const SubscriptionHandle handle = connection.subscribe(subscribe);
     FakeSession session = server.accept_and_welcome();
     session.answer_subscription(session.read_request(), 1);
-    session.send(tile_picture(1, 0));
+    session.send(tile_snapshot(1, 0));
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    const auto first = picture_of_tick(connection, handle, 1);
+    const auto first = snapshot_of_tick(connection, handle, 1);
     ASSERT_TRUE(first);
     EXPECT_EQ(first->organisms.id, (std::vector<std::uint32_t>{5, 6}));
     EXPECT_EQ(first->tiles.size(), 1U);
-    auto damaged = tile_picture(2, 1);
+    auto damaged = tile_snapshot(2, 1);
     damaged.mutable_tiles(0)->mutable_body()->back() ^= 1;
     session.send(damaged);
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
     EXPECT_EQ(session.read_request().request_keyframe().subscription_id(), 1U);
-    session.send(tile_picture(3, 2)); // on its way before the request came
+    session.send(tile_snapshot(3, 2)); // on its way before the request came
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    session.send(tile_picture(4, 0));
+    session.send(tile_snapshot(4, 0));
     EXPECT_TRUE(session.read().has_acknowledge_snapshot());
-    session.send(tile_picture(5, 4));
-    EXPECT_TRUE(picture_of_tick(connection, handle, 5));
+    session.send(tile_snapshot(5, 4));
+    EXPECT_TRUE(snapshot_of_tick(connection, handle, 5));
     EXPECT_EQ(connection.status().damaged_snapshot_count, 1U);
     EXPECT_EQ(connection.status().keyframe_request_count, 1U);
 }
 
-TEST(Events, ComeInOrderAndALossIsTold) {
+TEST(Events, ComeInOrderAndALossIsReported) {
     FakeServer server;
     Options options = server.options();
     options.events_kept = 3;

@@ -78,7 +78,7 @@ class FakeSession {
         message.mutable_event()->set_tick(tick);
         send(message);
     }
-    void send_picture(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t tick) {
+    void send_snapshot(std::uint32_t subscription_id, std::uint32_t island, std::uint64_t tick) {
         v1::SnapshotFrame frame;
         frame.set_width_px(100);
         frame.set_height_px(100);

@@ -61,7 +61,7 @@ TEST(HistoryCsv, ReadsBackEveryDigit) {
     EXPECT_THAT(read->rows, ElementsAre(history_numbers(statistics_of(2, 0)), history_numbers(statistics_of(2, 1))));
 }
 
-TEST(HistoryCsv, WhereThereIsNoAccountCellsAreEmptyAndOlderFilesHaveNone) {
+TEST(HistoryCsv, SelectionColumnsMayBeEmptyOrMissing) {
     const std::string text = csv({statistics_of(1, 0), statistics_of(2, 0)});
     EXPECT_THAT(text, HasSubstr(",,,,,,,,\n2,0,"));
     const auto is_unknown = [](const auto& row) {
@@ -90,7 +90,7 @@ TEST(HistoryCsv, WhereThereIsNoAccountCellsAreEmptyAndOlderFilesHaveNone) {
     EXPECT_EQ(is_unknown(read->rows[1]), 8);
 }
 
-TEST(HistoryCsv, TakesColumnsInAnyOrderAndPassesOverOthers) {
+TEST(HistoryCsv, TakesColumnsInAnyOrderAndIgnoresOthers) {
     std::string text = csv({statistics_of(4, 2)});
     const std::size_t line = text.find('\n') + 1;
     text = "\xef\xbb\xbf\"note\"," + text.substr(0, line - 1) + "\r\nhello," +
@@ -100,7 +100,7 @@ TEST(HistoryCsv, TakesColumnsInAnyOrderAndPassesOverOthers) {
     EXPECT_THAT(read->rows, ElementsAre(history_numbers(statistics_of(4, 2))));
 }
 
-TEST(HistoryCsv, TellsWhatIsWrongAndWhere) {
+TEST(HistoryCsv, NamesTheErrorAndItsLine) {
     EXPECT_THAT(error_of(""), HasSubstr("line 1: there is no column generation"));
     EXPECT_THAT(error_of("generation,island\n1,0\n"), HasSubstr("line 1: there is no column end_tick"));
     const std::string good = csv({statistics_of(1, 0)});

@@ -12,26 +12,26 @@ struct Stand {
     float x, y;
 };
 
-std::shared_ptr<codec::DecodedSnapshot> picture(std::uint64_t tick, std::initializer_list<Stand> organisms) {
-    auto picture = std::make_shared<codec::DecodedSnapshot>();
-    picture->about.set_tick(tick);
-    picture->about.set_generation(1);
-    picture->about.set_simulated_s(static_cast<double>(tick) / 60);
+std::shared_ptr<codec::DecodedSnapshot> snapshot(std::uint64_t tick, std::initializer_list<Stand> organisms) {
+    auto snapshot = std::make_shared<codec::DecodedSnapshot>();
+    snapshot->about.set_tick(tick);
+    snapshot->about.set_generation(1);
+    snapshot->about.set_simulated_s(static_cast<double>(tick) / 60);
     for (const Stand& stand : organisms) {
-        picture->organisms.id.push_back(stand.id);
-        picture->organisms.x_px.push_back(stand.x);
-        picture->organisms.y_px.push_back(stand.y);
+        snapshot->organisms.id.push_back(stand.id);
+        snapshot->organisms.x_px.push_back(stand.x);
+        snapshot->organisms.y_px.push_back(stand.y);
     }
-    return picture;
+    return snapshot;
 }
 
 const WorldView::Clock::time_point start{};
 
-TEST(WorldView, BlendsThoseThatBothPicturesShow) {
+TEST(WorldView, InterpolatesOrganismsInBothSnapshots) {
     WorldView view;
-    view.add(picture(10, {{1, 0, 0}, {2, 50, 50}, {4, 10, 20}}), start);
+    view.add(snapshot(10, {{1, 0, 0}, {2, 50, 50}, {4, 10, 20}}), start);
     // 2 has died, and 3 was not seen before.
-    view.add(picture(12, {{1, 4, 8}, {3, 70, 70}, {4, 20, 20}}), start + 40ms);
+    view.add(snapshot(12, {{1, 4, 8}, {3, 70, 70}, {4, 20, 20}}), start + 40ms);
     const double blend = view.blend_at(start + 50ms);
     EXPECT_DOUBLE_EQ(blend, 0.25);
     const auto& at = view.organisms_at(blend);
@@ -39,27 +39,27 @@ TEST(WorldView, BlendsThoseThatBothPicturesShow) {
     EXPECT_EQ(at.y_px, (std::vector<float>{2, 70, 20}));
 }
 
-TEST(WorldView, StandsStillAfterTheLatest) {
+TEST(WorldView, StaysAtTheLatest) {
     WorldView view;
-    view.add(picture(10, {{1, 0, 0}}), start);
-    view.add(picture(12, {{1, 4, 8}}), start + 40ms);
+    view.add(snapshot(10, {{1, 0, 0}}), start);
+    view.add(snapshot(12, {{1, 4, 8}}), start + 40ms);
     EXPECT_EQ(view.blend_at(start + 40ms), 0);
     EXPECT_EQ(view.blend_at(start + 10s), 1);
     EXPECT_EQ(view.organisms_at(1).x_px, (std::vector<float>{4}));
 }
 
-TEST(WorldView, AStepAfterALongPauseIsSeenAtOnce) {
+TEST(WorldView, AStepAfterALongPauseIsShownSoon) {
     WorldView view;
-    view.add(picture(10, {{1, 0, 0}}), start);
-    view.add(picture(11, {{1, 4, 8}}), start + 60s);
+    view.add(snapshot(10, {{1, 0, 0}}), start);
+    view.add(snapshot(11, {{1, 4, 8}}), start + 60s);
     EXPECT_EQ(view.blend_at(start + 60s + 250ms), 1);
 }
 
-TEST(WorldView, DoesNotBlendLivesOrLongLeaps) {
+TEST(WorldView, DoesNotInterpolateLivesOrLongLeaps) {
     const auto alone_after = [](const auto& change) {
         WorldView view;
-        view.add(picture(10, {{1, 0, 0}}), start);
-        auto next = picture(12, {{1, 4, 8}});
+        view.add(snapshot(10, {{1, 0, 0}}), start);
+        auto next = snapshot(12, {{1, 4, 8}});
         change(next->about);
         view.add(next, start + 40ms);
         EXPECT_EQ(view.organisms_at(view.blend_at(start + 41ms)).x_px.size(), 1U);
@@ -74,19 +74,19 @@ TEST(WorldView, DoesNotBlendLivesOrLongLeaps) {
     EXPECT_TRUE(alone_after([](auto& about) { about.set_simulated_s(2.5); }));
 }
 
-TEST(WorldView, MoreOfTheSameTickTakesThePlaceOfTheLatest) {
+TEST(WorldView, ASnapshotOfTheSameTickReplacesTheLatest) {
     WorldView view;
-    view.add(picture(10, {{1, 0, 0}, {2, 0, 0}}), start);
-    view.add(picture(12, {{1, 4, 8}}), start + 40ms);
-    view.add(picture(12, {{1, 4, 8}, {2, 8, 8}, {3, 5, 5}}), start + 50ms); // another region was asked for
+    view.add(snapshot(10, {{1, 0, 0}, {2, 0, 0}}), start);
+    view.add(snapshot(12, {{1, 4, 8}}), start + 40ms);
+    view.add(snapshot(12, {{1, 4, 8}, {2, 8, 8}, {3, 5, 5}}), start + 50ms); // another region was asked for
     const double blend = view.blend_at(start + 60ms);
     EXPECT_DOUBLE_EQ(blend, 0.5);
     EXPECT_EQ(view.organisms_at(blend).x_px, (std::vector<float>{2, 4, 5}));
 }
 
-TEST(WorldView, BlendsTheCratesThatBothPicturesShow) {
+TEST(WorldView, InterpolatesCratesInBothSnapshots) {
     WorldView view;
-    auto first = picture(1, {}), second = picture(2, {});
+    auto first = snapshot(1, {}), second = snapshot(2, {});
     first->crates = {.x_px = {0, 10}, .y_px = {0, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}, .id = {3, 7}};
     // Another one is seen, and the first not any more.
     second->crates = {.x_px = {2, 20}, .y_px = {4, 0}, .half_width_px = {1, 1}, .half_height_px = {1, 1}, .id = {5, 7}};

@@ -11,7 +11,7 @@ namespace {
 
 namespace v1 = evod::v1;
 
-TEST(Json, HasNumbersAsFarAsTheyAreExact) {
+TEST(Json, WritesExactIntegersAsNumbers) {
     v1::Response response;
     response.set_request_id((std::uint64_t{1} << 53) - 1);
     response.set_applied_tick(std::uint64_t{1} << 53);
@@ -29,7 +29,7 @@ TEST(Json, HasNumbersAsFarAsTheyAreExact) {
     }
 }
 
-TEST(Json, HasNumbersInMessagesWithinRepeatedOnes) {
+TEST(Json, WritesNumbersInNestedRepeatedMessages) {
     v1::Statistics statistics;
     for (const std::uint64_t generation : {4, 5}) {
         statistics.add_last()->set_generation(generation);

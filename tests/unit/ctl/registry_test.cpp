@@ -36,7 +36,7 @@ std::string set(const std::string& word) {
     return assignments ? to_text(assignments->front().value()) : assignments.error().lines.front();
 }
 
-TEST(Assignments, TakeTheKindThatTheRegistrySays) {
+TEST(Assignments, TakeTheKindFromTheRegistry) {
     const auto assignments = small_registry().assignments(
         {"mutation_chance=1e-2", "population_size=1e6", "respawn=off", "selection=tournament"});
     ASSERT_TRUE(assignments);
@@ -47,7 +47,7 @@ TEST(Assignments, TakeTheKindThatTheRegistrySays) {
     EXPECT_EQ((*assignments)[3].value().choice(), "tournament");
 }
 
-TEST(Assignments, SayWhatIsWrongAndWhatWouldBeRight) {
+TEST(Assignments, NameTheErrorAndWhatIsAllowed) {
     EXPECT_EQ(set("mutation_chanse=1"), "there is no parameter 'mutation_chanse'; did you mean mutation_chance?");
     EXPECT_EQ(set("mutation_chance"), "'mutation_chance' has no value: write mutation_chance=VALUE, allowed 0 to 1");
     EXPECT_EQ(set("mutation_chance=high"), "mutation_chance: got 'high', allowed 0 to 1");
@@ -72,7 +72,7 @@ TEST(Assignments, LeaveRangesToTheServer) {
     EXPECT_EQ(set("mutation_chance=1.5"), "1.5");
 }
 
-TEST(ExperimentFile, HoldsParametersSeedAndDescription) {
+TEST(ExperimentFile, ContainsParametersSeedAndDescription) {
     const auto file = parse_experiment(
         R"({"description": "a test", "seed": 18446744073709551615, "mutation_chance": 1, "respawn": true,
             "selection": "tournament"})",
@@ -125,7 +125,7 @@ TEST(ExperimentFile, MayHaveValuesByGeneration) {
                 ElementsAre(HasSubstr("can only change when a world is reset")));
 }
 
-TEST(ExperimentFile, MistakesAreNamed) {
+TEST(ExperimentFile, ErrorsAreNamed) {
     const auto mistakes = [](std::string_view text) {
         const auto file = parse_experiment(text, small_registry());
         return file ? std::vector<std::string>{} : file.error().lines;

@@ -22,13 +22,13 @@ TEST(Sparkline, KeepsTheNewest) {
     EXPECT_EQ(sparkline(std::vector<double>{100, 0, 1}, 2), "▁█");
 }
 
-TEST(Sparkline, HasAnAnswerForNothingAndForNoDifference) {
+TEST(Sparkline, HandlesNoValuesAndEqualValues) {
     EXPECT_EQ(sparkline({}, 10), "");
     EXPECT_EQ(sparkline(std::vector<double>{3, 3}, 10), "▅▅");
     EXPECT_EQ(sparkline(std::vector<double>{3}, 0), "");
 }
 
-TEST(Visible, LeavesATerminalAsItIs) {
+TEST(Visible, RemovesControlCharacters) {
     EXPECT_EQ(visible("a\x1b[2Jb\r\a\x7f\tc\nd"), "a?[2Jb????c\nd");
     EXPECT_EQ(visible("\xc2\x9b"
                       "31m \xc2\xa0 \xc3\x9b µ 🦠"),
@@ -105,7 +105,7 @@ TEST(EditDistance, CountsSingleEdits) {
     EXPECT_EQ(edit_distance("selcetion", "selection"), 1U) << "neighbours swapped are one mistake";
 }
 
-TEST(Nearest, FindsWhatWasMeant) {
+TEST(Nearest, FindsTheIntendedName) {
     EXPECT_THAT(nearest("mutation_chanse", names), ElementsAre("mutation_chance"));
     EXPECT_THAT(nearest("survivor", names), ElementsAre("survivors", "mutate_survivors"));
     EXPECT_THAT(nearest("respwan", names), ElementsAre("respawn"));

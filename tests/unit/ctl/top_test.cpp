@@ -62,7 +62,7 @@ std::string top(const Metrics& before, const Metrics& after, std::size_t lines_m
     return top_text({before.metrics, after.metrics, 2}, "lab", 1000, lines_max);
 }
 
-TEST(Top, RatesAreWhatHasRisenInASecond) {
+TEST(Top, RatesAreIncreasesPerSecond) {
     Metrics before, after;
     before.add("evod_snapshots_sent_total", 100).add("evod_sent_bytes_total", 1024, "stream");
     after.add("evod_snapshots_sent_total", 220).add("evod_sent_bytes_total", 5120, "stream");
@@ -84,7 +84,7 @@ TEST(Top, ARestartedServerHasNoNegativeRates) {
     EXPECT_THAT(text, HasSubstr("1.0 ms")) << "the mean of its two ticks";
 }
 
-TEST(Top, TickTimesAreThoseBetweenTheLooks) {
+TEST(Top, TickTimesAreThoseBetweenMeasurements) {
     Metrics before, after;
     before.add_ticks("default", {1000, 0, 0, 0}, 0.5);
     after.add_ticks("default", {1000, 98, 1, 1}, 0.7).add("evod_ticks_per_second", 50, "default");
@@ -92,7 +92,7 @@ TEST(Top, TickTimesAreThoseBetweenTheLooks) {
     EXPECT_THAT(text, HasSubstr("default       50     2.0 ms  1.5 ms  5.0 ms")) << text;
 }
 
-TEST(Top, TicksBeyondTheLastBoundAreSaidToBe) {
+TEST(Top, TicksBeyondTheLastBoundAreMarked) {
     Metrics before, after;
     after.add_ticks("default", {0, 0, 0, 4}, 4).add("evod_ticks_per_second", 4, "default");
     EXPECT_THAT(top(before, after), HasSubstr("> 5.0 ms"));
@@ -129,7 +129,7 @@ TEST(Top, ListsTheLimitsThatWereReached) {
     EXPECT_THAT(top(before, after), HasSubstr("limits     sessions 3\n"));
 }
 
-TEST(Top, AServerThatKeepsNothingSaysSo) {
+TEST(Top, AServerWithoutRecordingIsNamed) {
     EXPECT_THAT(top({}, {}), HasSubstr("disk       runs are not recorded\n"));
     EXPECT_THAT(top({}, {}), HasSubstr("no worlds\n"));
 }
