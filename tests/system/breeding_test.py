@@ -97,9 +97,9 @@ class Breeding(export_test.Runs):
         self.assertEqual(self.breeding(client, island=1), reported[4, 1])
 
         # The same of the past, where the last is the one before what is shown; and of a file that is served again.
-        look = client.call(open_replay=c.OpenReplay(world="w", at=c.RunMoment(generation=3))).world.name
+        replay = client.call(open_replay=c.OpenReplay(world="w", at=c.RunMoment(generation=3))).world.name
         self.assertEqual(self.breeding(client, world=replay), reported[2, 0])
-        self.assertEqual(self.breeding(client, world=look, generation=4), reported[4, 0])
+        self.assertEqual(self.breeding(client, world=replay, generation=4), reported[4, 0])
         server.end()
         replayed = self.client(self.server("replay", f"{self.folder}/w.evod"))
         self.assertEqual(self.breeding(replayed, generation=1, island=1), reported[1, 1])
