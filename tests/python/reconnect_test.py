@@ -10,7 +10,7 @@ from evod.v1 import commands_pb2 as c
 from support import Relay, Server, until
 
 
-class Retries(unittest.TestCase):
+class Reconnect(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
