@@ -47,20 +47,20 @@ class Asynchronous(unittest.IsolatedAsyncioTestCase):
                 return [(await anext(snapshots)).tick for _ in range(20)]
 
             async with world.snapshots(120) as snapshots, world.run() as run:
-                seen, ended, *asked = await asyncio.gather(
+                seen, ended, *organisms = await asyncio.gather(
                     ticks(), self.first_of(run, 20), *(world.organism(i % 50) for i in range(200)))
             self.assertEqual(seen, sorted(seen))
             self.assertEqual(ended, list(range(1, 21)))
-            self.assertEqual([organism.id for organism in asked], [i % 50 for i in range(200)])
+            self.assertEqual([organism.id for organism in organisms], [i % 50 for i in range(200)])
 
     async def test_more_requests_than_the_limit_are_queued(self):
         async with evod.aio.local() as lab:
             world = await lab.world()
 
-            async def ask():
+            async def set_values():
                 return [(await world.set(food_health=value)).revision for value in range(5)]
 
-            revisions = await asyncio.gather(*(ask() for _ in range(50)))
+            revisions = await asyncio.gather(*(set_values() for _ in range(50)))
             self.assertEqual(len({revision for each in revisions for revision in each}), 50 * 5)
 
     async def first_of(self, run, count):

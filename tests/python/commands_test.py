@@ -70,7 +70,7 @@ class Commands(unittest.TestCase):
         by_name = {"mutation_chance": w.ParameterValue(real=1.5), "selection": w.ParameterValue(choice="best")}
         assignments = [w.ParameterAssignment(name=name, value=value) for name, value in by_name.items()]
         refusal = self.refused(lambda: self.lab.request(set_parameters=c.SetParameters(parameters=assignments)),
-                            *(f"set_parameters.{name}" for name in by_name))
+                               *(f"set_parameters.{name}" for name in by_name))
         self.assertEqual(set(refusal.violations) - set(error.violations), set())
         self.assertEqual(refusal.message, error.message)
 
@@ -141,8 +141,8 @@ class Commands(unittest.TestCase):
             run = world.run()
             seen = pool.submit(lambda: [next(snapshots).tick for _ in range(20)])
             ended = pool.submit(lambda: [next(run).number for _ in range(20)])
-            asked = [pool.submit(world.organism, i % 50) for i in range(300)]
-            self.assertEqual([answer.result().id for answer in asked], [i % 50 for i in range(300)])
+            answers = [pool.submit(world.organism, i % 50) for i in range(300)]
+            self.assertEqual([answer.result().id for answer in answers], [i % 50 for i in range(300)])
             self.assertEqual(ended.result(), list(range(1, 21)))
             self.assertEqual(seen.result(), sorted(seen.result()))
         world.delete()

@@ -32,9 +32,9 @@ class Connect(unittest.TestCase):
     def test_another_protocol_is_refused_at_once(self):
         with socket.create_server(("127.0.0.1", 0)) as other:
             def greet():
-                with other.accept()[0] as line:
-                    line.sendall(b"220 mail.example ESMTP\r\n")
-                    line.recv(100)
+                with other.accept()[0] as connection:
+                    connection.sendall(b"220 mail.example ESMTP\r\n")
+                    connection.recv(100)
             threading.Thread(target=greet).start()
             with self.assertRaisesRegex(evod.DamagedData, "is not an evod server: a frame begins with 32 32, not with 45 56"):
                 evod.connect("127.0.0.1:%d" % other.getsockname()[1])

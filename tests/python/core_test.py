@@ -11,11 +11,10 @@ from core_support import CoreTestCase
 
 
 class CoreTest(CoreTestCase):
-
     def test_wrong_frame_headers_end_the_connection(self):
         for header, message in ((b"EX\1\1\0\0\0\0", "begins with"), (b"EV\2\1\0\0\0\0", "version is 2"),
-                           (b"EV\1\3\0\0\0\0", "channel is 3"),
-                           (b"EV\1\1\1\0\0\4", "bytes long"), (b"EV\1\1\1\0\0\0\xff", "cannot be read")):
+                                (b"EV\1\3\0\0\0\0", "channel is 3"),
+                                (b"EV\1\1\1\0\0\4", "bytes long"), (b"EV\1\1\1\0\0\0\xff", "cannot be read")):
             with self.assertRaisesRegex(evod.DamagedData, message):
                 self.core().received(header)
 
@@ -41,19 +40,19 @@ class CoreTest(CoreTestCase):
 
     def test_requests_are_queued_and_repeated_in_order(self):
         core = self.core()
-        asked = [core.request(c.Request(pause=c.Pause(world=str(i)))) for i in range(5)]
+        requests = [core.request(c.Request(pause=c.Pause(world=str(i)))) for i in range(5)]
         self.assertEqual([message.request.request_id for message in self.sent(core)], [1, 2])
         self.answer(core, 1)
-        self.assertTrue(asked[0].done)
+        self.assertTrue(requests[0].done)
         self.assertEqual([message.request.request_id for message in self.sent(core)], [3])
         core.lost(evod.NoConnection("gone"))
         core.opened()
         self.assertEqual([message.WhichOneof("kind") for message in self.sent(core)], ["hello"])
         welcome = session_pb2.Welcome(protocol_version=1, limits=c.Limits(requests_in_flight_max=9))
         core.received(framing.encode(session_pb2.ServerMessage(welcome=welcome).SerializeToString()))
-        again = self.sent(core)
-        self.assertEqual([message.request.request_id for message in again], [2, 3, 4, 5])
-        self.assertEqual({message.request.client_key for message in again}, {core.client_key})
+        repeated = self.sent(core)
+        self.assertEqual([message.request.request_id for message in repeated], [2, 3, 4, 5])
+        self.assertEqual({message.request.client_key for message in repeated}, {core.client_key})
 
     def test_a_replay_that_opens_too_late_is_closed(self):
         core = self.core()

@@ -157,6 +157,18 @@ class Reconnect(unittest.TestCase):
         with self.assertRaisesRegex(evod.NoConnection, "no server at 127.0.0.1"):
             lab.worlds()
 
+    def test_a_call_succeeds_after_one_that_failed(self):
+        relay = Relay(self.server.port)
+        lab = self.connect(relay)
+        lab._link._inner.timeout_s = 0.2
+        relay.port = 1  # no server
+        relay.cut()
+        with self.assertRaisesRegex(evod.NoConnection, "closed the connection"):  # clears the frames of the traceback
+            lab.worlds()
+        relay.port = self.server.port
+        lab._link._inner.timeout_s = 600
+        self.assertEqual([info.name for info in lab.worlds()], ["default"])
+
     def test_without_reconnect_a_loss_is_reported_at_once(self):
         relay = Relay(self.server.port)
         lab = self.connect(relay, reconnect=False)

@@ -204,9 +204,9 @@ class Core:
         request.request_id, request.client_key = request_id, self.client_key
         body = session_pb2.ClientMessage(request=request).SerializeToString()
         limits = self.welcome.limits if self.welcome else None
-        most = limits.control_frame_bytes_max if limits else 1 << 20
-        if len(body) > most:
-            raise Error(f"the request is {len(body)} bytes long, allowed {most}")
+        limit = limits.control_frame_bytes_max if limits else 1 << 20
+        if len(body) > limit:
+            raise Error(f"the request is {len(body)} bytes long, allowed {limit}")
         self._last_request_id = request_id
         pending = self._pending[request_id] = Pending(request, framing.encode(body))
         if first:
@@ -261,10 +261,10 @@ class Core:
         if not self.connected or self.welcome is None:
             return
         # The server counts a request until it has sent the answer completely. The answer may arrive here before that.
-        most = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
+        limit = max(1, (self.welcome.limits.requests_in_flight_max or 32) // 2)
         for urgent in (True, False) if self._first else (False,):
             for request_id, pending in self._pending.items():
-                if len(self._in_flight) >= most:
+                if len(self._in_flight) >= limit:
                     return
                 if not pending.sent and (request_id in self._first) == urgent:
                     pending.sent = True
